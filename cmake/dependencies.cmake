@@ -1,0 +1,23 @@
+# Every package comes from Debian 12; docs/dependencies.md gives the reason for each.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
+find_package(urdfdom REQUIRED CONFIG)
+find_package(tinyxml2 9 REQUIRED CONFIG)
+find_package(yaml-cpp 0.7 REQUIRED CONFIG)
+find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+find_package(fmt 9 REQUIRED CONFIG)
+find_package(Threads REQUIRED)
+find_library(LIBMD_LIBRARY NAMES md REQUIRED)
+
+# Debian's omplConfig.cmake names Boost libraries that libompl-dev does not depend on: take only libompl.so.
+find_package(ompl 1.5 REQUIRED CONFIG)
+find_library(OMPL_CORE_LIBRARY NAMES ompl REQUIRED)
+add_library(OMPL::ompl UNKNOWN IMPORTED)
+set_target_properties(OMPL::ompl PROPERTIES
+  IMPORTED_LOCATION "${OMPL_CORE_LIBRARY}"
+  INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIR}"
+  INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
+
+set(POSEWRIGHT_LIBRARIES
+  Boost::headers OMPL::ompl urdfdom::urdfdom_model tinyxml2::tinyxml2 yaml-cpp
+  nlohmann_json::nlohmann_json fmt::fmt Threads::Threads ${LIBMD_LIBRARY})

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+
+namespace posewright {
+
+/// What a criterion sees of a design problem: candidate blocks, well conditioned (see planning/whiten.hpp).
+struct CandidateView {
+  const BlockArray* blocks = nullptr;
+  int nuisance = 0;        ///< the leading columns that are nuisance; eliminated by Schur complement
+  int max_repeats = 1;     ///< how often one candidate may be chosen
+};
+
+/// One exchange: candidate `enter` takes the place of the member at a position; `gain` is Φ(after) − Φ(before).
+struct Swap {
+  int enter = -1;          ///< −1: nothing gains more than was asked for
+  double gain = 0.0;
+};
+
+/// A design under search, under one criterion Φ (always maximised). Owns all running quantities (inverse, traces of
+/// every candidate); the loops over candidates are inside, so that an algorithm is written once for every criterion.
+class DesignState {
+ public:
+  virtual ~DesignState() = default;
+
+  const std::vector<int>& members() const { return members_; }
+  /// Φ from the running quantities; −∞ where the information is singular.
+  virtual double value() const = 0;
+  /// Estimate of what Φ loses without the member at `position`: the order in which positions are tried.
+  virtual double loss(int position) const = 0;
+  /// Best candidate for `position` with a gain above min_gain.
+  virtual Swap best_swap(int position, double min_gain) = 0;
+  /// Carries the swap out by a rank-2r update.
+  virtual void apply(int position, int enter) = 0;
+  /// Recomputes every running quantity from the blocks. Returns false where the information is singular; the
+  /// state then works with a small ridge (M + εI) until a later refresh succeeds without.
+  virtual bool refresh() = 0;
+
+ protected:
+  std::vector<int> members_;
+};
+
+/// A number Φ to maximise over sets of N configurations.
+class Criterion {
+ public:
+  virtual ~Criterion() = default;
+  virtual std::string name() const = 0;
+  /// A state that starts from `members` (indices into the view's blocks).
+  virtual std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const = 0;
+};
+
+}  // namespace posewright

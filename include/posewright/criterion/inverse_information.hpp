@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+
+namespace posewright {
+
+/// Running V = M⁻¹ of the leading `columns` columns of a design's blocks, M = Σ J_iᵀJ_i (+ ridge), together with
+/// d_j = tr(J_j V J_jᵀ) of every candidate j. Updated by rank 2r (Sherman–Morrison–Woodbury), refreshed by Cholesky.
+class InverseInformation {
+ public:
+  InverseInformation(const BlockArray& blocks, int columns);
+
+  /// From scratch. Returns false (and leaves everything untouched) where M is not safely positive definite.
+  bool refresh(const std::vector<int>& members, double ridge);
+  double log_det() const { return log_det_; }
+  double trace(int candidate) const { return d_[std::size_t(candidate)]; }
+  const std::vector<double>& traces() const { return d_; }
+  int columns() const { return columns_; }
+
+  /// Y = V J_candidateᵀ as r rows of `stride` doubles (zero beyond `columns`).
+  void project(int candidate, std::vector<double>& y) const;
+  /// J_candidate Yᵀ: r × r, Y from project().
+  void cross(int candidate, const std::vector<double>& y, Eigen::MatrixXd& c) const;
+  /// D_candidate = J V Jᵀ, r × r.
+  void own(int candidate, Eigen::MatrixXd& d);
+  /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter. Returns false where the update would lose all accuracy:
+  /// nothing has changed then and the caller refreshes instead.
+  bool swap(int leave, int enter);
+
+ private:
+  const BlockArray& blocks_;
+  int columns_, stride_, rows_;
+  std::vector<double> v_;            ///< columns × stride, row-major
+  std::vector<double> d_;
+  double log_det_ = 0.0;
+  std::vector<double> y_, scratch_;  ///< 2r × stride
+};
+
+}  // namespace posewright

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/parameter.hpp"
+
+namespace posewright {
+
+/// One entry of a configuration (or one actuator that follows from it).
+struct Coordinate {
+  std::string name;
+  std::string unit;      ///< "rad" or "m"
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+/// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
+struct Linearisation {
+  Eigen::MatrixXd G;            ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
+  Eigen::MatrixXd covariance;   ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
+  Eigen::Matrix<double, 6, Eigen::Dynamic> twists;        ///< scratch: tip twist per selected parameter
+  Eigen::Matrix<double, 6, Eigen::Dynamic> joint_twists;  ///< scratch: tip twist per configuration coordinate
+  Eigen::MatrixXd rows;                                   ///< scratch
+  Eigen::LLT<Eigen::MatrixXd> factor;                     ///< scratch of the whitening
+};
+
+/// Robot and instrument together: everything that planning needs to know of them.
+///
+/// A model is a catalogue of all its parameters (more than can be identified); a variant selects columns.
+/// Identification function g(y, ρ, ξ) as in design: zero for exact model and data. Members are const and
+/// may be called from several threads at once, each with a Linearisation of its own.
+class IdentificationModel {
+ public:
+  virtual ~IdentificationModel() = default;
+
+  const std::vector<Parameter>& parameters() const { return parameters_; }
+  const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+  /// Coordinates that follow from the configuration and have limits of their own (actuators of a parallel robot).
+  const std::vector<Coordinate>& actuators() const { return actuators_; }
+  /// Rows r of one block.
+  int rows() const { return rows_; }
+
+  /// Fills out.G (columns in the order of `selected`, indices into parameters()) and out.covariance.
+  /// @param q           configuration, size coordinates()
+  /// @param correction  ξ − nominal for every parameter, or empty for all zero
+  /// @return false where q has no solution (unreachable); `out` is then unspecified
+  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                 Linearisation& out) const;
+
+  /// Actuator coordinates at q (size actuators()); false where q is unreachable.
+  bool actuator_values(std::span<const double> q, std::span<double> values) const;
+
+  /// Nominal pose of the tip (or platform) in the measurement frame.
+  Eigen::Isometry3d tool_pose(std::span<const double> q) const;
+
+  /// Parameters that `auto` chooses among, in order of preference: index into parameters(), tier (smaller first).
+  struct Preference {
+    int parameter;
+    int tier;
+  };
+  const std::vector<Preference>& geometric_parameters() const { return geometric_; }
+
+ protected:
+  std::vector<Parameter> parameters_;
+  std::vector<Coordinate> coordinates_;
+  std::vector<Coordinate> actuators_;
+  std::vector<Preference> geometric_;
+  int rows_ = 0;
+
+ private:
+  virtual bool do_linearise(std::span<const double> q, std::span<const double> correction,
+                            std::span<const int> selected, Linearisation& out) const = 0;
+  virtual bool do_actuator_values(std::span<const double> q, std::span<double> values) const;
+  virtual Eigen::Isometry3d do_tool_pose(std::span<const double> q) const = 0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "posewright/model/serial_chain_kinematics.hpp"
+#include "posewright/model/tip_model.hpp"
+
+namespace posewright {
+
+/// Serial arm: base.{x,y,z,rx,ry,rz}; per joint NAME.{x,y,z,rx,ry,rz} (displacement of its frame before it moves), NAME.offset
+/// and NAME.gear (not for mimic joints); tool.{x,…,rz}. More than can be identified on purpose: the irreducible subset comes
+/// out of the identifiability analysis.
+class SerialChain : public TipModel {
+ public:
+  /// Throws std::invalid_argument for a chain without joints or with more than 64.
+  explicit SerialChain(ChainDescription chain);
+
+  /// Columns are spatial twists (design §3.1): rotation about axis ω through o gives (o × ω, ω), translation (axis, 0).
+  /// Selected indices beyond the chain's own parameters give zero columns.
+  Eigen::Isometry3d linearise(std::span<const double> q, std::span<const double> correction,
+                              std::span<const int> selected, Twists& twists, Twists* joint_twists) const override;
+
+  const ChainDescription& description() const { return chain_; }
+  const ChainLayout& layout() const { return layout_; }
+
+ private:
+  /// What a column is made of: the n-th stored axis, as rotation or translation, times a factor.
+  struct Column {
+    int joint;      ///< −1 base, joints() tool
+    int kind;       ///< 0–2 translation, 3–5 rotation, 6 offset, 7 gear
+  };
+
+  ChainDescription chain_;
+  ChainLayout layout_;
+  std::vector<Column> columns_;                       ///< per parameter
+  std::vector<std::vector<int>> joints_of_coordinate_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+
+namespace posewright {
+
+/// One moving joint; the fixed joints before it are merged into X_ParentJoint.
+struct ChainJoint {
+  std::string name;
+  bool prismatic = false;
+  Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit, joint frame
+  int coordinate = 0;                                ///< index into the configuration
+  double multiplier = 1.0, offset = 0.0;             ///< of a mimic joint
+  bool mimic = false;
+};
+
+/// A serial chain from base to tip.
+struct ChainDescription {
+  Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();
+  std::vector<ChainJoint> joints;
+  Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
+  std::vector<Coordinate> coordinates;
+  std::vector<double> encoder_noise;                 ///< 1σ per coordinate
+};
+
+/// Where each parameter of a serial chain stands: base (6), per joint displacement (6), offset and gear of each coordinate's
+/// own joint, tool (6).
+struct ChainLayout {
+  explicit ChainLayout(const ChainDescription& chain);
+  std::vector<int> displacement;   ///< per joint: index of NAME.x
+  std::vector<int> offset;         ///< per coordinate: index of NAME.offset; gear follows
+  int tool = 0;                    ///< index of tool.x
+  int count = 0;
+};
+
+/// Rotation and translation in a scalar of its own, for differentiation.
+template <class T>
+struct Frame {
+  Eigen::Matrix<T, 3, 3> R = Eigen::Matrix<T, 3, 3>::Identity();
+  Eigen::Matrix<T, 3, 1> p = Eigen::Matrix<T, 3, 1>::Zero();
+
+  void then(const Eigen::Isometry3d& X) {
+    p += R * X.translation().cast<T>();
+    R = (R * X.linear().cast<T>()).eval();
+  }
+  void then_translate(const Eigen::Matrix<T, 3, 1>& t) { p += R * t; }
+  /// R ← R · (rotation about the unit axis), Rodrigues.
+  void then_rotate(const Eigen::Vector3d& axis, const T& angle) {
+    using std::cos, std::sin;
+    Eigen::Matrix3d K;
+    K << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+    const Eigen::Matrix3d K2 = K * K;
+    const T s = sin(angle), c = T(1.0) - cos(angle);
+    const Eigen::Matrix<T, 3, 3> rotation =
+        Eigen::Matrix<T, 3, 3>::Identity() + K.cast<T>() * s + K2.cast<T>() * c;
+    R = (R * rotation).eval();
+  }
+  /// Displacement D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), the convention of URDF origins.
+  void then_displace(const T* d) {
+    then_translate({d[0], d[1], d[2]});
+    then_rotate(Eigen::Vector3d::UnitZ(), d[5]);
+    then_rotate(Eigen::Vector3d::UnitY(), d[4]);
+    then_rotate(Eigen::Vector3d::UnitX(), d[3]);
+  }
+};
+
+/// Pose of the tip in the measurement frame:
+///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] · X_LastTip D(tool).
+/// @param correction  all parameters in the order of ChainLayout
+template <class T>
+Frame<T> tip_pose(const ChainDescription& chain, const ChainLayout& layout, const double* q, const T* correction) {
+  Frame<T> frame;
+  frame.then(chain.X_MeasureBase);
+  frame.then_displace(correction);
+  for (std::size_t k = 0; k < chain.joints.size(); ++k) {
+    const ChainJoint& joint = chain.joints[k];
+    frame.then(joint.X_ParentJoint);
+    frame.then_displace(correction + layout.displacement[k]);
+    const T* own = correction + layout.offset[std::size_t(joint.coordinate)];
+    const T value = joint.multiplier * ((T(1.0) + own[1]) * q[joint.coordinate] + own[0]) + T(joint.offset);
+    if (joint.prismatic) frame.then_translate(joint.axis.cast<T>() * value);
+    else frame.then_rotate(joint.axis, value);
+  }
+  frame.then(chain.X_LastTip);
+  frame.then_displace(correction + layout.tool);
+  return frame;
+}
+
+}  // namespace posewright

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/identifiability.hpp"
+#include "posewright/blocks/parameter.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// The free columns of one variant in design order: nuisance first, then interest, each in the model's order (interest
+/// in the order the variant lists them). The only place that puts columns in order.
+struct VariantColumns {
+  std::string name;
+  bool automatic = false;               ///< still to be reduced to an irreducible subset
+  std::vector<int> selected;            ///< indices into the model's parameters()
+  std::vector<Parameter> parameters;    ///< labels: the user's names, roles and tolerances
+  std::vector<int> tiers;               ///< preference of identifiability()
+  int nuisance = 0;                     ///< how many lead
+};
+
+/// Resolves names, globs, roles and tolerances of a variant. Throws InputError for a pattern that matches nothing (naming
+/// some that exist) and for a tolerance in a unit that none of the matched parameters has.
+VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+
+/// The columns that `kept` (ascending indices into columns) names.
+VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept);
+
+/// The variant called `name`, or the one the design block names, or the first. Throws InputError for an unknown name.
+const VariantSpec& find_variant(const Problem& problem, const std::string& name);
+
+}  // namespace posewright

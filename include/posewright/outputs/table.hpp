@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace posewright {
+
+/// Aligned text table; widths count characters, not bytes, so that σ and µ line up.
+class Table {
+ public:
+  enum class Align { left, right };
+  Table(std::vector<std::string> header, std::vector<Align> align);
+  void row(std::vector<std::string> cells);
+  std::string text() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+  std::vector<Align> align_;
+};
+
+/// "0.0123 mm", "0.0045 deg": a value in SI for people, by its SI unit ("m", "rad", "1").
+std::string shown_value(double value, const std::string& unit);
+
+}  // namespace posewright

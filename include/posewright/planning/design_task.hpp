@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "posewright/criterion/criterion.hpp"
+#include "posewright/planning/approximate_design.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+/// All that a planner sees: candidates as whitened blocks, the criterion, the budget. Nothing of robots.
+struct DesignTask {
+  CandidateView candidates;
+  const Criterion* criterion = nullptr;
+  int poses = 0;                                   ///< N, at most what the repeat policy allows
+  const ApproximateDesign* approximate = nullptr;  ///< may be null; a source of good starts
+};
+
+struct PlannerOptions {
+  int restarts = 10;          ///< ≥ 1
+  int kicks = 10;             ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
+  std::uint64_t seed = 0;
+  int threads = 0;            ///< 0 = all
+};
+
+/// The best exact design found.
+struct Design {
+  std::vector<int> members;   ///< N candidate indices, ascending; equal ones only where repeats are allowed
+  double value = 0.0;         ///< Φ from a fresh factorisation, whitened coordinates
+  int restarts = 0;           ///< carried out
+  long exchanges = 0;         ///< accepted over all restarts
+  bool stopped = false;       ///< by the monitor, before all restarts were done
+};
+
+/// A search algorithm over sets of N candidates. Works for every criterion.
+class Planner {
+ public:
+  virtual ~Planner() = default;
+  virtual std::string name() const = 0;
+  /// Checks the task, runs the search. At least one restart is carried out however early the monitor stops.
+  /// Throws std::invalid_argument on a task that contradicts itself, CannotDo where every start stays singular.
+  Design plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const;
+
+ private:
+  virtual Design do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const = 0;
+};
+
+}  // namespace posewright

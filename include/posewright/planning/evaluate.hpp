@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/blocks/parameter.hpp"
+#include "posewright/criterion/observability_indices.hpp"
+
+namespace posewright {
+
+/// What a given set of poses is worth. The same code judges a plan, a user's list and a random baseline.
+struct Evaluation {
+  double log_det = 0.0;             ///< of the interest information (nuisance eliminated), raw blocks, SI
+  double log_det_full = 0.0;        ///< of Σ JᵢᵀJᵢ, nuisance columns included
+  Eigen::VectorXd sigma;            ///< predicted 1σ of every parameter, in the columns' order and SI units
+  Eigen::VectorXd singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled by tolerance; descending
+  ObservabilityIndices indices;     ///< O1 … O5 from singular_values
+  Eigen::VectorXd contribution;     ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
+  double condition = 0.0;           ///< σ1/σm
+};
+
+/// By Householder QR of the stacked rows; no inverse of M is formed.
+/// @param chosen      raw blocks of the chosen poses, nuisance columns first
+/// @param parameters  labels of the columns; role nuisance for exactly the leading ones, tolerance > 0
+/// Throws CannotDo where G is rank deficient (fewer independent rows than parameters), naming a parameter.
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters);
+
+}  // namespace posewright

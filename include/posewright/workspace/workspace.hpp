@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace ompl::base {
+class SpaceInformation;
+}
+
+namespace posewright {
+
+/// The one definition of a feasible configuration: an OMPL state space whose bounds are the robot's limits, narrowed
+/// by the problem file, and an OMPL validity checker that runs a list of checks and knows which one failed.
+class Workspace {
+ public:
+  /// @param model  must outlive the workspace
+  /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are empty
+  /// once the margin is taken off.
+  Workspace(const IdentificationModel& model, const Problem& problem);
+  ~Workspace();
+
+  /// Limits in force, in the order of a configuration.
+  const std::vector<Coordinate>& coordinates() const;
+  /// What each check is called; violation() returns an index into it.
+  const std::vector<std::string>& reasons() const;
+  /// Index of the first reason that forbids q, or −1.
+  int violation(std::span<const double> q) const;
+  /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
+  const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
+  /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from a limit, or an
+  /// actuator within `actuator_share` of its stroke from an end.
+  bool on_boundary(std::span<const double> q, double actuator_share = 0.01) const;
+  /// Share of the coordinates that sit on a limit.
+  double share_of_coordinates_on_limits(std::span<const double> q) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace posewright

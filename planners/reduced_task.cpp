@@ -1,0 +1,56 @@
+#include "reduced_task.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace posewright {
+namespace {
+
+// Share of the price below which a candidate is left out; few parameters need a wider net (measured on the instances
+// of docs/benchmarks.md).
+constexpr double share_many = 0.8, share_few = 0.6;
+constexpr int few_parameters = 8;
+
+std::vector<int> promising(const DesignTask& task) {
+  const ApproximateDesign& w = *task.approximate;
+  const int interest = task.candidates.blocks->columns() - task.candidates.nuisance;
+  const double threshold = (interest <= few_parameters ? share_few : share_many) * w.price;
+  // Enough to choose from, whatever the threshold says.
+  const auto least = std::min(w.sensitivity.size(), std::size_t(std::max(10 * task.poses, 200)));
+  std::vector<double> sorted = w.sensitivity;
+  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(least) - 1, sorted.end(), std::greater<>());
+  const double limit = std::min(threshold, sorted[least - 1]);
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < w.sensitivity.size(); ++i)
+    if (w.sensitivity[i] >= limit) kept.push_back(int(i));
+  return kept;
+}
+
+}  // namespace
+
+ReducedTask::ReducedTask(const DesignTask& task) : task_(task) {
+  if (task.approximate == nullptr || task.approximate->sensitivity.size() != task.candidates.blocks->count()) return;
+  std::vector<int> kept = promising(task);
+  if (2 * kept.size() > task.candidates.blocks->count()) return;
+  kept_ = std::move(kept);
+  blocks_ = task.candidates.blocks->subset(kept_);
+  task_.candidates.blocks = &blocks_;
+  approximate_.log_det_bound = task.approximate->log_det_bound;
+  for (std::size_t i = 0; i < task.approximate->support.size(); ++i) {
+    const auto at = std::lower_bound(kept_.begin(), kept_.end(), task.approximate->support[i]);
+    if (at == kept_.end() || *at != task.approximate->support[i]) continue;
+    approximate_.support.push_back(int(at - kept_.begin()));
+    approximate_.weights.push_back(task.approximate->weights[i]);
+  }
+  task_.approximate = &approximate_;
+}
+
+std::vector<int> ReducedTask::original(const std::vector<int>& members) const {
+  if (!is_smaller()) return members;
+  std::vector<int> original;
+  original.reserve(members.size());
+  for (const int i : members) original.push_back(kept_[std::size_t(i)]);
+  return original;
+}
+
+}  // namespace posewright

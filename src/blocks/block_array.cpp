@@ -1,0 +1,24 @@
+#include "posewright/blocks/block_array.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace posewright {
+
+BlockArray::BlockArray(std::size_t count, int rows, int columns)
+    : count_(count), rows_(rows), columns_(columns), stride_((columns + 7) / 8 * 8) {
+  const std::size_t doubles = std::max<std::size_t>(8, count_ * std::size_t(rows_) * std::size_t(stride_));
+  data_.reset(static_cast<double*>(std::aligned_alloc(64, doubles * sizeof(double))));
+  if (!data_) throw std::bad_alloc();
+  std::fill_n(data_.get(), doubles, 0.0);
+}
+
+BlockArray BlockArray::subset(const std::vector<int>& blocks) const {
+  BlockArray copy(blocks.size(), rows_, columns_);
+  const std::size_t length = std::size_t(rows_) * std::size_t(stride_);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    std::copy_n(row(std::size_t(blocks[i]), 0), length, copy.row(i, 0));
+  return copy;
+}
+
+}  // namespace posewright

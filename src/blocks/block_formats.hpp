@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "posewright/blocks/read_blocks.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+bool is_npy(std::string_view bytes);
+BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
+BlockFile parse_csv(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
+
+/// n from the number of table rows; throws where `rows` does not divide it or n or m is zero.
+std::size_t count_blocks(std::size_t table_rows, std::optional<int> rows, const SourcePlace& place);
+
+}  // namespace posewright

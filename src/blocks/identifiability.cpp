@@ -1,0 +1,128 @@
+#include "posewright/blocks/identifiability.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace posewright {
+namespace {
+
+// Of two columns whose remaining norms differ by less than this share, the first in order is kept: rounding must not decide.
+constexpr double tie = 1e-6;
+// Terms whose effect is below this share of the dropped column's effect are rounding, not physics.
+constexpr double negligible_term = 1e-3;
+
+/// Triangular factor of the rows in units of tolerance: m × m and cheap to work on, same Gram matrix as G.
+Eigen::MatrixXd compressed(const BlockArray& sample, const std::vector<Parameter>& parameters) {
+  const int m = sample.columns();
+  Eigen::VectorXd tolerance(m);
+  for (int j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
+  Eigen::MatrixXd rows = sample.all();
+  rows *= tolerance.asDiagonal();
+  if (rows.rows() <= m) return rows;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(rows));
+  return qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+}
+
+/// Column pivoting by tiers; Gram–Schmidt with one reorthogonalisation.
+class Elimination {
+ public:
+  Elimination(const Eigen::MatrixXd& g, const IdentifiabilityOptions& options)
+      : remaining_(g), norms_(g.colwise().norm()), options_(options), kept_(std::size_t(g.cols()), false) {}
+
+  std::vector<int> run() {
+    std::vector<int> order;
+    for (int j = next(); j >= 0; j = next()) {
+      kept_[std::size_t(j)] = true;
+      order.push_back(j);
+      Eigen::VectorXd q = remaining_.col(j).normalized();
+      for (const Eigen::VectorXd& p : basis_) q -= p * p.dot(q);
+      q.normalize();
+      basis_.push_back(q);
+      for (Eigen::Index k = 0; k < remaining_.cols(); ++k)
+        if (!kept_[std::size_t(k)]) remaining_.col(k) -= q * q.dot(remaining_.col(k));
+    }
+    return order;
+  }
+
+ private:
+  int tier(Eigen::Index j) const { return options_.tiers.empty() ? 0 : options_.tiers[std::size_t(j)]; }
+
+  int next() const {
+    int best = -1;
+    for (int j = 0; j < int(remaining_.cols()); ++j) {
+      const double rest = remaining_.col(j).norm();
+      if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] == 0) continue;
+      if (best < 0 || tier(j) < tier(best) ||
+          (tier(j) == tier(best) && rest > (1 + tie) * remaining_.col(best).norm()))
+        best = j;
+    }
+    return best;
+  }
+
+  Eigen::MatrixXd remaining_;
+  Eigen::VectorXd norms_;
+  const IdentifiabilityOptions& options_;
+  std::vector<bool> kept_;
+  std::vector<Eigen::VectorXd> basis_;
+};
+
+Dependency explain(const Eigen::MatrixXd& g, const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
+                   const std::vector<int>& kept, int dropped, const std::vector<Parameter>& parameters) {
+  Dependency dependency;
+  dependency.dropped = dropped;
+  const Eigen::VectorXd column = g.col(dropped);
+  const double norm = column.norm();
+  if (norm == 0 || kept.empty()) return dependency;
+  const Eigen::VectorXd solution = qr.solve(column);
+  Eigen::VectorXd rest = column;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto k = Eigen::Index(i);
+    rest -= solution[k] * g.col(kept[i]);
+    if (std::abs(solution[k]) * g.col(kept[i]).norm() < negligible_term * norm) continue;
+    const double units = parameters[std::size_t(kept[i])].tolerance / parameters[std::size_t(dropped)].tolerance;
+    dependency.terms.push_back({kept[i], solution[k] * units});
+  }
+  dependency.remainder = rest.norm() / norm;
+  return dependency;
+}
+
+}  // namespace
+
+Identifiability identifiability(const BlockArray& sample, const std::vector<Parameter>& parameters,
+                                const IdentifiabilityOptions& options) {
+  const Eigen::MatrixXd g = compressed(sample, parameters);
+  Identifiability result;
+  result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(g).singularValues();
+  result.kept = Elimination(g, options).run();
+  std::sort(result.kept.begin(), result.kept.end());
+  result.rank = int(result.kept.size());
+  Eigen::MatrixXd basis(g.rows(), result.rank);
+  for (int i = 0; i < result.rank; ++i) basis.col(i) = g.col(result.kept[std::size_t(i)]);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
+  for (int j = 0; j < int(g.cols()); ++j)
+    if (!std::binary_search(result.kept.begin(), result.kept.end(), j))
+      result.dependencies.push_back(explain(g, qr, result.kept, j, parameters));
+  return result;
+}
+
+std::string describe(const Dependency& dependency, const std::vector<Parameter>& parameters) {
+  const Parameter& dropped = parameters[std::size_t(dependency.dropped)];
+  if (dependency.terms.empty()) return dropped.name + " has no effect on the measurement";
+  std::string text = dropped.name + " =";
+  bool first = true;
+  for (const Dependency::Term& term : dependency.terms) {
+    const Parameter& kept = parameters[std::size_t(term.parameter)];
+    text += first ? (term.coefficient < 0 ? " −" : " ") : (term.coefficient < 0 ? " − " : " + ");
+    first = false;
+    const double size = std::abs(term.coefficient);
+    if (kept.unit != dropped.unit) text += fmt::format("{:.4g} {}/{}·", size, kept.unit, dropped.unit);
+    else if (std::abs(size - 1) > 5e-4) text += fmt::format("{:.4g}·", size);
+    text += kept.name;
+  }
+  return text;
+}
+
+}  // namespace posewright

@@ -1,0 +1,123 @@
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "block_formats.hpp"
+
+// Format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html, versions 1.0 to 3.0.
+
+namespace posewright {
+namespace {
+
+constexpr std::string_view magic = "\x93NUMPY";
+
+struct Header {
+  int item = 8;                       ///< bytes a number
+  std::vector<std::size_t> shape;
+  std::size_t data = 0;               ///< offset of the first number
+};
+
+std::string_view value_of(std::string_view header, std::string_view key, const SourcePlace& place) {
+  const auto at = header.find("'" + std::string(key) + "'");
+  const auto colon = at == std::string_view::npos ? at : header.find(':', at);
+  if (colon == std::string_view::npos)
+    throw InputError(place, "the .npy header has no '" + std::string(key) + "'", "save the array with numpy.save");
+  std::string_view rest = header.substr(colon + 1);
+  while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
+  return rest;
+}
+
+std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& place) {
+  std::vector<std::size_t> shape;
+  const auto close = text.find(')');
+  if (text.empty() || text.front() != '(' || close == std::string_view::npos)
+    throw InputError(place, "the .npy header has no readable shape", "n × r × m is needed");
+  const char* p = text.data() + 1;
+  const char* end = text.data() + close;
+  while (p < end) {
+    if (*p == ' ' || *p == ',') {
+      ++p;
+      continue;
+    }
+    std::size_t extent = 0;
+    const auto [next, code] = std::from_chars(p, end, extent);
+    if (code != std::errc() || extent > (std::size_t(1) << 40))
+      throw InputError(place, "the .npy header has no readable shape", "n × r × m is needed");
+    shape.push_back(extent);
+    p = next;
+  }
+  return shape;
+}
+
+Header parse_header(std::string_view bytes, const SourcePlace& place) {
+  if (bytes.size() < 12) throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
+  const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(bytes[i])); };
+  const bool short_length = byte(6) == 1;
+  const std::size_t length = short_length ? byte(8) + 256 * byte(9)
+                                          : byte(8) + 256 * (byte(9) + 256 * (byte(10) + 256 * byte(11)));
+  Header header;
+  header.data = (short_length ? 10 : 12) + length;
+  if (header.data > bytes.size()) throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
+  const std::string_view text = bytes.substr(header.data - length, length);
+  const std::string_view kind = value_of(text, "descr", place);
+  if (kind.starts_with("'<f8'")) header.item = 8;
+  else if (kind.starts_with("'<f4'")) header.item = 4;
+  else throw InputError(place, "holds numbers of type " + std::string(kind.substr(0, kind.find(','))), "allowed: '<f8', '<f4'");
+  if (!value_of(text, "fortran_order", place).starts_with("False"))
+    throw InputError(place, "is in Fortran order", "save numpy.ascontiguousarray(array)");
+  header.shape = parse_shape(value_of(text, "shape", place), place);
+  return header;
+}
+
+double number_at(const char* p, int item) {
+  if (item == 8) {
+    double value;
+    std::memcpy(&value, p, 8);
+    return value;
+  }
+  float value;
+  std::memcpy(&value, p, 4);
+  return value;
+}
+
+}  // namespace
+
+static_assert(std::endian::native == std::endian::little, "number_at reads little-endian numbers in place");
+
+bool is_npy(std::string_view bytes) { return bytes.starts_with(magic); }
+
+BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place) {
+  const Header header = parse_header(bytes, place);
+  std::size_t n = 0, r = 1, m = 0;
+  if (header.shape.size() == 3) {
+    n = header.shape[0], r = header.shape[1], m = header.shape[2];
+    if (rows && std::size_t(*rows) != r)
+      throw InputError(place, "has blocks of " + std::to_string(r) + " rows", "--rows says " + std::to_string(*rows));
+  } else if (header.shape.size() == 2) {
+    n = count_blocks(header.shape[0], rows, place), r = std::size_t(*rows), m = header.shape[1];
+  } else {
+    throw InputError(place, "has " + std::to_string(header.shape.size()) + " dimensions", "n × r × m (3) or (n·r) × m (2) is needed");
+  }
+  if (n == 0 || r == 0 || m == 0) throw InputError(place, "has no blocks", "n, r and m must be at least 1");
+  const std::size_t available = (bytes.size() - header.data) / std::size_t(header.item);
+  if (r > 100000 || m > 100000 || available / r / m < n || available != n * r * m)
+    throw InputError(place, "holds " + std::to_string(available) + " numbers",
+                     std::to_string(n) + " × " + std::to_string(r) + " × " + std::to_string(m) + " are announced");
+  BlockFile file{BlockArray(n, int(r), int(m)), {}, {}};
+  const char* p = bytes.data() + header.data;
+  for (std::size_t i = 0; i < n * r; ++i) {
+    double* row = file.blocks.row(i / r, int(i % r));
+    for (std::size_t j = 0; j < m; ++j, p += header.item) {
+      row[j] = number_at(p, header.item);
+      if (!std::isfinite(row[j]))
+        throw InputError(place, "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
+                                    std::to_string(j) + " is not finite", "all numbers must be finite");
+    }
+  }
+  return file;
+}
+
+}  // namespace posewright

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright::cli {
+
+namespace po = boost::program_options;
+
+/// Exit codes, the same for every command.
+enum ExitCode { done = 0, cannot_do = 1, bad_input = 2, interrupted = 130 };
+
+using Words = std::vector<std::string>;
+
+/// One row a command: what `posewright NAME` does.
+struct Command {
+  std::string name;
+  std::string arguments;    ///< "PROBLEM"
+  std::string summary;
+  po::options_description (*options)();
+  std::string example;
+  int (*run)(const po::variables_map& values, const Words& positional);
+};
+
+const std::vector<Command>& commands();
+
+Command plan_command();
+Command observe_command();
+Command select_command();
+
+/// Options that every command has.
+struct CommonOptions {
+  std::uint64_t seed = 0;
+  int threads = 0;
+  bool json = false, quiet = false, verbose = false;
+};
+po::options_description common_options();
+CommonOptions common_values(const po::variables_map& values);
+
+/// The one positional argument, or an error that names it.
+std::string single(const Words& positional, const std::string& what);
+
+/// A whole number within [lower, upper] as an optional; InputError names the option and the range.
+std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper);
+/// The text of an option, empty where it is not given.
+std::string text_of(const po::variables_map& values, const std::string& option);
+
+}  // namespace posewright::cli

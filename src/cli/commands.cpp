@@ -1,0 +1,58 @@
+#include <charconv>
+
+#include "command.hpp"
+
+namespace posewright::cli {
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> table = {observe_command(), plan_command(), select_command()};
+  return table;
+}
+
+po::options_description common_options() {
+  po::options_description options("Common options");
+  options.add_options()                                                                             //
+      ("seed", po::value<std::string>()->value_name("S"), "seed of everything random (0)")          //
+      ("threads", po::value<std::string>()->value_name("T"), "threads (all); never changes a result") //
+      ("json", "result as JSON on stdout, nothing else there")                                      //
+      ("quiet", "no progress")                                                                      //
+      ("verbose", "progress also where stderr is no terminal")                                      //
+      ("help", "this text");
+  return options;
+}
+
+CommonOptions common_values(const po::variables_map& values) {
+  CommonOptions common;
+  common.json = values.count("json") > 0;
+  common.quiet = values.count("quiet") > 0;
+  common.verbose = values.count("verbose") > 0;
+  common.threads = whole_number(values, "threads", 1, 4096).value_or(0);
+  const std::string seed = text_of(values, "seed");
+  const auto [end, code] = std::from_chars(seed.data(), seed.data() + seed.size(), common.seed);
+  if (!seed.empty() && (code != std::errc() || end != seed.data() + seed.size()))
+    throw InputError({}, "--seed " + seed + " is no seed", "a whole number from 0 to 18446744073709551615");
+  return common;
+}
+
+std::string single(const Words& positional, const std::string& what) {
+  if (positional.empty()) throw InputError({}, what + " is missing", "see --help");
+  if (positional.size() > 1) throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
+  return positional.front();
+}
+
+std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper) {
+  const std::string text = text_of(values, option);
+  if (values.count(option) == 0) return std::nullopt;
+  long number = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (code != std::errc() || end != text.data() + text.size() || number < lower || number > upper)
+    throw InputError({}, "--" + option + " " + text,
+                     "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper) + " is allowed");
+  return int(number);
+}
+
+std::string text_of(const po::variables_map& values, const std::string& option) {
+  return values.count(option) > 0 ? values[option].as<std::string>() : std::string();
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright::cli {
+
+/// A long computation as a person at a terminal sees it: a line of progress on stderr, Ctrl-C ends the search and
+/// keeps the best plan so far, a second Ctrl-C ends the program.
+class Watch {
+ public:
+  /// @param seconds  time limit, 0 = none
+  Watch(const CommonOptions& common, double seconds);
+  ~Watch();
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  const Monitor& monitor() const { return monitor_; }
+  bool was_interrupted() const { return monitor_.was_interrupted(); }
+
+ private:
+  void show(const Progress& progress);
+  Monitor monitor_;
+  Monitor::Clock::time_point begin_, last_, stage_begin_;
+  std::string stage_;
+  bool shown_ = false;
+};
+
+/// Refuses to write over anything that is not an earlier result of this program, unless forced. Call before the search.
+/// Throws CannotDo naming the file, InputError where two outputs or an input and an output are the same file.
+void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::filesystem::path& input, bool force);
+
+/// Seconds of --time-limit; 0 where it is not given.
+double time_limit(const po::variables_map& values);
+
+}  // namespace posewright::cli

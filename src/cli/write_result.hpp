@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "command.hpp"
+#include "posewright/outputs/plan.hpp"
+#include "posewright/problem/problem.hpp"
+#include "session.hpp"
+
+namespace posewright::cli {
+
+/// -o, --poses-csv (where there are configurations), --force, --time-limit.
+po::options_description output_options(bool poses);
+/// The value of --repeats; InputError for anything but allow and forbid.
+std::optional<Repeats> repeats_of(const po::variables_map& values);
+
+/// Where a plan goes: files, and the table or JSON on stdout.
+class Outputs {
+ public:
+  /// Checks the files before any search. Throws CannotDo or InputError.
+  Outputs(const po::variables_map& values, const std::filesystem::path& input, bool poses);
+  /// Runs the search under a Watch, writes everything, returns the exit code.
+  int search_and_write(const CommonOptions& common, double seconds,
+                       const std::function<Plan(const Monitor&)>& search) const;
+
+ private:
+  std::filesystem::path plan_, poses_;   ///< empty = not asked for
+};
+
+}  // namespace posewright::cli

@@ -1,0 +1,91 @@
+#include "posewright/criterion/inverse_information.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "kernels/kernels.hpp"
+#include "posewright/criterion/sensitivity.hpp"
+
+namespace posewright {
+namespace {
+
+// Below this ratio of Cholesky pivots the whitened information counts as singular.
+constexpr double singular_pivot = 1e-11;
+// An eigenvalue λ of the 2r × 2r swap matrix amplifies the rounding of V by 1/λ; below this a fresh factorisation is due.
+constexpr double singular_swap = 1e-4;
+
+}  // namespace
+
+InverseInformation::InverseInformation(const BlockArray& blocks, int columns)
+    : blocks_(blocks), columns_(columns), stride_(blocks.stride()), rows_(blocks.rows()),
+      v_(std::size_t(columns) * std::size_t(stride_)), d_(blocks.count()),
+      y_(std::size_t(2 * rows_ * stride_)), scratch_(std::size_t(2 * rows_ * stride_)) {}
+
+bool InverseInformation::refresh(const std::vector<int>& members, double ridge) {
+  Eigen::MatrixXd m = ridge * Eigen::MatrixXd::Identity(columns_, columns_);
+  for (const int i : members)
+    m.selfadjointView<Eigen::Lower>().rankUpdate(blocks_.block(std::size_t(i)).leftCols(columns_).transpose());
+  const Eigen::LLT<Eigen::MatrixXd> factor(m);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
+  if (!(pivots.minCoeff() > std::sqrt(singular_pivot) * pivots.maxCoeff())) return false;
+
+  log_det_ = 2 * pivots.array().log().sum();
+  const Eigen::MatrixXd inverse_factor = factor.matrixL().solve(Eigen::MatrixXd::Identity(columns_, columns_));
+  Eigen::Map<BlockArray::RowMatrix, 0, Eigen::OuterStride<>> v(v_.data(), columns_, columns_,
+                                                               Eigen::OuterStride<>(stride_));
+  v.noalias() = inverse_factor.transpose() * inverse_factor;
+
+  information_traces(blocks_, inverse_factor, columns_, d_);
+  return true;
+}
+
+void InverseInformation::project(int candidate, std::vector<double>& y) const {
+  y.resize(std::size_t(rows_ * stride_));
+  for (int i = 0; i < rows_; ++i) {
+    kernels().cross(v_.data(), columns_, stride_, blocks_.row(std::size_t(candidate), i), 1, y.data() + i * stride_);
+    std::fill(y.begin() + i * stride_ + columns_, y.begin() + (i + 1) * stride_, 0.0);
+  }
+}
+
+void InverseInformation::cross(int candidate, const std::vector<double>& y, Eigen::MatrixXd& c) const {
+  // The kernel writes rows; a column-major r × r matrix read as its transpose is put right below.
+  kernels().cross(blocks_.row(std::size_t(candidate), 0), rows_, stride_, y.data(), rows_, c.data());
+  c.transposeInPlace();
+}
+
+void InverseInformation::own(int candidate, Eigen::MatrixXd& d) {
+  project(candidate, scratch_);
+  cross(candidate, scratch_, d);
+}
+
+bool InverseInformation::swap(int leave, int enter) {
+  project(enter, scratch_);
+  std::copy_n(scratch_.begin(), rows_ * stride_, y_.begin());
+  project(leave, scratch_);
+  std::copy_n(scratch_.begin(), rows_ * stride_, y_.begin() + rows_ * stride_);
+
+  // M' = M + Uᵀ S U with U = [J_enter; J_leave], S = diag(I, −I): V' = V − V Uᵀ K⁻¹ U V, K = S + U V Uᵀ.
+  const int size = 2 * rows_;
+  BlockArray::RowMatrix k(size, size);
+  kernels().cross(blocks_.row(std::size_t(enter), 0), rows_, stride_, y_.data(), size, k.data());
+  kernels().cross(blocks_.row(std::size_t(leave), 0), rows_, stride_, y_.data(), size, k.data() + rows_ * size);
+  k.diagonal().head(rows_).array() += 1;
+  k.diagonal().tail(rows_).array() -= 1;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()));
+  const Eigen::VectorXd lambda = eigen.eigenvalues();
+  if (!(lambda.cwiseAbs().minCoeff() > singular_swap)) return false;
+
+  log_det_ += lambda.cwiseAbs().array().log().sum();
+  const Eigen::MatrixXd scale = eigen.eigenvectors() * lambda.cwiseAbs().cwiseSqrt().cwiseInverse().asDiagonal();
+  Eigen::Map<const BlockArray::RowMatrix> y(y_.data(), size, stride_);
+  const BlockArray::RowMatrix directions = scale.transpose() * y;
+  const Eigen::VectorXd sign = lambda.array().sign();
+  Eigen::Map<BlockArray::RowMatrix> v(v_.data(), columns_, stride_);
+  v.noalias() -= directions.leftCols(columns_).transpose() * sign.asDiagonal() * directions;
+  kernels().subtract_squares(blocks_.data(), blocks_.count(), rows_, stride_, directions.data(), sign.data(), size,
+                             d_.data());
+  return true;
+}
+
+}  // namespace posewright

@@ -1,0 +1,3 @@
+#define KERNELS_NAME kernels_sse2
+#define KERNELS_TEXT "sse2"
+#include "kernels.inl"

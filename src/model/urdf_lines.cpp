@@ -1,0 +1,80 @@
+#include "urdf_lines.hpp"
+
+#include <tinyxml2.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+namespace posewright {
+namespace {
+
+struct NumberAttribute {
+  const char* element;
+  const char* attribute;
+  int count;
+};
+// What the kinematics is read from.
+constexpr std::array<NumberAttribute, 9> number_attributes = {{{"origin", "xyz", 3},
+                                                               {"origin", "rpy", 3},
+                                                               {"axis", "xyz", 3},
+                                                               {"limit", "lower", 1},
+                                                               {"limit", "upper", 1},
+                                                               {"limit", "velocity", 1},
+                                                               {"limit", "effort", 1},
+                                                               {"mimic", "multiplier", 1},
+                                                               {"mimic", "offset", 1}}};
+
+/// Exactly `count` finite numbers separated by blanks.
+bool are_numbers(std::string_view text, int count) {
+  int found = 0;
+  while (true) {
+    const auto first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return found == count;
+    text.remove_prefix(first);
+    if (text.front() == '+') text.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || !std::isfinite(value)) return false;
+    text.remove_prefix(std::size_t(end - text.data()));
+    if (!text.empty() && std::strchr(" \t\r\n", text.front()) == nullptr) return false;
+    ++found;
+  }
+}
+
+void check_numbers(const tinyxml2::XMLElement& joint, const std::string& file) {
+  for (const tinyxml2::XMLElement* e = joint.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    for (const NumberAttribute& rule : number_attributes) {
+      const char* value = std::strcmp(e->Name(), rule.element) == 0 ? e->Attribute(rule.attribute) : nullptr;
+      if (value != nullptr && !are_numbers(value, rule.count))
+        throw InputError({file, e->GetLineNum()},
+                         std::string(rule.element) + " " + rule.attribute + "=\"" + value + "\" is malformed",
+                         rule.count == 1 ? "one finite number is allowed" : "three finite numbers separated by blanks are allowed");
+    }
+}
+
+}  // namespace
+
+UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(text), file_(file) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    throw InputError({file, document.ErrorLineNum()}, "is no well-formed XML", "a URDF file is needed");
+  const tinyxml2::XMLElement* robot = document.RootElement();
+  if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
+    throw InputError({file, robot == nullptr ? 0 : robot->GetLineNum()}, "has no <robot> at its root", "a URDF file is needed");
+  for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint"))
+    check_numbers(*e, file);
+}
+
+SourcePlace UrdfLines::find(const char* element, const std::string& name) const {
+  tinyxml2::XMLDocument document;
+  document.Parse(text_.data(), text_.size());
+  for (const tinyxml2::XMLElement* e = document.RootElement()->FirstChildElement(element); e != nullptr;
+       e = e->NextSiblingElement(element))
+    if (e->Attribute("name", name.c_str()) != nullptr) return {file_, e->GetLineNum()};
+  return {file_, 0};
+}
+
+}  // namespace posewright

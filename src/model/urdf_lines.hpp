@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+/// The same URDF as tinyxml2 sees it: urdfdom knows no lines and reads "1,5" as 1.
+class UrdfLines {
+ public:
+  /// Throws InputError where the text is no XML, has no <robot>, or a number in it is malformed or not finite.
+  UrdfLines(const std::string& text, const std::string& file);
+  /// Place of <joint name="…"> or <link name="…">; line 0 where there is none.
+  SourcePlace joint(const std::string& name) const { return find("joint", name); }
+  SourcePlace link(const std::string& name) const { return find("link", name); }
+
+ private:
+  SourcePlace find(const char* element, const std::string& name) const;
+  std::string text_, file_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,26 @@
+#include "posewright/model/whitening.hpp"
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
+                    std::span<const int> selected, Linearisation& scratch, double* out, int stride) {
+  if (!model.linearise(q, correction, selected, scratch)) return false;
+  scratch.factor.compute(scratch.covariance);
+  if (scratch.factor.info() != Eigen::Success)
+    throw CannotDo("measurement: the noise covariance is not positive definite");
+  BlockArray::Map block(out, scratch.G.rows(), scratch.G.cols(), Eigen::OuterStride<>(stride));
+  // Forward substitution by rows: the block is row-major and G may be overwritten row by row.
+  const auto& l = scratch.factor.matrixLLT();
+  for (Eigen::Index i = 0; i < block.rows(); ++i) {
+    block.row(i) = scratch.G.row(i);
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (l(i, k) != 0) block.row(i) -= l(i, k) * block.row(k);
+    block.row(i) /= l(i, i);
+  }
+  return true;
+}
+
+}  // namespace posewright

@@ -1,0 +1,23 @@
+#include <fmt/format.h>
+
+#include "posewright/outputs/write_plan.hpp"
+
+namespace posewright {
+
+std::string poses_csv(const Plan& plan) {
+  if (plan.poses.empty() || plan.poses.front().configuration.empty()) return {};
+  std::string text = "pose";
+  const PlannedPose& first = plan.poses.front();
+  for (const NamedValue& v : first.configuration) text += fmt::format(",{} [{}]", v.name, v.unit);
+  for (const NamedValue& v : first.actuators) text += fmt::format(",{} [{}]", v.name, v.unit);
+  text += "\n";
+  for (const PlannedPose& pose : plan.poses) {
+    text += std::to_string(pose.id);
+    for (const NamedValue& v : pose.configuration) text += fmt::format(",{}", v.value);
+    for (const NamedValue& v : pose.actuators) text += fmt::format(",{}", v.value);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace posewright

@@ -1,0 +1,70 @@
+#include "search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planners/registry.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/planning/whiten.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+Certificate certificate_of(const ApproximateDesign& approximate, const SearchRequest& request, std::size_t count,
+                           int interest, double offset) {
+  Certificate certificate;
+  certificate.log_det_bound = approximate.log_det_bound_for(request.poses, interest) + offset;
+  certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
+  certificate.count = count;
+  certificate.repeats = request.repeats == Repeats::allow;
+  return certificate;
+}
+
+}  // namespace
+
+void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
+                   const SourcePlace& method_place) {
+  if (make_criterion(criterion) == nullptr)
+    throw InputError(criterion_place, "unknown criterion '" + criterion + "'", "available: " + criterion_names());
+  if (make_planner(method) == nullptr)
+    throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
+}
+
+SearchResult search(BlockArray blocks, const SearchRequest& request, const Monitor& monitor) {
+  const int interest = blocks.columns() - request.nuisance;
+  const bool repeats = request.repeats == Repeats::allow;
+  if (!repeats && std::size_t(request.poses) > blocks.count())
+    throw CannotDo(std::to_string(request.poses) + " poses without repeats cannot be chosen from " +
+                   std::to_string(blocks.count()) + " candidates");
+  const Whitening whitening = whiten(blocks);
+  ApproximateDesignOptions bound_options;
+  bound_options.cap = repeats ? 1.0 : 1.0 / request.poses;
+  const ApproximateDesign approximate = solve_approximate_design(blocks, request.nuisance, bound_options, monitor);
+
+  const auto criterion = make_criterion(request.criterion);
+  const auto planner = make_planner(request.method);
+  DesignTask task;
+  task.candidates = {&blocks, request.nuisance, repeats ? request.poses : 1};
+  task.criterion = criterion.get();
+  task.poses = request.poses;
+  task.approximate = &approximate;
+
+  SearchResult result;
+  result.design = planner->plan(task, request.planner, monitor);
+  result.stopped = approximate.stopped || result.design.stopped;
+  result.certificate =
+      certificate_of(approximate, request, blocks.count(), interest, whitening.log_det_offset(request.nuisance));
+  result.chosen = blocks.subset(result.design.members);
+  for (std::size_t i = 0; i < result.chosen.count(); ++i) {
+    auto block = result.chosen.block(i);
+    block = (block * whitening.R).eval();
+  }
+  return result;
+}
+
+void certify(Certificate& certificate, double log_det, int interest) {
+  certificate.efficiency = std::min(1.0, std::exp((log_det - certificate.log_det_bound) / interest));
+}
+
+}  // namespace posewright

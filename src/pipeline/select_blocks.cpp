@@ -1,0 +1,66 @@
+#include "posewright/pipeline/select_blocks.hpp"
+
+#include <chrono>
+
+#include "posewright/blocks/read_blocks.hpp"
+#include "posewright/planning/evaluate.hpp"
+#include "search.hpp"
+
+namespace posewright {
+namespace {
+
+std::vector<Parameter> labels(const std::vector<std::string>& names, int nuisance) {
+  std::vector<Parameter> parameters;
+  for (std::size_t j = 0; j < names.size(); ++j)
+    parameters.push_back({names[j], "1", 0.0, 1.0, int(j) < nuisance ? Role::nuisance : Role::interest});
+  return parameters;
+}
+
+void require_enough(const BlockFile& file, const SelectOptions& options) {
+  const int m = file.blocks.columns(), r = file.blocks.rows();
+  if (options.nuisance < 0 || options.nuisance >= m)
+    throw InputError({}, "--nuisance " + std::to_string(options.nuisance), "0 to " + std::to_string(m - 1) + " of the " + std::to_string(m) + " columns");
+  if (options.poses * r < m)
+    throw CannotDo(std::to_string(options.poses) + " poses give " + std::to_string(options.poses * r) + " equations for " +
+                   std::to_string(m) + " parameters: at least " + std::to_string((m + r - 1) / r) + " poses are needed");
+}
+
+}  // namespace
+
+Plan select_blocks(const std::filesystem::path& path, const SelectOptions& options, const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_known(options.criterion, options.method, {}, {});
+  Plan plan;
+  plan.seed = options.seed;
+  plan.criterion = options.criterion;
+  BlockFile file = read_blocks(path, options.rows);
+  plan.problem_file = path.string();
+  plan.problem_sha256 = file.sha256;
+  require_enough(file, options);
+  const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
+
+  SearchRequest request{options.criterion, options.method, options.poses, options.nuisance, options.repeats, {}};
+  request.planner.restarts = options.restarts;
+  request.planner.seed = options.seed;
+  request.planner.threads = options.threads;
+  SearchResult found = search(std::move(file.blocks), request, monitor);
+
+  const Evaluation evaluation = evaluate(found.chosen, parameters);
+  plan.log_det = evaluation.log_det;
+  plan.log_det_full = evaluation.log_det_full;
+  plan.indices = evaluation.indices;
+  plan.condition = evaluation.condition;
+  plan.certificate = found.certificate;
+  certify(plan.certificate, plan.log_det, int(parameters.size()) - options.nuisance);
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    plan.parameters.push_back({parameters[j], evaluation.sigma[Eigen::Index(j)], ""});
+  for (std::size_t i = 0; i < found.design.members.size(); ++i)
+    plan.poses.push_back({int(i) + 1, found.design.members[i], {}, {}, {}, evaluation.contribution[Eigen::Index(i)]});
+  plan.interrupted = found.stopped;
+  plan.statistics.exchanges = found.design.exchanges;
+  plan.statistics.restarts = found.design.restarts;
+  plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
+}
+
+}  // namespace posewright

@@ -1,0 +1,102 @@
+#include "study.hpp"
+
+#include <algorithm>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Enough configurations for any structural dependency to show; more only cost time.
+constexpr std::size_t structural_sample = 400;
+// Shares of a column's norm below this are rounding: the dependency is exact.
+constexpr double exact = 1e-9;
+
+IdentifiabilityOptions exact_options() {
+  IdentifiabilityOptions options;
+  options.threshold = exact;
+  return options;
+}
+
+std::string dropped_names(const Identifiability& found, const std::vector<Parameter>& parameters) {
+  std::string names;
+  for (const Dependency& d : found.dependencies)
+    names += (names.empty() ? "" : ", ") + parameters[std::size_t(d.dropped)].name;
+  return names;
+}
+
+[[noreturn]] void report_dependent(const Identifiability& found, const VariantColumns& columns) {
+  std::string text = "variant '" + columns.name + "': ";
+  bool first = true;
+  for (const Dependency& d : found.dependencies) {
+    text += (first ? "" : ", ") + describe(d, columns.parameters);
+    first = false;
+  }
+  throw CannotDo(text + ": these cannot be told apart by any number of poses; list one of each group under fixed, or use "
+                        "parameters: auto");
+}
+
+}  // namespace
+
+Study make_study(const Problem& problem, const SamplingOptions& options, const Monitor& monitor) {
+  Study study;
+  study.model = make_model(problem);
+  study.workspace = std::make_unique<Workspace>(*study.model, problem);
+  study.configurations = sample_configurations(*study.workspace, options, monitor);
+  return study;
+}
+
+Configurations thinned(const Configurations& configurations, std::size_t count) {
+  const std::size_t n = configurations.count(), take = std::min(n, count);
+  Configurations result;
+  result.dimension = configurations.dimension;
+  for (std::size_t i = 0; i < take; ++i) {
+    const auto q = configurations[i * n / take];
+    result.values.insert(result.values.end(), q.begin(), q.end());
+  }
+  return result;
+}
+
+ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, int threads) {
+  ResolvedColumns resolved;
+  VariantColumns all = select_columns(*study.model, problem, variant);
+  const BlockArray sample =
+      build_blocks(*study.model, all.selected, thinned(study.configurations, structural_sample), threads);
+  if (!all.automatic) {
+    const Identifiability found = identifiability(sample, all.parameters, exact_options());
+    // With fewer rows than columns nothing can be said yet; require_enough_poses() says it.
+    if (!found.dependencies.empty() && sample.all().rows() >= sample.columns()) report_dependent(found, all);
+    resolved.columns = std::move(all);
+    return resolved;
+  }
+  IdentifiabilityOptions options;
+  options.tiers = all.tiers;
+  const Identifiability found = identifiability(sample, all.parameters, options);
+  for (const Dependency& d : found.dependencies) {
+    resolved.dropped_labels.push_back(all.parameters[std::size_t(d.dropped)]);
+    resolved.dropped.push_back(all.parameters[std::size_t(d.dropped)].name);
+    resolved.reasons.push_back(describe(d, all.parameters));
+  }
+  resolved.columns = subset(all, found.kept);
+  return resolved;
+}
+
+void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads) {
+  const auto missing = [&](int n) {
+    const BlockArray sample = build_blocks(*study.model, columns.selected,
+                                           thinned(study.configurations, std::size_t(n)), threads);
+    return identifiability(sample, columns.parameters, exact_options());
+  };
+  const Identifiability found = missing(poses);
+  if (found.dependencies.empty()) return;
+  const int most = int(std::min<std::size_t>(study.configurations.count(), columns.selected.size() + 1));
+  int enough = poses + 1;
+  while (enough <= most && !missing(enough).dependencies.empty()) ++enough;
+  throw CannotDo(std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
+                 std::to_string(columns.selected.size()) + " parameters (not " + dropped_names(found, columns.parameters) +
+                 "); " + (enough <= most ? "at least " + std::to_string(enough) + " poses are needed"
+                                         : "more candidates are needed"));
+}
+
+}  // namespace posewright

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/identifiability.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/workspace/candidates.hpp"
+#include "posewright/workspace/workspace.hpp"
+
+namespace posewright {
+
+/// Robot, workspace and candidates of a problem: what every command about a problem file starts from.
+struct Study {
+  std::unique_ptr<IdentificationModel> model;
+  std::unique_ptr<Workspace> workspace;
+  Configurations configurations;
+};
+
+Study make_study(const Problem& problem, const SamplingOptions& options, const Monitor& monitor);
+
+/// At most `count` of the configurations, evenly through the list.
+Configurations thinned(const Configurations& configurations, std::size_t count);
+
+/// A variant's columns that can be identified, and what was dropped.
+struct ResolvedColumns {
+  VariantColumns columns;
+  std::vector<std::string> dropped;         ///< names
+  std::vector<Parameter> dropped_labels;
+  std::vector<std::string> reasons;         ///< one equation per dropped parameter
+};
+
+/// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
+/// they are independent. Throws CannotDo with the equations where they are not.
+ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, int threads);
+
+/// Throws CannotDo where `poses` generic configurations leave parameters undetermined: names the shortfall, the parameters
+/// and the number of poses that suffices.
+void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads);
+
+}  // namespace posewright

@@ -1,0 +1,152 @@
+#include "posewright/planning/approximate_design.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "posewright/criterion/sensitivity.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+#include "restricted_design.hpp"
+
+namespace posewright {
+namespace {
+
+/// Indices of the `count` largest values among `among`, ties by index.
+std::vector<int> largest(const std::vector<double>& value, std::vector<int> among, std::size_t count) {
+  count = std::min(count, among.size());
+  const auto before = [&](int a, int b) {
+    return value[std::size_t(a)] != value[std::size_t(b)] ? value[std::size_t(a)] > value[std::size_t(b)] : a < b;
+  };
+  std::nth_element(among.begin(), among.begin() + std::ptrdiff_t(count), among.end(), before);
+  among.resize(count);
+  return among;
+}
+
+double mean_of_largest(std::vector<double> value, std::size_t count) {
+  std::nth_element(value.begin(), value.begin() + std::ptrdiff_t(count) - 1, value.end(), std::greater<>());
+  return std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(count), 0.0) / double(count);
+}
+
+/// The rounding of the pass behind the bound, generously.
+double with_margin(double bound) {
+  return bound + 1e3 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(bound));
+}
+
+/// Longest rows plus a draw from every stretch of the array: the first are strong candidates, the second make M regular
+/// (an even stride would meet the period of a grid).
+std::vector<int> first_working_set(const BlockArray& blocks, std::size_t size) {
+  const std::size_t n = blocks.count();
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  if (size >= n) return all;
+  std::vector<double> length(n);
+  for (std::size_t i = 0; i < n; ++i) length[i] = blocks.block(i).squaredNorm();
+  std::vector<int> set = largest(length, all, size / 2);
+  Random random(0, size);
+  const double stretch = double(n) / double(size - size / 2);
+  for (std::size_t i = 0; i < size - size / 2; ++i)
+    set.push_back(std::min(int(n) - 1, int(stretch * (double(i) + random.uniform()))));
+  std::sort(set.begin(), set.end());
+  set.erase(std::unique(set.begin(), set.end()), set.end());
+  return set;
+}
+
+/// Keeps candidates that carry weight or may still gain some, at least `least`; adds the worst violators of the price.
+std::vector<int> next_working_set(const RestrictedDesign& restricted, const std::vector<double>& d, std::size_t least,
+                                  std::size_t room) {
+  const double price = restricted.price();
+  std::vector<bool> kept(d.size(), false);
+  std::vector<int> set;
+  const double negligible = 1e-6 / double(restricted.candidates().size());
+  for (std::size_t i = 0; i < restricted.candidates().size(); ++i) {
+    const int c = restricted.candidates()[i];
+    const std::size_t left = restricted.candidates().size() - i;
+    if (set.size() + left > least && restricted.weights()[Eigen::Index(i)] < negligible && d[std::size_t(c)] < 0.98 * price)
+      continue;
+    set.push_back(c);
+    kept[std::size_t(c)] = true;
+  }
+  std::vector<int> violators;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    if (!kept[i] && d[i] > price * (1 - 1e-12)) violators.push_back(int(i));
+  for (const int c : largest(d, violators, room)) set.push_back(c);
+  std::sort(set.begin(), set.end());
+  return set;
+}
+
+/// cap = 1/n: the only feasible weights.
+ApproximateDesign all_alike(const BlockArray& blocks, int nuisance) {
+  const auto n = blocks.count();
+  RestrictedDesign restricted(blocks, nuisance, 1.0);
+  ApproximateDesign result;
+  result.support.resize(n);
+  std::iota(result.support.begin(), result.support.end(), 0);
+  result.weights.assign(n, 1.0 / double(n));
+  if (!restricted.set_candidates(result.support))
+    throw CannotDo("the parameters cannot be identified from these candidates: the information is singular");
+  sensitivities(blocks, nuisance, restricted.inverse_factor(), result.sensitivity);
+  result.log_det = restricted.log_det();
+  result.log_det_bound = with_margin(result.log_det);
+  result.rounds = 1;
+  return result;
+}
+
+}  // namespace
+
+double ApproximateDesign::log_det_bound_for(int poses, int interest) const {
+  return log_det_bound + interest * std::log(double(poses));
+}
+
+ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisance,
+                                           const ApproximateDesignOptions& options, const Monitor& monitor) {
+  const std::size_t n = blocks.count();
+  const int m = blocks.columns(), interest = m - nuisance;
+  const auto top = std::size_t(std::lround(1 / options.cap));
+  if (n == 0 || top > n) throw std::invalid_argument("approximate design: the cap times the number of candidates is below 1");
+  const std::size_t start = std::max<std::size_t>({std::size_t(6 * m), 4 * top, 50});
+  const std::size_t room = std::max<std::size_t>(std::size_t(3 * m), 2 * top);
+
+  if (top == n) return all_alike(blocks, nuisance);
+  RestrictedDesign restricted(blocks, nuisance, options.cap);
+  std::size_t size = start;
+  while (!restricted.set_candidates(first_working_set(blocks, size))) {
+    if (size >= n)
+      throw CannotDo("the parameters cannot be identified from these candidates: the information is singular");
+    size *= 4;
+  }
+  ApproximateDesign result;
+  result.log_det_bound = std::numeric_limits<double>::infinity();
+  std::vector<double> d(n);
+  double gap = 1.0;
+  int unchanged = 0;
+  for (int round = 1;; ++round) {
+    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)));
+    sensitivities(blocks, nuisance, restricted.inverse_factor(), d);
+    const double ratio = std::max(1.0, mean_of_largest(d, top) / interest);
+    const double bound = with_margin(restricted.log_det() + interest * std::log(ratio));
+    gap = ratio - 1;
+    monitor.report({"bound", double(round), 0, {}, bound});
+    if (bound <= result.log_det_bound) {
+      result.log_det = restricted.log_det();
+      result.max_sensitivity_ratio = ratio;
+      result.log_det_bound = bound;
+      result.price = restricted.price();
+      result.sensitivity = d;
+      result.support = restricted.candidates();
+      result.weights.assign(restricted.weights().data(), restricted.weights().data() + restricted.weights().size());
+    }
+    result.rounds = round;
+    result.stopped = monitor.should_stop();
+    if (gap <= options.tolerance || round == options.max_rounds || result.stopped) break;
+    const std::vector<int> next = next_working_set(restricted, d, std::min(n, 2 * top), room);
+    // Nothing left to add: what remains is the accuracy of the weights (a fresh centre helps), or rounding.
+    if (next == restricted.candidates() && ++unchanged > 3) break;
+    if (!restricted.set_candidates(next)) break;
+  }
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,57 @@
+#include "posewright/planning/evaluate.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Scaled pivots below this mean that double precision cannot tell the column from the others.
+constexpr double rank_tolerance = 1e-11;
+
+void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& parameters) {
+  for (Eigen::Index j = 0; j < r.cols(); ++j)
+    if (!(std::abs(r(j, j)) > rank_tolerance * r.col(j).norm()))
+      throw CannotDo("these poses do not identify all parameters: nothing tells " + parameters[std::size_t(j)].name +
+                     " from the others");
+}
+
+}  // namespace
+
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters) {
+  const auto m = Eigen::Index(chosen.columns());
+  const Eigen::MatrixXd g = chosen.all();
+  if (g.rows() < m)
+    throw CannotDo(std::to_string(chosen.count()) + " poses give " + std::to_string(g.rows()) + " equations for " +
+                   std::to_string(m) + " parameters");
+  const auto nuisance = std::count_if(parameters.begin(), parameters.end(),
+                                      [](const Parameter& p) { return p.role == Role::nuisance; });
+  Eigen::VectorXd tolerance(m);
+  for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
+
+  // Columns in units of their tolerance, so that pivots can be compared across m and rad.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(g * tolerance.asDiagonal());
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+  require_full_rank(r, parameters);
+
+  Evaluation result;
+  const Eigen::ArrayXd pivots = (r.diagonal().array().abs() / tolerance.array()).log();
+  result.log_det_full = 2 * pivots.sum();
+  result.log_det = 2 * pivots.tail(m - nuisance).sum();
+  const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
+  result.sigma = tolerance.array() * inverse.rowwise().norm().array();
+  result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(r.bottomRightCorner(m - nuisance, m - nuisance)).singularValues();
+  result.indices = observability_indices(result.singular_values, int(chosen.count()));
+  result.condition = result.indices.o2 > 0 ? 1 / result.indices.o2 : std::numeric_limits<double>::infinity();
+
+  const Eigen::MatrixXd q = (g * tolerance.asDiagonal()) * inverse;
+  result.contribution.resize(Eigen::Index(chosen.count()));
+  for (Eigen::Index i = 0; i < result.contribution.size(); ++i)
+    result.contribution[i] = q.middleRows(i * chosen.rows(), chosen.rows()).squaredNorm() / double(m);
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,58 @@
+#include "posewright/problem/read_problem.hpp"
+
+#include <fmt/format.h>
+
+#include "posewright/support/file.hpp"
+#include "posewright/support/sha256.hpp"
+#include "sections.hpp"
+#include "text.hpp"
+
+namespace posewright {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t size_limit = 10'000'000;
+
+void require_known_version(const yaml::Section& root) {
+  const yaml::Value& version = root.at("posewright");
+  const std::string text = version.text("the schema version 1 is expected");
+  if (text != "1") version.fail("is " + in_quotes(text), "the only known schema version is 1");
+}
+
+}  // namespace
+
+Problem read_problem(const fs::path& file) {
+  std::error_code code;
+  // A device may never end.
+  if (fs::is_character_file(file, code) || fs::is_block_file(file, code))
+    throw InputError({file.string(), 0}, "is a device", "a file is needed");
+  return parse_problem(read_file(file, size_limit), file);
+}
+
+Problem parse_problem(const std::string& text, const fs::path& file) {
+  const std::string file_name = file.string();
+  if (text.size() > size_limit)
+    throw InputError({file_name, 0}, fmt::format("has {} bytes", text.size()),
+                     fmt::format("at most {} are read", size_limit));
+  require_text(text, file_name);
+  const yaml::Section root(yaml::Value(yaml::load_document(text, file_name), 1, "", file_name));
+  // A later version may have other keys, so it is judged first.
+  require_known_version(root);
+  root.allow({"posewright", "robot", "measurement", "variants", "workspace", "design"});
+
+  Problem problem;
+  problem.file = file;
+  problem.sha256 = sha256_hex(text);
+  const yaml::Value& robot = root.at("robot");
+  problem.robot = read_robot(robot, file.parent_path());
+  problem.robot_line = robot.line();
+  problem.measurement = read_measurement(root.at("measurement"));
+  problem.variants = read_variants(root.at("variants"));
+  if (const yaml::Value* workspace = root.find("workspace"))
+    problem.workspace = read_workspace(*workspace, problem.robot);
+  if (const yaml::Value* design = root.find("design")) problem.design = read_design(*design, problem.variants);
+  return problem;
+}
+
+}  // namespace posewright

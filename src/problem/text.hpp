@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace posewright {
+
+/// Text for a message: in single quotes, control characters escaped and long text cut, so that a message keeps to
+/// one short line whatever the file holds.
+std::string in_quotes(std::string_view text);
+
+/// Whether `text` has a character that would break a table, a message or a name: controls and Unicode line breaks.
+bool has_control_character(std::string_view text);
+
+/// Without the blanks and tabs at both ends.
+std::string_view trimmed_blanks(std::string_view text);
+
+/// Throws InputError with the line of the first byte that cannot be part of a text file in UTF-8.
+void require_text(std::string_view bytes, const std::string& file);
+
+}  // namespace posewright

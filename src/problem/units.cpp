@@ -1,0 +1,88 @@
+#include "posewright/problem/units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "posewright/support/error.hpp"
+#include "text.hpp"
+
+namespace posewright {
+namespace {
+
+/// SI value = written value · times / over. One of both is 1 and the other exact where it can be, so that "1 mm" is
+/// the double nearest to 0.001 and not a product of two rounded numbers.
+struct Unit {
+  std::string_view name;
+  Quantity quantity;
+  double times, over;
+};
+
+constexpr std::array<Unit, 10> units{{
+    {"m", Quantity::length, 1, 1},
+    {"mm", Quantity::length, 1, 1e3},
+    {"um", Quantity::length, 1, 1e6},
+    {"nm", Quantity::length, 1, 1e9},
+    {"rad", Quantity::angle, 1, 1},
+    {"mrad", Quantity::angle, 1, 1e3},
+    {"urad", Quantity::angle, 1, 1e6},
+    {"deg", Quantity::angle, std::numbers::pi, 180},
+    {"N", Quantity::force, 1, 1},
+    {"kN", Quantity::force, 1e3, 1},
+}};
+
+[[noreturn]] void fail(std::string_view text, const std::string& what, const std::string& allowed) {
+  throw InputError({}, in_quotes(text) + " " + what, allowed);
+}
+
+/// Reads the number at the front of `text` and cuts it off.
+double take_number(std::string_view& text, const std::string& allowed) {
+  const std::string_view whole = text;
+  // std::from_chars knows no plus sign; "+-1" must stay wrong.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code == std::errc::result_out_of_range) fail(whole, "is out of range", "a finite double is needed");
+  if (code != std::errc() || !std::isfinite(value)) fail(whole, "is no finite number", allowed);
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (text.size() > 1 && text[0] == ',' && text[1] >= '0' && text[1] <= '9')
+    fail(whole, "has a decimal comma", "write a decimal point");
+  return value;
+}
+
+}  // namespace
+
+std::string allowed_units(std::initializer_list<Quantity> accepted) {
+  std::string names;
+  for (const Unit& unit : units)
+    if (std::find(accepted.begin(), accepted.end(), unit.quantity) != accepted.end())
+      names += (names.empty() ? "" : ", ") + std::string(unit.name);
+  return names;
+}
+
+Measured parse_measured(std::string_view text, std::initializer_list<Quantity> accepted) {
+  const std::string_view whole = trimmed_blanks(text);
+  const std::string names = allowed_units(accepted);
+  const std::string allowed =
+      names.empty() ? "a plain number is needed" : "a number is needed, with unit (" + names + ") or in SI";
+  if (whole.empty()) fail(whole, "is no number", allowed);
+  std::string_view rest = whole;
+  const double number = take_number(rest, allowed);
+  rest = trimmed_blanks(rest);
+  if (rest.empty()) return {number, Quantity::number};
+
+  const auto unit = std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.name == rest; });
+  if (names.empty()) fail(whole, "has a unit", "a plain number is needed");
+  if (unit == units.end()) fail(whole, "has the unknown unit " + in_quotes(rest), "allowed: " + names);
+  if (std::find(accepted.begin(), accepted.end(), unit->quantity) == accepted.end())
+    fail(whole, "has the wrong unit " + in_quotes(rest), "allowed: " + names);
+  const double value = number * unit->times / unit->over;
+  if (!std::isfinite(value)) fail(whole, "is out of range", "a finite double is needed");
+  return {value, unit->quantity};
+}
+
+double parse_value(std::string_view text, Quantity quantity) { return parse_measured(text, {quantity}).value; }
+
+}  // namespace posewright

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "text.hpp"
+#include "yaml_section.hpp"
+
+namespace posewright::yaml {
+namespace {
+
+std::string kind(const YAML::Node& node) {
+  if (node.IsMap()) return "is a mapping";
+  if (node.IsSequence()) return "is a list";
+  if (node.IsScalar()) return "is " + in_quotes(node.Scalar());
+  return "is empty";
+}
+
+}  // namespace
+
+Value::Value(const YAML::Node& node, int line, std::string name, const std::string& file)
+    : node_(node), line_(line), name_(std::move(name)), file_(&file) {
+  // yaml-cpp marks an empty value where the next token begins and a block mapping at its first key.
+  if (node.IsScalar() && node.Mark().line >= 0) line_ = node.Mark().line + 1;
+}
+
+void Value::fail(const std::string& what, const std::string& allowed) const {
+  throw InputError({*file_, line_}, (name_.empty() ? "the file" : name_) + " " + what, allowed);
+}
+
+std::string Value::scalar(const std::string& expected) const {
+  if (!node_.IsScalar()) fail(kind(node_), expected);
+  return node_.Scalar();
+}
+
+std::string Value::text(const std::string& expected) const {
+  const std::string result = scalar(expected);
+  if (trimmed_blanks(result).empty()) fail("is empty", expected);
+  if (has_control_character(result)) fail("is " + in_quotes(result), "control characters are not allowed");
+  return result;
+}
+
+Located<std::string> Value::exact_name() const {
+  std::string result = text("a name is expected");
+  if (result.find_first_of("*?") != std::string::npos)
+    fail("is " + in_quotes(result), "* and ? are not allowed in a name");
+  return {std::move(result), line_};
+}
+
+std::string Value::choice(std::initializer_list<std::string_view> allowed) const {
+  const std::string list = fmt::format("allowed: {}", fmt::join(allowed, ", "));
+  std::string result = scalar(list);
+  if (std::find(allowed.begin(), allowed.end(), result) == allowed.end()) fail("is " + in_quotes(result), list);
+  return result;
+}
+
+int Value::integer(int lower, int upper) const {
+  const std::string expected = fmt::format("a whole number from {} to {} is expected", lower, upper);
+  const std::string digits = scalar(expected);
+  int result = 0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), result);
+  if (code != std::errc() || end != digits.data() + digits.size() || result < lower || result > upper)
+    fail(kind(node_), expected);
+  return result;
+}
+
+double Value::number(Quantity quantity, Sign sign) const { return measured({quantity}, sign).value; }
+
+Measured Value::measured(std::initializer_list<Quantity> accepted, Sign sign) const {
+  const std::string units = allowed_units(accepted);
+  const std::string expected =
+      units.empty() ? "a number is expected" : "a number is expected, with unit (" + units + ") or in SI";
+  const std::string written = scalar(expected);
+  Measured result;
+  try {
+    result = parse_measured(written, accepted);
+  } catch (const InputError& error) {
+    fail("is wrong: " + std::string(error.what()), "");
+  }
+  if (sign == Sign::positive && !(result.value > 0)) fail("is " + in_quotes(written), "a value > 0 is expected");
+  if (sign == Sign::not_negative && !(result.value >= 0)) fail("is " + in_quotes(written), "a value >= 0 is expected");
+  return result;
+}
+
+std::vector<Value> Value::items(const std::string& expected) const {
+  if (!node_.IsSequence()) fail(kind(node_), expected);
+  std::vector<Value> result;
+  result.reserve(node_.size());
+  for (const YAML::Node& item : node_) {
+    const int line = item.IsNull() ? line_ : std::max(item.Mark().line + 1, 0);
+    result.emplace_back(item, line, fmt::format("{}[{}]", name_, result.size() + 1), *file_);
+  }
+  return result;
+}
+
+std::vector<Value> Value::items(std::size_t count, const std::string& expected) const {
+  std::vector<Value> result = items(expected);
+  if (result.size() != count) fail(fmt::format("has {} entries", result.size()), expected);
+  return result;
+}
+
+Eigen::Vector3d Value::vector(Quantity quantity, Sign sign) const {
+  const std::vector<Value> values = items(3, "expected 3 numbers");
+  return {values[0].number(quantity, sign), values[1].number(quantity, sign), values[2].number(quantity, sign)};
+}
+
+std::vector<Located<std::string>> Value::texts() const {
+  std::vector<Located<std::string>> result;
+  for (const Value& item : items("a list of names is expected")) result.push_back(item.located_text());
+  return result;
+}
+
+Range read_range(const Value& value, std::initializer_list<Quantity> accepted) {
+  const std::string expected = "expected 2 numbers [lower, upper]";
+  const std::vector<Value> ends = value.items(2, expected);
+  const Measured lower = ends[0].measured(accepted);
+  const Measured upper = ends[1].measured(accepted);
+  const bool bare = lower.quantity == Quantity::number || upper.quantity == Quantity::number;
+  if (!bare && lower.quantity != upper.quantity)
+    value.fail("has a length and an angle", "both ends need the same unit");
+  if (!(lower.value < upper.value)) value.fail("is an empty range", "lower < upper is needed");
+  return {lower.value, upper.value, lower.quantity == Quantity::number ? upper.quantity : lower.quantity};
+}
+
+}  // namespace posewright::yaml

@@ -1,0 +1,156 @@
+#include "posewright/workspace/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "low_discrepancy.hpp"
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
+#include "posewright/support/random.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::size_t batch = 2048;
+// Halvings of the way from a feasible point to an infeasible one: 2⁻³⁰ of the way is finer than any controller's step.
+constexpr int bisections = 30;
+constexpr std::uint64_t interior_stream = 1, boundary_stream = 2;
+
+/// Collects drawn configurations batch by batch; validity is judged in parallel, the order stays that of the draws.
+class Sampler {
+ public:
+  Sampler(const Workspace& workspace, const SamplingOptions& options)
+      : workspace_(workspace), options_(options), rejected_(workspace.reasons().size(), 0) {
+    result_.dimension = int(workspace.coordinates().size());
+  }
+
+  void interior(std::size_t wanted, const Monitor& monitor) {
+    LowDiscrepancy points(result_.dimension, options_.seed);
+    draw(wanted, monitor, [&](std::size_t, std::span<double> q) { points.next(q); }, false);
+  }
+
+  void boundary(std::size_t wanted, const Monitor& monitor) {
+    LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + boundary_stream));
+    anchors_ = result_.count();
+    draw(wanted, monitor, [&](std::size_t i, std::span<double> q) {
+      points.next(q);
+      pin(i, q);
+    }, true);
+  }
+
+  Configurations take() {
+    for (std::size_t r = 0; r < rejected_.size(); ++r)
+      if (rejected_[r] > 0) result_.rejected.emplace_back(workspace_.reasons()[r], rejected_[r]);
+    if (result_.count() == 0) fail();
+    return std::move(result_);
+  }
+
+ private:
+  /// Moves unit coordinates to 0 or 1: all of them for the first 2^d draws (corners), then 1 … d in turn.
+  void pin(std::size_t i, std::span<double> q) const {
+    const auto d = q.size();
+    const std::size_t corners = d <= 10 ? std::size_t(1) << d : 0;
+    if (i < corners) {
+      for (std::size_t k = 0; k < d; ++k) q[k] = double((i >> k) & 1U);
+      return;
+    }
+    Random random(options_.seed, mix_bits(i + interior_stream));
+    std::size_t pinned = 1 + i % d;
+    for (std::size_t k = 0; k < d; ++k) {
+      // Selection sampling: coordinate k is among those still to be pinned with the right probability.
+      if (random.uniform() * double(d - k) >= double(pinned)) continue;
+      q[k] = random.bits() >> 63 ? 1.0 : 0.0;
+      --pinned;
+    }
+  }
+
+  template <class Generate>
+  void draw(std::size_t wanted, const Monitor& monitor, const Generate& generate, bool to_boundary) {
+    const auto d = std::size_t(result_.dimension);
+    const std::size_t target = result_.count() + wanted;
+    const std::size_t limit = wanted * options_.draws_per_candidate;
+    std::vector<double> points(batch * d);
+    std::vector<int> verdict(batch);
+    for (std::size_t first = 0; result_.count() < target && first < limit && !monitor.should_stop(); first += batch) {
+      for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
+      parallel_for(batch / 64, thread_count(options_.threads), [&](std::size_t chunk, int) {
+        for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i)
+          verdict[i] = judge(first + i, std::span(points).subspan(i * d, d), to_boundary);
+      });
+      for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
+        ++result_.drawn;
+        if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
+        else result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
+                                   points.begin() + std::ptrdiff_t((i + 1) * d));
+      }
+      monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}});
+    }
+  }
+
+  /// Scales a unit point to the limits and tests it; an infeasible boundary point is drawn back to the feasible set.
+  int judge(std::size_t index, std::span<double> q, bool to_boundary) const {
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const Coordinate& c = workspace_.coordinates()[k];
+      q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
+    }
+    const int verdict = workspace_.violation(q);
+    if (verdict < 0 || !to_boundary || anchors_ == 0) return verdict;
+    Random random(options_.seed, mix_bits(index) + boundary_stream);
+    const std::span<const double> inside = result_[std::size_t(random.index(int(anchors_)))];
+    std::vector<double> trial(q.size());
+    const auto along = [&](double t) {
+      for (std::size_t k = 0; k < q.size(); ++k) trial[k] = inside[k] + t * (q[k] - inside[k]);
+    };
+    double feasible = 0.0, infeasible = 1.0;
+    for (int i = 0; i < bisections; ++i) {
+      const double middle = 0.5 * (feasible + infeasible);
+      along(middle);
+      (workspace_.violation(trial) < 0 ? feasible : infeasible) = middle;
+    }
+    along(feasible);
+    std::copy(trial.begin(), trial.end(), q.begin());
+    return -1;
+  }
+
+  [[noreturn]] void fail() const {
+    const auto most = std::max_element(rejected_.begin(), rejected_.end());
+    const double share = result_.drawn > 0 ? 100.0 * double(*most) / double(result_.drawn) : 0.0;
+    throw CannotDo("no feasible configuration among " + std::to_string(result_.drawn) + " drawn: '" +
+                   workspace_.reasons()[std::size_t(most - rejected_.begin())] + "' rejects " +
+                   std::to_string(int(std::lround(share))) + " % of them");
+  }
+
+  const Workspace& workspace_;
+  const SamplingOptions& options_;
+  Configurations result_;
+  std::vector<long> rejected_;
+  std::size_t anchors_ = 0;
+};
+
+}  // namespace
+
+Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options, const Monitor& monitor) {
+  Sampler sampler(workspace, options);
+  sampler.interior(options.count - options.count / 2, monitor);
+  sampler.boundary(options.count / 2, monitor);
+  return sampler.take();
+}
+
+BlockArray build_blocks(const IdentificationModel& model, std::span<const int> selected,
+                        const Configurations& configurations, int threads) {
+  const std::size_t n = configurations.count();
+  BlockArray blocks(n, model.rows(), int(selected.size()));
+  const int workers = thread_count(threads);
+  std::vector<Linearisation> scratch(static_cast<std::size_t>(workers));
+  constexpr std::size_t chunk = 256;
+  parallel_for((n + chunk - 1) / chunk, workers, [&](std::size_t c, int worker) {
+    for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i)
+      if (!whitened_block(model, configurations[i], {}, selected, scratch[std::size_t(worker)], blocks.row(i, 0),
+                          blocks.stride()))
+        throw CannotDo("configuration " + std::to_string(i) + " is out of reach");
+  });
+  return blocks;
+}
+
+}  // namespace posewright

@@ -1,0 +1,60 @@
+#include "recompute.hpp"
+
+#include <Eigen/Dense>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+
+namespace posewright {
+
+double recomputed_log_det(const Problem& problem, const std::string& variant, const std::vector<std::vector<double>>& poses) {
+  const auto model = make_model(problem);
+  const VariantColumns columns = select_columns(*model, problem, find_variant(problem, variant));
+  const auto m = Eigen::Index(columns.selected.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(m, m);
+  Linearisation scratch;
+  for (const std::vector<double>& q : poses) {
+    if (!model->linearise(q, {}, columns.selected, scratch)) return std::nan("");
+    information += scratch.G.transpose() * scratch.covariance.inverse() * scratch.G;
+  }
+  const auto log_det = [](const Eigen::MatrixXd& a) {
+    const Eigen::VectorXd scale = a.diagonal().cwiseSqrt();
+    const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * a * scale.cwiseInverse().asDiagonal();
+    return scaled.ldlt().vectorD().array().log().sum() + 2 * scale.array().log().sum();
+  };
+  return log_det(information) -
+         (columns.nuisance > 0 ? log_det(information.topLeftCorner(columns.nuisance, columns.nuisance)) : 0.0);
+}
+
+WrittenPlan read_back(const std::string& text) {
+  const auto json = nlohmann::json::parse(text);
+  WrittenPlan plan;
+  plan.variant = json.value("variant", "");
+  plan.log_det = json.at("criterion").at("log_det");
+  plan.log_det_bound = json.at("certificate").at("candidates").at("log_det_bound");
+  plan.efficiency = json.at("certificate").at("candidates").at("efficiency");
+  for (const auto& pose : json.at("poses")) {
+    plan.candidates.push_back(pose.at("candidate"));
+    if (pose.contains("configuration")) plan.poses.push_back(pose.at("configuration"));
+  }
+  return plan;
+}
+
+std::vector<std::vector<double>> read_back_csv(const std::string& csv, std::size_t columns) {
+  std::vector<std::vector<double>> poses;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');
+    poses.emplace_back();
+    while (poses.back().size() < columns && std::getline(cells, cell, ',')) poses.back().push_back(std::stod(cell));
+  }
+  return poses;
+}
+
+}  // namespace posewright

@@ -1,0 +1,109 @@
+#include "posewright/planning/approximate_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "posewright/planning/whiten.hpp"
+#include "posewright/support/error.hpp"
+#include "tests/kit/random_blocks.hpp"
+
+namespace posewright {
+namespace {
+
+BlockArray quadratic(int n) {
+  BlockArray blocks(std::size_t(n), 1, 3);
+  for (int i = 0; i < n; ++i) {
+    const double x = -1 + 2.0 * i / (n - 1);
+    blocks.row(std::size_t(i), 0)[0] = 1;
+    blocks.row(std::size_t(i), 0)[1] = x;
+    blocks.row(std::size_t(i), 0)[2] = x * x;
+  }
+  return blocks;
+}
+
+double weight_of(const ApproximateDesign& design, int candidate) {
+  for (std::size_t i = 0; i < design.support.size(); ++i)
+    if (design.support[i] == candidate) return design.weights[i];
+  return 0;
+}
+
+TEST(ApproximateDesign, QuadraticOnAnIntervalPutsAThirdOnEachOfThreePoints) {
+  BlockArray blocks = quadratic(101);
+  whiten(blocks);
+  const ApproximateDesign design = solve_approximate_design(blocks, 0, {}, Monitor{});
+  EXPECT_LE(design.max_sensitivity_ratio, 1 + 1e-9);
+  for (const int i : {0, 50, 100}) EXPECT_NEAR(weight_of(design, i), 1.0 / 3, 1e-6);
+}
+
+TEST(ApproximateDesign, SensitivitiesAverageToTheNumberOfParameters) {
+  BlockArray blocks = random_blocks(500, 3, 12, 1);
+  whiten(blocks);
+  const ApproximateDesign design = solve_approximate_design(blocks, 0, {}, Monitor{});
+  double mean = 0;
+  for (std::size_t i = 0; i < design.support.size(); ++i)
+    mean += design.weights[i] * design.sensitivity[std::size_t(design.support[i])];
+  EXPECT_NEAR(mean, 12, 1e-9);
+  EXPECT_NEAR(std::accumulate(design.weights.begin(), design.weights.end(), 0.0), 1, 1e-12);
+  EXPECT_LE(*std::max_element(design.sensitivity.begin(), design.sensitivity.end()), 12 * (1 + 1e-9));
+}
+
+struct Case {
+  int rows, columns, nuisance, poses;
+};
+class Bounds : public testing::TestWithParam<Case> {};
+
+TEST_P(Bounds, NoRandomFeasibleWeightsExceedTheBoundAndCapsHold) {
+  const auto [rows, columns, nuisance, poses] = GetParam();
+  BlockArray blocks = random_blocks(300, rows, columns, 17);
+  whiten(blocks);
+  ApproximateDesignOptions options;
+  options.cap = 1.0 / poses;
+  const ApproximateDesign design = solve_approximate_design(blocks, nuisance, options, Monitor{});
+  // With 299 of 300 the weights have almost no room; rounding stops the method at 2e-9 there.
+  EXPECT_LE(design.max_sensitivity_ratio, poses == 299 ? 1 + 1e-8 : 1 + 1e-9);
+  for (const double w : design.weights) {
+    EXPECT_GT(w, 0);
+    EXPECT_LE(w, options.cap * (1 + 1e-12));
+  }
+  Random random(4, 0);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<int> order(300);
+    std::iota(order.begin(), order.end(), 0);
+    for (std::size_t i = 0; i < std::size_t(poses); ++i) std::swap(order[i], order[i + std::size_t(random.index(int(300 - i)))]);
+    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(columns, columns);
+    for (int i = 0; i < poses; ++i) {
+      const auto block = blocks.block(std::size_t(order[std::size_t(i)]));
+      m += block.transpose() * block / poses;
+    }
+    const double log_det = m.ldlt().vectorD().array().log().sum() -
+                           (nuisance > 0 ? m.topLeftCorner(nuisance, nuisance).ldlt().vectorD().array().log().sum() : 0.0);
+    EXPECT_LE(log_det, design.log_det_bound);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Bounds,
+                         testing::Values(Case{1, 5, 0, 10}, Case{1, 6, 2, 20}, Case{3, 9, 0, 8}, Case{3, 9, 4, 12},
+                                         Case{1, 4, 0, 299}, Case{2, 4, 0, 300}));
+
+TEST(ApproximateDesign, DependentColumnsAreAnErrorNotANumber) {
+  BlockArray blocks = random_blocks(50, 1, 4, 3);
+  for (std::size_t i = 0; i < 50; ++i) blocks.row(i, 0)[3] = 2 * blocks.row(i, 0)[0] - blocks.row(i, 0)[2];
+  EXPECT_THROW(whiten(blocks), CannotDo);
+}
+
+TEST(Whiten, MeanInformationBecomesIdentityAndRRestoresTheBlocks) {
+  const BlockArray raw = random_blocks(200, 2, 9, 12);
+  BlockArray white = random_blocks(200, 2, 9, 12);
+  for (std::size_t i = 0; i < 200; ++i) white.block(i).col(4) *= 1e6;
+  const Whitening whitening = whiten(white);
+  const Eigen::MatrixXd m = white.all().transpose() * white.all() / 200.0;
+  EXPECT_LT((m - Eigen::MatrixXd::Identity(9, 9)).cwiseAbs().maxCoeff(), 1e-12);
+  Eigen::MatrixXd restored = white.block(7) * whitening.R;
+  restored.col(4) /= 1e6;
+  EXPECT_LT((restored - raw.block(7)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace posewright

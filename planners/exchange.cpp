@@ -15,6 +15,8 @@ namespace {
 
 // Gains below this are rounding of the running inverse, not progress.
 constexpr double smallest_gain = 1e-10;
+// How many of the reduced search's results are taken through all candidates.
+constexpr std::size_t finished = 3;
 
 std::vector<int> start_of_restart(const DesignTask& task, std::size_t restart, Random& random) {
   const bool weights = task.approximate != nullptr && !task.approximate->support.empty();
@@ -100,14 +102,26 @@ Outcome search(const DesignTask& task, std::vector<int> start, int kicks, Random
   return best;
 }
 
-/// Search among the promising candidates, then passes over all of them: the result is a local optimum of the whole task.
-Outcome run_restart(const DesignTask& task, const ReducedTask& reduced, std::size_t restart,
-                    const PlannerOptions& options, const Monitor& monitor) {
-  Random random(options.seed, restart);
-  Outcome outcome = search(reduced.task(), start_of_restart(reduced.task(), restart, random), options.kicks, random, monitor);
-  if (!reduced.is_smaller()) return outcome;
-  const auto state = task.criterion->start(task.candidates, reduced.original(outcome.members));
-  return outcome_of(*state, outcome.exchanges + settle(*state, monitor));
+/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the whole
+/// task. Outcomes are in the order of restarts; equal values count once.
+void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
+            const Monitor& monitor) {
+  std::vector<std::size_t> order(outcomes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return outcomes[a].value > outcomes[b].value; });
+  std::vector<std::size_t> best;
+  for (const std::size_t i : order)
+    if (outcomes[i].done && best.size() < finished &&
+        (best.empty() || outcomes[i].value < outcomes[best.back()].value - smallest_gain))
+      best.push_back(i);
+  std::vector<Outcome> result(best.size());
+  parallel_for(best.size(), threads, [&](std::size_t i, int) {
+    const Outcome& outcome = outcomes[best[i]];
+    const auto state = task.criterion->start(task.candidates, reduced.original(outcome.members));
+    result[i] = outcome_of(*state, outcome.exchanges + settle(*state, monitor));
+  });
+  for (Outcome& outcome : outcomes) outcome.value = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < best.size(); ++i) outcomes[best[i]] = result[i];
 }
 
 }  // namespace
@@ -123,12 +137,14 @@ Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& op
   parallel_for(outcomes.size(), thread_count(options.threads), [&](std::size_t i, int) {
     // The first restart always runs: whoever interrupts still gets a plan.
     if (i > 0 && monitor.should_stop()) return;
-    outcomes[i] = run_restart(task, reduced, i, options, monitor);
+    Random random(options.seed, i);
+    outcomes[i] = search(reduced.task(), start_of_restart(reduced.task(), i, random), options.kicks, random, monitor);
     const std::scoped_lock lock(mutex);
     progress.done += 1;
     progress.best = std::max(progress.best.value_or(outcomes[i].value), outcomes[i].value);
     monitor.report(progress);
   });
+  if (reduced.is_smaller()) finish(task, reduced, outcomes, thread_count(options.threads), monitor);
 
   Design design;
   design.value = -std::numeric_limits<double>::infinity();

@@ -15,11 +15,17 @@ std::vector<int> promising(const DesignTask& task) {
   const ApproximateDesign& w = *task.approximate;
   const int interest = task.candidates.blocks->columns() - task.candidates.nuisance;
   const double threshold = (interest <= few_parameters ? share_few : share_many) * w.price;
-  // Enough to choose from, whatever the threshold says.
-  const auto least = std::min(w.sensitivity.size(), std::size_t(std::max(10 * task.poses, 200)));
-  std::vector<double> sorted = w.sensitivity;
-  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(least) - 1, sorted.end(), std::greater<>());
-  const double limit = std::min(threshold, sorted[least - 1]);
+  const auto nth_largest = [&](int count) {
+    const auto nth = std::min(w.sensitivity.size(), std::size_t(count)) - 1;
+    std::vector<double> sorted = w.sensitivity;
+    std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(nth), sorted.end(), std::greater<>());
+    return sorted[nth];
+  };
+  // Enough to choose from, whatever the threshold says; and no more than an exchange can compare quickly where
+  // (almost) all candidates are alike, as the poses of an arm are.
+  const int columns = task.candidates.blocks->columns();
+  const double limit = std::max(nth_largest(std::max(40 * columns, 20 * task.poses)),
+                                std::min(threshold, nth_largest(std::max(10 * task.poses, 200))));
   std::vector<int> kept;
   for (std::size_t i = 0; i < w.sensitivity.size(); ++i)
     if (w.sensitivity[i] >= limit) kept.push_back(int(i));

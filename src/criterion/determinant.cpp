@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
+#include "determinant_nuisance.hpp"
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/inverse_information.hpp"
 
@@ -59,9 +59,6 @@ class SwapGain {
     if (!regular_) return added;
     return std::min(added, std::exp(leave_log_det_) * power(1 + trace_j / (rows_ * slack_), rows_));
   }
-  /// exp(gain) is at least this: the cross term only adds.
-  double ratio_floor(double trace_j) const { return regular_ ? std::exp(leave_log_det_) * (1 + trace_j) : 0.0; }
-
   /// Sharper bound with the cross terms known.
   double bound_with_cross(int j, double trace_j) {
     inverse_.cross(j, y_, c_);
@@ -97,85 +94,55 @@ class SwapGain {
   bool regular_ = true;
 };
 
+/// Without nuisance columns: running inverse, cached traces, pruned scans.
 class DeterminantState : public DesignState {
  public:
   DeterminantState(const CandidateView& view, std::vector<int> members)
-      : view_(view), full_(*view.blocks, view.blocks->columns()), gain_(full_, view.blocks->rows()),
-        used_(view.blocks->count()), blocked_(view.blocks->count()) {
-    if (view.nuisance > 0) {
-      nuisance_.emplace(*view.blocks, view.nuisance);
-      nuisance_gain_.emplace(*nuisance_, view.blocks->rows());
-    }
-    members_ = std::move(members);
-    for (const int i : members_) count(i, 1);
+      : DesignState(view, std::move(members)), inverse_(*view.blocks, view.blocks->columns()),
+        gain_(inverse_, view.blocks->rows()) {
     refresh();
   }
 
-  double value() const override { return singular_ ? -infinity : running_value(); }
+  double value() const override { return singular_ ? -infinity : inverse_.log_det(); }
 
-  double loss(int position) const override {
-    const int k = members_[std::size_t(position)];
-    return full_.trace(k) - (nuisance_ ? nuisance_->trace(k) : 0.0);
-  }
+  double loss(int position) const override { return inverse_.trace(members()[std::size_t(position)]); }
 
   Swap best_swap(int position, double min_gain) override {
-    const int k = members_[std::size_t(position)];
-    return view_.blocks->rows() == 1 && !nuisance_ ? best_row(k, min_gain) : best_block(k, min_gain);
-  }
-
-  void apply(int position, int enter) override {
-    const int leave = members_[std::size_t(position)];
-    members_[std::size_t(position)] = enter;
-    count(leave, -1);
-    count(enter, 1);
-    const bool updated = full_.swap(leave, enter) && (!nuisance_ || nuisance_->swap(leave, enter));
-    if (!updated || ++since_refresh_ >= refresh_after) refresh();
+    const int k = members()[std::size_t(position)];
+    return blocks().rows() == 1 ? best_row(k, min_gain) : best_block(k, min_gain);
   }
 
   bool refresh() override {
     since_refresh_ = 0;
-    const auto all = [&](double ridge) {
-      return full_.refresh(members_, ridge) && (!nuisance_ || nuisance_->refresh(members_, ridge));
-    };
-    singular_ = !all(0.0);
-    if (singular_) all(start_ridge);
+    singular_ = !inverse_.refresh(members(), 0.0);
+    if (singular_) inverse_.refresh(members(), start_ridge);
     return !singular_;
   }
 
  private:
-  double running_value() const { return full_.log_det() - (nuisance_ ? nuisance_->log_det() : 0.0); }
-
-  void count(int candidate, int change) {
-    const auto i = std::size_t(candidate);
-    used_[i] += change;
-    blocked_[i] = used_[i] >= view_.max_repeats ? 1 : 0;
+  void do_apply(int leave, int enter) override {
+    if (!inverse_.swap(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
   }
 
   Swap best_row(int k, double min_gain) {
-    full_.project(k, y_);
+    inverse_.project(k, y_);
     double best = std::expm1(min_gain);
-    const long j = kernels().scan_rows(view_.blocks->data(), view_.blocks->count(), view_.blocks->stride(), y_.data(),
-                                       full_.traces().data(), full_.trace(k), blocked_.data(), &best);
+    const long j = kernels().scan_rows(blocks().data(), blocks().count(), blocks().stride(), y_.data(),
+                                       inverse_.traces().data(), inverse_.trace(k), blocked().data(), &best);
     return j < 0 ? Swap{} : Swap{static_cast<int>(j), std::log1p(best)};
   }
 
   Swap best_block(int k, double min_gain) {
     gain_.leave(k);
-    if (nuisance_) nuisance_gain_->leave(k);
     Swap best{-1, min_gain};
     double ratio = std::exp(min_gain);
-    const int n = static_cast<int>(view_.blocks->count());
+    const int n = static_cast<int>(blocks().count());
     for (int j = 0; j < n; ++j) {
-      const double d = full_.trace(j);
-      if (blocked_[std::size_t(j)] != 0) continue;
-      const double floor = nuisance_ ? nuisance_gain_->ratio_floor(nuisance_->trace(j)) : 1.0;
-      if (gain_.ratio_bound(d) <= ratio * floor) continue;
-      if (gain_.bound_with_cross(j, d) - (floor > 0 ? std::log(floor) : -infinity) <= best.gain) continue;
-      double gain = gain_.exact(j);
-      if (nuisance_) {
-        nuisance_gain_->bound_with_cross(j, 0.0);
-        gain -= nuisance_gain_->exact(j);
-      }
+      const double d = inverse_.trace(j);
+      // log det is concave: no swap gains more than its derivative promises.
+      if (d - inverse_.trace(k) <= best.gain || blocked()[std::size_t(j)] != 0) continue;
+      if (gain_.ratio_bound(d) <= ratio || gain_.bound_with_cross(j, d) <= best.gain) continue;
+      const double gain = gain_.exact(j);
       if (gain > best.gain) {
         best = {j, gain};
         ratio = std::exp(gain);
@@ -184,13 +151,8 @@ class DeterminantState : public DesignState {
     return best.enter < 0 ? Swap{} : best;
   }
 
-  CandidateView view_;
-  InverseInformation full_;
+  InverseInformation inverse_;
   SwapGain gain_;
-  std::optional<InverseInformation> nuisance_;
-  std::optional<SwapGain> nuisance_gain_;
-  std::vector<int> used_;
-  std::vector<unsigned char> blocked_;
   std::vector<double> y_;
   int since_refresh_ = 0;
   bool singular_ = false;
@@ -199,6 +161,7 @@ class DeterminantState : public DesignState {
 }  // namespace
 
 std::unique_ptr<DesignState> DeterminantCriterion::start(const CandidateView& view, std::vector<int> members) const {
+  if (view.nuisance > 0) return start_with_nuisance(view, std::move(members));
   return std::make_unique<DeterminantState>(view, std::move(members));
 }
 

@@ -84,8 +84,12 @@ ResolvedColumns resolve_columns(const Study& study, const Problem& problem, cons
 
 void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads) {
   const auto missing = [&](int n) {
-    const BlockArray sample = build_blocks(*study.model, columns.selected,
-                                           thinned(study.configurations, std::size_t(n)), threads);
+    // The first configurations are interior ones: generic, unlike corners.
+    Configurations few;
+    few.dimension = study.configurations.dimension;
+    const std::size_t take = std::min(study.configurations.count(), std::size_t(n)) * std::size_t(few.dimension);
+    few.values.assign(study.configurations.values.begin(), study.configurations.values.begin() + std::ptrdiff_t(take));
+    const BlockArray sample = build_blocks(*study.model, columns.selected, few, threads);
     return identifiability(sample, columns.parameters, exact_options());
   };
   const Identifiability found = missing(poses);

@@ -25,23 +25,36 @@ struct Swap {
 /// every candidate); the loops over candidates are inside, so that an algorithm is written once for every criterion.
 class DesignState {
  public:
+  DesignState(const CandidateView& view, std::vector<int> members);
   virtual ~DesignState() = default;
 
   const std::vector<int>& members() const { return members_; }
+  /// Puts `enter` in the place of the member at `position` and updates every running quantity.
+  void apply(int position, int enter);
+
   /// Φ from the running quantities; −∞ where the information is singular.
   virtual double value() const = 0;
   /// Estimate of what Φ loses without the member at `position`: the order in which positions are tried.
   virtual double loss(int position) const = 0;
   /// Best candidate for `position` with a gain above min_gain.
   virtual Swap best_swap(int position, double min_gain) = 0;
-  /// Carries the swap out by a rank-2r update.
-  virtual void apply(int position, int enter) = 0;
   /// Recomputes every running quantity from the blocks. Returns false where the information is singular; the
   /// state then works with a small ridge (M + εI) until a later refresh succeeds without.
   virtual bool refresh() = 0;
 
  protected:
+  const BlockArray& blocks() const { return *view_.blocks; }
+  /// One byte a candidate: 1 where the repeat policy forbids to choose it once more.
+  const std::vector<unsigned char>& blocked() const { return blocked_; }
+
+ private:
+  virtual void do_apply(int leave, int enter) = 0;
+  void count(int candidate, int change);
+
+  CandidateView view_;
   std::vector<int> members_;
+  std::vector<int> used_;
+  std::vector<unsigned char> blocked_;
 };
 
 /// A number Φ to maximise over sets of N configurations.

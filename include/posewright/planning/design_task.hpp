@@ -20,7 +20,7 @@ struct DesignTask {
 
 struct PlannerOptions {
   int restarts = 10;          ///< ≥ 1
-  int kicks = 10;             ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
+  int kicks = 50;             ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
   std::uint64_t seed = 0;
   int threads = 0;            ///< 0 = all
 };

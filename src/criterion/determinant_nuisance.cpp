@@ -1,0 +1,63 @@
+#include "determinant_nuisance.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "posewright/criterion/leave_one_out.hpp"
+
+namespace posewright {
+namespace {
+
+/// Gains come from a fresh factor of the remaining members; the derivative of the concave criterion prunes:
+/// Φ(swap k → j) − Φ ≤ d_j − d_k, d being the sensitivities of the interest information.
+class NuisanceState : public DesignState {
+ public:
+  NuisanceState(const CandidateView& view, std::vector<int> members)
+      : DesignState(view, std::move(members)), rest_(*view.blocks, view.nuisance) {
+    refresh();
+  }
+
+  double value() const override { return rest_.value(); }
+  double loss(int position) const override { return d_[std::size_t(members()[std::size_t(position)])]; }
+
+  Swap best_swap(int position, double min_gain) override {
+    const int k = members()[std::size_t(position)];
+    const bool singular = !std::isfinite(rest_.value());
+    rest_.leave(k);
+    Swap best{-1, singular ? -std::numeric_limits<double>::infinity() : min_gain};
+    for (int j = 0; j < int(blocks().count()); ++j) {
+      if ((!singular && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) || blocked()[std::size_t(j)] != 0) continue;
+      // While M is singular every gain is infinite: compare what the candidates add to the ridge instead.
+      const double gain = rest_.gain(j);
+      if (gain > best.gain) best = {j, gain};
+    }
+    if (best.enter < 0) return {};
+    // Where a member was indispensable the gain rests on a ridge; only the exact one counts.
+    const double exact = rest_.exact(k, best.enter);
+    if (singular) return {best.enter, min_gain + 1};
+    return exact - rest_.value() > min_gain ? Swap{best.enter, exact - rest_.value()} : Swap{};
+  }
+
+  bool refresh() override {
+    const bool regular = rest_.set_members(members());
+    rest_.sensitivities(d_);
+    return regular;
+  }
+
+ private:
+  void do_apply(int leave, int enter) override {
+    rest_.exchange(leave, enter);
+    rest_.sensitivities(d_);
+  }
+
+  LeaveOneOut rest_;
+  std::vector<double> d_;
+};
+
+}  // namespace
+
+std::unique_ptr<DesignState> start_with_nuisance(const CandidateView& view, std::vector<int> members) {
+  return std::make_unique<NuisanceState>(view, std::move(members));
+}
+
+}  // namespace posewright

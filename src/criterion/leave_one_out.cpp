@@ -1,0 +1,105 @@
+#include "posewright/criterion/leave_one_out.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "kernels/kernels.hpp"
+#include "posewright/criterion/sensitivity.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Ratio of squared Cholesky pivots below which whitened information counts as singular.
+constexpr double singular_pivot = 1e-11;
+// Ridge where a member is indispensable; in whitened coordinates an average pose adds the identity.
+constexpr double ridge = 1e-6;
+
+int round16(int x) { return (x + 15) / 16 * 16; }
+
+bool regular(const Eigen::LLT<Eigen::MatrixXd>& factor) {
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
+  return pivots.minCoeff() > std::sqrt(singular_pivot) * pivots.maxCoeff();
+}
+
+double interest_log_det(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance) {
+  const Eigen::Index interest = factor.rows() - nuisance;
+  return 2 * factor.matrixLLT().diagonal().tail(interest).array().log().sum();
+}
+
+}  // namespace
+
+LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance)
+    : blocks_(blocks), nuisance_(nuisance), padded_nuisance_(round16(nuisance)) {
+  const int m = blocks.columns(), interest_tiles = round16(m - nuisance) / 16;
+  tiles_ = padded_nuisance_ / 16 + interest_tiles;
+  t_.assign(std::size_t(m * 16 * tiles_), 0.0);
+  scratch_.resize(std::size_t(blocks.rows() * (16 * tiles_ + 2 * blocks.rows())));
+  for (int i = 0; i < padded_nuisance_ / 16; ++i) tile_rows_.push_back(std::min(nuisance, 16 * (i + 1)));
+  for (int i = 0; i < interest_tiles; ++i) tile_rows_.push_back(std::min(m, nuisance + 16 * (i + 1)));
+}
+
+bool LeaveOneOut::set_members(const std::vector<int>& members) {
+  information_ = Eigen::MatrixXd::Zero(blocks_.columns(), blocks_.columns());
+  for (const int i : members) information_ += blocks_.block(std::size_t(i)).transpose() * blocks_.block(std::size_t(i));
+  factorise();
+  return std::isfinite(value_);
+}
+
+void LeaveOneOut::exchange(int leave, int enter) {
+  information_ = swapped(leave, enter);
+  factorise();
+}
+
+Eigen::MatrixXd LeaveOneOut::swapped(int leave, int enter) const {
+  const auto out = blocks_.block(std::size_t(leave)), in = blocks_.block(std::size_t(enter));
+  return information_ + in.transpose() * in - out.transpose() * out;
+}
+
+void LeaveOneOut::factorise() {
+  const Eigen::Index m = information_.cols();
+  Eigen::LLT<Eigen::MatrixXd> factor(information_);
+  value_ = regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+  if (!std::isfinite(value_)) factor.compute(information_ + ridge * Eigen::MatrixXd::Identity(m, m));
+  inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
+}
+
+double LeaveOneOut::sensitivity(int candidate) const {
+  const Eigen::Index interest = information_.cols() - nuisance_;
+  return (blocks_.block(std::size_t(candidate)) * inverse_factor_.transpose()).rightCols(interest).squaredNorm();
+}
+
+void LeaveOneOut::sensitivities(std::vector<double>& d) const {
+  posewright::sensitivities(blocks_, nuisance_, inverse_factor_, d);
+}
+
+void LeaveOneOut::leave(int k) {
+  const Eigen::Index m = information_.cols();
+  const auto out = blocks_.block(std::size_t(k));
+  const Eigen::MatrixXd rest = information_ - out.transpose() * out;
+  Eigen::LLT<Eigen::MatrixXd> factor(rest);
+  if (!regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
+  without_ = interest_log_det(factor, nuisance_);
+  tile(factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m)));
+}
+
+void LeaveOneOut::tile(const Eigen::MatrixXd& inverse_factor) {
+  const int stride = 16 * tiles_;
+  for (int k = 0; k < int(inverse_factor.rows()); ++k)
+    for (int i = k; i < int(inverse_factor.rows()); ++i)
+      t_[std::size_t(k * stride + (i < nuisance_ ? i : padded_nuisance_ + i - nuisance_))] = inverse_factor(i, k);
+}
+
+double LeaveOneOut::gain(int j) {
+  const double ratio = kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
+                                                   16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
+  return without_ + std::log(ratio) - value_;
+}
+
+double LeaveOneOut::exact(int k, int j) const {
+  const Eigen::LLT<Eigen::MatrixXd> factor(swapped(k, j));
+  return regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+}
+
+}  // namespace posewright

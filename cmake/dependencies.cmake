@@ -7,17 +7,25 @@ find_package(yaml-cpp 0.7 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
 find_package(Threads REQUIRED)
-find_library(LIBMD_LIBRARY NAMES md REQUIRED)
+
+# libmd ships no CMake file.
+if(NOT TARGET libmd::libmd)
+  find_library(LIBMD_LIBRARY NAMES md REQUIRED)
+  add_library(libmd::libmd UNKNOWN IMPORTED)
+  set_target_properties(libmd::libmd PROPERTIES IMPORTED_LOCATION "${LIBMD_LIBRARY}")
+endif()
 
 # Debian's omplConfig.cmake names Boost libraries that libompl-dev does not depend on: take only libompl.so.
 find_package(ompl 1.5 REQUIRED CONFIG)
-find_library(OMPL_CORE_LIBRARY NAMES ompl REQUIRED)
-add_library(OMPL::ompl UNKNOWN IMPORTED)
-set_target_properties(OMPL::ompl PROPERTIES
-  IMPORTED_LOCATION "${OMPL_CORE_LIBRARY}"
-  INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIR}"
-  INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
+if(NOT TARGET OMPL::ompl)
+  find_library(OMPL_CORE_LIBRARY NAMES ompl REQUIRED)
+  add_library(OMPL::ompl UNKNOWN IMPORTED)
+  set_target_properties(OMPL::ompl PROPERTIES
+    IMPORTED_LOCATION "${OMPL_CORE_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
+endif()
 
 set(POSEWRIGHT_LIBRARIES
   Boost::headers OMPL::ompl urdfdom::urdfdom_model tinyxml2::tinyxml2 yaml-cpp
-  nlohmann_json::nlohmann_json fmt::fmt Threads::Threads ${LIBMD_LIBRARY})
+  nlohmann_json::nlohmann_json fmt::fmt Threads::Threads libmd::libmd)

@@ -30,7 +30,8 @@ int exchange_pass(DesignState& state, std::vector<int>& order) {
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> loss(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) loss[i] = state.loss(int(i));
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
   int accepted = 0;
   for (const int position : order) {
     const Swap swap = state.best_swap(position, smallest_gain);
@@ -85,7 +86,9 @@ void restore(DesignState& state, const std::vector<int>& members) {
   for (std::size_t i = 0; i < surplus.size(); ++i) state.apply(surplus[i], missing[i]);
 }
 
-Outcome outcome_of(const DesignState& state, long exchanges) { return {state.members(), state.value(), exchanges, true}; }
+Outcome outcome_of(const DesignState& state, long exchanges) {
+  return {state.members(), state.value(), exchanges, true};
+}
 
 /// Local optimum, then kicks.
 Outcome search(const DesignTask& task, std::vector<int> start, int kicks, Random& random, const Monitor& monitor) {
@@ -102,8 +105,8 @@ Outcome search(const DesignTask& task, std::vector<int> start, int kicks, Random
   return best;
 }
 
-/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the whole
-/// task. Outcomes are in the order of restarts; equal values count once.
+/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
+/// whole task. Outcomes are in the order of restarts; equal values count once.
 void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
             const Monitor& monitor) {
   std::vector<std::size_t> order(outcomes.size());
@@ -132,8 +135,8 @@ Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& op
   std::mutex mutex;
   Progress progress{"exchange", 0, double(options.restarts), {}, {}};
   if (task.approximate != nullptr)
-    progress.bound = task.approximate->log_det_bound_for(
-        task.poses, task.candidates.blocks->columns() - task.candidates.nuisance);
+    progress.bound =
+        task.approximate->log_det_bound_for(task.poses, task.candidates.blocks->columns() - task.candidates.nuisance);
   parallel_for(outcomes.size(), thread_count(options.threads), [&](std::size_t i, int) {
     // The first restart always runs: whoever interrupts still gets a plan.
     if (i > 0 && monitor.should_stop()) return;

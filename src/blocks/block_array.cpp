@@ -16,8 +16,7 @@ BlockArray::BlockArray(std::size_t count, int rows, int columns)
 BlockArray BlockArray::subset(const std::vector<int>& blocks) const {
   BlockArray copy(blocks.size(), rows_, columns_);
   const std::size_t length = std::size_t(rows_) * std::size_t(stride_);
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    std::copy_n(row(std::size_t(blocks[i]), 0), length, copy.row(i, 0));
+  for (std::size_t i = 0; i < blocks.size(); ++i) std::copy_n(row(std::size_t(blocks[i]), 0), length, copy.row(i, 0));
   return copy;
 }
 

@@ -48,8 +48,9 @@ struct Table {
       if (!parse_number(cell, value) && wrong.empty()) wrong = "'" + std::string(cell) + "'";
       values.push_back(value);
     });
-    if (!wrong.empty() && rows == 0 && header.empty() && line.find_first_of("abcdefghijklmnopqrstuvwxyz_\"") != line.npos &&
-        wrong != "'nan'" && wrong != "'inf'" && wrong != "'-inf'") {
+    if (!wrong.empty() && rows == 0 && header.empty() &&
+        line.find_first_of("abcdefghijklmnopqrstuvwxyz_\"") != line.npos && wrong != "'nan'" && wrong != "'inf'" &&
+        wrong != "'-inf'") {
       values.resize(before);
       columns = for_each_cell(line, [&](std::string_view cell, int) { header.emplace_back(cell); });
       return;
@@ -57,7 +58,8 @@ struct Table {
     if (!wrong.empty()) throw InputError(place, wrong + " is no finite number", "decimal point, no units");
     if (columns == 0) columns = cells;
     if (cells != columns)
-      throw InputError(place, "has " + std::to_string(cells) + " columns", "every row needs " + std::to_string(columns));
+      throw InputError(place, "has " + std::to_string(cells) + " columns",
+                       "every row needs " + std::to_string(columns));
     ++rows;
   }
 };
@@ -67,7 +69,8 @@ struct Table {
 std::size_t count_blocks(std::size_t table_rows, std::optional<int> rows, const SourcePlace& place) {
   if (!rows) throw InputError(place, "is a table of rows", "say with --rows how many make one block");
   if (table_rows % std::size_t(*rows) != 0)
-    throw InputError(place, "has " + std::to_string(table_rows) + " rows", "a multiple of --rows " + std::to_string(*rows) + " is needed");
+    throw InputError(place, "has " + std::to_string(table_rows) + " rows",
+                     "a multiple of --rows " + std::to_string(*rows) + " is needed");
   return table_rows / std::size_t(*rows);
 }
 

@@ -9,7 +9,8 @@
 namespace posewright {
 namespace {
 
-// Of two columns whose remaining norms differ by less than this share, the first in order is kept: rounding must not decide.
+// Of two columns whose remaining norms differ by less than this share, the first in order is kept: rounding must not
+// decide.
 constexpr double tie = 1e-6;
 // Terms whose effect is below this share of the dropped column's effect are rounding, not physics.
 constexpr double negligible_term = 1e-3;
@@ -55,8 +56,7 @@ class Elimination {
     for (int j = 0; j < int(remaining_.cols()); ++j) {
       const double rest = remaining_.col(j).norm();
       if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] == 0) continue;
-      if (best < 0 || tier(j) < tier(best) ||
-          (tier(j) == tier(best) && rest > (1 + tie) * remaining_.col(best).norm()))
+      if (best < 0 || tier(j) < tier(best) || (tier(j) == tier(best) && rest > (1 + tie) * remaining_.col(best).norm()))
         best = j;
     }
     return best;

@@ -15,9 +15,9 @@ namespace {
 constexpr std::string_view magic = "\x93NUMPY";
 
 struct Header {
-  int item = 8;                       ///< bytes a number
+  int item = 8;  ///< bytes a number
   std::vector<std::size_t> shape;
-  std::size_t data = 0;               ///< offset of the first number
+  std::size_t data = 0;  ///< offset of the first number
 };
 
 std::string_view value_of(std::string_view header, std::string_view key, const SourcePlace& place) {
@@ -56,16 +56,19 @@ Header parse_header(std::string_view bytes, const SourcePlace& place) {
   if (bytes.size() < 12) throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
   const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(bytes[i])); };
   const bool short_length = byte(6) == 1;
-  const std::size_t length = short_length ? byte(8) + 256 * byte(9)
-                                          : byte(8) + 256 * (byte(9) + 256 * (byte(10) + 256 * byte(11)));
+  const std::size_t length =
+      short_length ? byte(8) + 256 * byte(9) : byte(8) + 256 * (byte(9) + 256 * (byte(10) + 256 * byte(11)));
   Header header;
   header.data = (short_length ? 10 : 12) + length;
-  if (header.data > bytes.size()) throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
+  if (header.data > bytes.size())
+    throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
   const std::string_view text = bytes.substr(header.data - length, length);
   const std::string_view kind = value_of(text, "descr", place);
   if (kind.starts_with("'<f8'")) header.item = 8;
   else if (kind.starts_with("'<f4'")) header.item = 4;
-  else throw InputError(place, "holds numbers of type " + std::string(kind.substr(0, kind.find(','))), "allowed: '<f8', '<f4'");
+  else
+    throw InputError(place, "holds numbers of type " + std::string(kind.substr(0, kind.find(','))),
+                     "allowed: '<f8', '<f4'");
   if (!value_of(text, "fortran_order", place).starts_with("False"))
     throw InputError(place, "is in Fortran order", "save numpy.ascontiguousarray(array)");
   header.shape = parse_shape(value_of(text, "shape", place), place);
@@ -99,7 +102,8 @@ BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const Sourc
   } else if (header.shape.size() == 2) {
     n = count_blocks(header.shape[0], rows, place), r = std::size_t(*rows), m = header.shape[1];
   } else {
-    throw InputError(place, "has " + std::to_string(header.shape.size()) + " dimensions", "n × r × m (3) or (n·r) × m (2) is needed");
+    throw InputError(place, "has " + std::to_string(header.shape.size()) + " dimensions",
+                     "n × r × m (3) or (n·r) × m (2) is needed");
   }
   if (n == 0 || r == 0 || m == 0) throw InputError(place, "has no blocks", "n, r and m must be at least 1");
   const std::size_t available = (bytes.size() - header.data) / std::size_t(header.item);
@@ -113,8 +117,10 @@ BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const Sourc
     for (std::size_t j = 0; j < m; ++j, p += header.item) {
       row[j] = number_at(p, header.item);
       if (!std::isfinite(row[j]))
-        throw InputError(place, "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
-                                    std::to_string(j) + " is not finite", "all numbers must be finite");
+        throw InputError(place,
+                         "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
+                             std::to_string(j) + " is not finite",
+                         "all numbers must be finite");
     }
   }
   return file;

@@ -21,7 +21,7 @@ using Words = std::vector<std::string>;
 /// One row a command: what `posewright NAME` does.
 struct Command {
   std::string name;
-  std::string arguments;    ///< "PROBLEM"
+  std::string arguments;  ///< "PROBLEM"
   std::string summary;
   po::options_description (*options)();
   std::string example;

@@ -11,12 +11,12 @@ const std::vector<Command>& commands() {
 
 po::options_description common_options() {
   po::options_description options("Common options");
-  options.add_options()                                                                             //
-      ("seed", po::value<std::string>()->value_name("S"), "seed of everything random (0)")          //
-      ("threads", po::value<std::string>()->value_name("T"), "threads (all); never changes a result") //
-      ("json", "result as JSON on stdout, nothing else there")                                      //
-      ("quiet", "no progress")                                                                      //
-      ("verbose", "progress also where stderr is no terminal")                                      //
+  options.add_options()                                                                                //
+      ("seed", po::value<std::string>()->value_name("S"), "seed of everything random (0)")             //
+      ("threads", po::value<std::string>()->value_name("T"), "threads (all); never changes a result")  //
+      ("json", "result as JSON on stdout, nothing else there")                                         //
+      ("quiet", "no progress")                                                                         //
+      ("verbose", "progress also where stderr is no terminal")                                         //
       ("help", "this text");
   return options;
 }
@@ -36,7 +36,8 @@ CommonOptions common_values(const po::variables_map& values) {
 
 std::string single(const Words& positional, const std::string& what) {
   if (positional.empty()) throw InputError({}, what + " is missing", "see --help");
-  if (positional.size() > 1) throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
+  if (positional.size() > 1)
+    throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
   return positional.front();
 }
 

@@ -28,7 +28,8 @@ std::string general_help() {
   text +=
       "  help COMMAND                options of a command\n\n"
       "Example:\n  posewright plan examples/telescope/problem.yaml -o plan.json --poses-csv poses.csv\n\n"
-      "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan written).\n";
+      "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
+      "written).\n";
   return text;
 }
 
@@ -42,7 +43,8 @@ std::string command_help(const Command& command) {
 }
 
 const Command& find_command(const std::string& name) {
-  const auto found = std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
+  const auto found =
+      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
   if (found == commands().end())
     throw InputError({}, "unknown command '" + name + "'", "commands of this version: " + command_names());
   return *found;

@@ -20,8 +20,8 @@ constexpr double exact = 1e-9;
 po::options_description options() {
   po::options_description options("Options");
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add_options()                                                            //
-      ("variant", text("V"), "only this variant (all)")                            //
+  options.add_options()                                  //
+      ("variant", text("V"), "only this variant (all)")  //
       ("candidates", text("n"), "feasible configurations in the pool (2000)");
   return options;
 }
@@ -35,8 +35,8 @@ std::string spectrum_text(const Eigen::VectorXd& sigma) {
 
 std::string observation_text(const Observation& o) {
   const Identifiability& found = o.identifiability;
-  std::string text = fmt::format("Variant {}: rank {} of {} parameters, {} configurations × {} rows\n", o.variant, found.rank,
-                                 o.parameters.size(), o.configurations, o.rows);
+  std::string text = fmt::format("Variant {}: rank {} of {} parameters, {} configurations × {} rows\n", o.variant,
+                                 found.rank, o.parameters.size(), o.configurations, o.rows);
   if (o.exact_rank != found.rank)
     text += fmt::format("  ({} by exact arithmetic; {} more are told apart only by less than 1e-4 of their effect)\n",
                         o.exact_rank, o.exact_rank - found.rank);
@@ -55,7 +55,9 @@ Json dependency_json(const Dependency& d, const std::vector<Parameter>& paramete
   Json terms = Json::array();
   for (const Dependency::Term& t : d.terms)
     terms.push_back({{"parameter", parameters[std::size_t(t.parameter)].name}, {"coefficient", t.coefficient}});
-  return {{"dropped", parameters[std::size_t(d.dropped)].name}, {"terms", terms}, {"remainder", d.remainder},
+  return {{"dropped", parameters[std::size_t(d.dropped)].name},
+          {"terms", terms},
+          {"remainder", d.remainder},
           {"equation", describe(d, parameters)}};
 }
 
@@ -65,19 +67,24 @@ Json observation_json(const Observation& o) {
   for (std::size_t j = 0; j < o.parameters.size(); ++j) {
     const Parameter& p = o.parameters[j];
     const bool kept = std::find(found.kept.begin(), found.kept.end(), int(j)) != found.kept.end();
-    parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"role", p.role == Role::interest ? "interest" : "nuisance"},
-                          {"tolerance", p.tolerance}, {"identifiable", kept}});
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"role", p.role == Role::interest ? "interest" : "nuisance"},
+                          {"tolerance", p.tolerance},
+                          {"identifiable", kept}});
   }
   for (const Dependency& d : found.dependencies) dependencies.push_back(dependency_json(d, o.parameters));
-  return {{"variant", o.variant},
-          {"configurations", o.configurations},
-          {"rows", o.rows},
-          {"rank", found.rank},
-          {"exact_rank", o.exact_rank},
-          {"parameters", parameters},
-          {"singular_values", std::vector<double>(found.singular_values.begin(), found.singular_values.end())},
-          {"indices", {{"o1", o.indices.o1}, {"o2", o.indices.o2}, {"o3", o.indices.o3}, {"o4", o.indices.o4}, {"o5", o.indices.o5}}},
-          {"dependencies", dependencies}};
+  return {
+      {"variant", o.variant},
+      {"configurations", o.configurations},
+      {"rows", o.rows},
+      {"rank", found.rank},
+      {"exact_rank", o.exact_rank},
+      {"parameters", parameters},
+      {"singular_values", std::vector<double>(found.singular_values.begin(), found.singular_values.end())},
+      {"indices",
+       {{"o1", o.indices.o1}, {"o2", o.indices.o2}, {"o3", o.indices.o3}, {"o4", o.indices.o4}, {"o5", o.indices.o5}}},
+      {"dependencies", dependencies}};
 }
 
 int run(const po::variables_map& values, const Words& positional) {
@@ -96,8 +103,11 @@ int run(const po::variables_map& values, const Words& positional) {
     if (watch.was_interrupted()) return interrupted;
   }
   if (common.json) {
-    Json json = {{"schema", "posewright/observation/1"}, {"version", version}, {"seed", common.seed},
-                 {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}}, {"variants", Json::array()}};
+    Json json = {{"schema", "posewright/observation/1"},
+                 {"version", version},
+                 {"seed", common.seed},
+                 {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}},
+                 {"variants", Json::array()}};
     for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
     fmt::print("{}\n", json.dump(1));
     return done;
@@ -110,8 +120,12 @@ int run(const po::variables_map& values, const Words& positional) {
 }  // namespace
 
 Command observe_command() {
-  return {"observe", "PROBLEM", "What can be identified: rank, singular values, dependencies of each variant.", options,
-          "posewright observe examples/telescope/problem.yaml", run};
+  return {"observe",
+          "PROBLEM",
+          "What can be identified: rank, singular values, dependencies of each variant.",
+          options,
+          "posewright observe examples/telescope/problem.yaml",
+          run};
 }
 
 }  // namespace posewright::cli

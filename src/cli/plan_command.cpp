@@ -13,13 +13,13 @@ namespace {
 po::options_description options() {
   po::options_description options("Options");
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add_options()                                                                                    //
-      ("poses", text("N"), "number of poses (design: poses)")                                              //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                            //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())            //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                    //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                          //
-      ("restarts", text("k"), "starts of the search (10)")                                                 //
+  options.add_options()                                                                          //
+      ("poses", text("N"), "number of poses (design: poses)")                                    //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                  //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())  //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())          //
+      ("candidates", text("n"), "feasible configurations to choose from (10000)")                //
+      ("restarts", text("k"), "starts of the search (10)")                                       //
       ("repeats", text("allow|forbid"), "whether a configuration may be measured twice (forbid)");
   options.add(output_options(true));
   return options;
@@ -40,16 +40,19 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.threads = common.threads;
   const Problem problem = read_problem(file);
   const Outputs outputs(values, file, true);
-  return outputs.search_and_write(common, time_limit(values), [&](const Monitor& monitor) {
-    return plan_problem(problem, plan_options, monitor);
-  });
+  return outputs.search_and_write(common, time_limit(values),
+                                  [&](const Monitor& monitor) { return plan_problem(problem, plan_options, monitor); });
 }
 
 }  // namespace
 
 Command plan_command() {
-  return {"plan", "PROBLEM", "Searches for the poses to measure; writes the plan and the pose list.", options,
-          "posewright plan examples/kr270/problem.yaml --poses 18 -o plan.json --poses-csv poses.csv", run};
+  return {"plan",
+          "PROBLEM",
+          "Searches for the poses to measure; writes the plan and the pose list.",
+          options,
+          "posewright plan examples/kr270/problem.yaml --poses 18 -o plan.json --poses-csv poses.csv",
+          run};
 }
 
 }  // namespace posewright::cli

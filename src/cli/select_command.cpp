@@ -45,8 +45,12 @@ int run(const po::variables_map& values, const Words& positional) {
 }  // namespace
 
 Command select_command() {
-  return {"select", "BLOCKS", "The same search on your own whitened Jacobian blocks (.npy n×r×m, or CSV of n·r rows × m columns).",
-          options, "posewright select blocks.npy --poses 20 -o plan.json", run};
+  return {"select",
+          "BLOCKS",
+          "The same search on your own whitened Jacobian blocks (.npy n×r×m, or CSV of n·r rows × m columns).",
+          options,
+          "posewright select blocks.npy --poses 20 -o plan.json",
+          run};
 }
 
 }  // namespace posewright::cli

@@ -36,13 +36,15 @@ bool is_earlier_result(const fs::path& file) {
 
 }  // namespace
 
-Watch::Watch(const CommonOptions& common, double seconds) : begin_(Monitor::Clock::now()), last_(begin_), stage_begin_(begin_) {
+Watch::Watch(const CommonOptions& common, double seconds)
+    : begin_(Monitor::Clock::now()), last_(begin_), stage_begin_(begin_) {
   interrupted_flag = false;
   monitor_.interrupted = &interrupted_flag;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   if (seconds > 0)
-    monitor_.deadline = begin_ + std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(seconds));
+    monitor_.deadline =
+        begin_ + std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(seconds));
   if (!common.quiet && (common.verbose || ::isatty(STDERR_FILENO) != 0))
     monitor_.on_progress = [this](const Progress& progress) { show(progress); };
 }

@@ -12,8 +12,8 @@ po::options_description output_options(bool poses) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()("output,o", text("FILE"), "plan as JSON (plan.json; - for none)");
   if (poses) options.add_options()("poses-csv", text("FILE"), "poses as CSV (poses.csv; - for none)");
-  options.add_options()                                                                    //
-      ("force", "replace files that posewright did not write")                             //
+  options.add_options()                                         //
+      ("force", "replace files that posewright did not write")  //
       ("time-limit", text("S"), "stop after S seconds with the best plan so far");
   return options;
 }

@@ -26,7 +26,7 @@ class Outputs {
                        const std::function<Plan(const Monitor&)>& search) const;
 
  private:
-  std::filesystem::path plan_, poses_;   ///< empty = not asked for
+  std::filesystem::path plan_, poses_;  ///< empty = not asked for
 };
 
 }  // namespace posewright::cli

@@ -38,7 +38,13 @@ double power(double base, int exponent) {
 class SwapGain {
  public:
   SwapGain(InverseInformation& inverse, int rows)
-      : inverse_(inverse), rows_(rows), d_k_(rows, rows), c_(rows, rows), d_j_(rows, rows), b_(rows, rows), work_(rows, rows) {}
+      : inverse_(inverse),
+        rows_(rows),
+        d_k_(rows, rows),
+        c_(rows, rows),
+        d_j_(rows, rows),
+        b_(rows, rows),
+        work_(rows, rows) {}
 
   void leave(int k) {
     inverse_.project(k, y_);
@@ -53,7 +59,8 @@ class SwapGain {
   }
 
   /// exp(gain) is at most this, from tr D_j alone: D_j + C (I − D_k)⁻¹ Cᵀ ≼ D_j/(1 − λmax), and the geometric mean of
-  /// eigenvalues is at most the arithmetic; also at most det(I + D_j) since the swap cannot beat adding without leaving.
+  /// eigenvalues is at most the arithmetic; also at most det(I + D_j) since the swap cannot beat adding without
+  /// leaving.
   double ratio_bound(double trace_j) const {
     const double added = power(1 + trace_j / rows_, rows_);
     if (!regular_) return added;
@@ -98,7 +105,8 @@ class SwapGain {
 class DeterminantState : public DesignState {
  public:
   DeterminantState(const CandidateView& view, std::vector<int> members)
-      : DesignState(view, std::move(members)), inverse_(*view.blocks, view.blocks->columns()),
+      : DesignState(view, std::move(members)),
+        inverse_(*view.blocks, view.blocks->columns()),
         gain_(inverse_, view.blocks->rows()) {
     refresh();
   }

@@ -26,7 +26,8 @@ class NuisanceState : public DesignState {
     rest_.leave(k);
     Swap best{-1, singular ? -std::numeric_limits<double>::infinity() : min_gain};
     for (int j = 0; j < int(blocks().count()); ++j) {
-      if ((!singular && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) || blocked()[std::size_t(j)] != 0) continue;
+      if ((!singular && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) || blocked()[std::size_t(j)] != 0)
+        continue;
       // While M is singular every gain is infinite: compare what the candidates add to the ridge instead.
       const double gain = rest_.gain(j);
       if (gain > best.gain) best = {j, gain};

@@ -11,15 +11,21 @@ namespace {
 
 // Below this ratio of Cholesky pivots the whitened information counts as singular.
 constexpr double singular_pivot = 1e-11;
-// An eigenvalue λ of the 2r × 2r swap matrix amplifies the rounding of V by 1/λ; below this a fresh factorisation is due.
+// An eigenvalue λ of the 2r × 2r swap matrix amplifies the rounding of V by 1/λ; below this a fresh factorisation is
+// due.
 constexpr double singular_swap = 1e-4;
 
 }  // namespace
 
 InverseInformation::InverseInformation(const BlockArray& blocks, int columns)
-    : blocks_(blocks), columns_(columns), stride_(blocks.stride()), rows_(blocks.rows()),
-      v_(std::size_t(columns) * std::size_t(stride_)), d_(blocks.count()),
-      y_(std::size_t(2 * rows_ * stride_)), scratch_(std::size_t(2 * rows_ * stride_)) {}
+    : blocks_(blocks),
+      columns_(columns),
+      stride_(blocks.stride()),
+      rows_(blocks.rows()),
+      v_(std::size_t(columns) * std::size_t(stride_)),
+      d_(blocks.count()),
+      y_(std::size_t(2 * rows_ * stride_)),
+      scratch_(std::size_t(2 * rows_ * stride_)) {}
 
 bool InverseInformation::refresh(const std::vector<int>& members, double ridge) {
   Eigen::MatrixXd m = ridge * Eigen::MatrixXd::Identity(columns_, columns_);

@@ -92,8 +92,9 @@ void LeaveOneOut::tile(const Eigen::MatrixXd& inverse_factor) {
 }
 
 double LeaveOneOut::gain(int j) {
-  const double ratio = kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
-                                                   16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
+  const double ratio =
+      kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
+                                  16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
   return without_ + std::log(ratio) - value_;
 }
 

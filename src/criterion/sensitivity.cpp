@@ -11,7 +11,8 @@ void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse
   std::vector<double> t(std::size_t(columns * t_stride));
   for (int k = 0; k < columns; ++k)
     for (int i = k; i < columns; ++i) t[std::size_t(k * t_stride + i)] = inverse_factor(i, k);
-  kernels().traces(blocks.data(), blocks.count(), blocks.rows(), blocks.stride(), t.data(), t_stride, columns, d.data());
+  kernels().traces(blocks.data(), blocks.count(), blocks.rows(), blocks.stride(), t.data(), t_stride, columns,
+                   d.data());
 }
 
 void sensitivities(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd& inverse_factor,

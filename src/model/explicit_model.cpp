@@ -19,7 +19,8 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
   }
   coordinates_ = tip_->coordinates();
   rows_ = measurement_->rows();
-  encoder_noise_ = std::any_of(tip_->encoder_noise().begin(), tip_->encoder_noise().end(), [](double s) { return s > 0; });
+  encoder_noise_ =
+      std::any_of(tip_->encoder_noise().begin(), tip_->encoder_noise().end(), [](double s) { return s > 0; });
 }
 
 bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,
@@ -27,7 +28,8 @@ bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const doub
   const auto tip_correction = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
   const auto own_correction = correction.empty() ? correction : correction.subspan(std::size_t(tip_parameters_));
   // The instrument's columns get a zero twist here and their own values below.
-  const Eigen::Isometry3d X = tip_->linearise(q, tip_correction, selected, out.twists, encoder_noise_ ? &out.joint_twists : nullptr);
+  const Eigen::Isometry3d X =
+      tip_->linearise(q, tip_correction, selected, out.twists, encoder_noise_ ? &out.joint_twists : nullptr);
   out.G.resize(rows_, Eigen::Index(selected.size()));
   measurement_->rows_of_twists(X, own_correction, out.twists, out.G);
   for (std::size_t c = 0; c < selected.size(); ++c)

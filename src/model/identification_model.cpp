@@ -7,7 +7,8 @@ namespace {
 
 void require_size(std::size_t given, std::size_t expected, const char* what) {
   if (given != expected)
-    throw std::invalid_argument(std::string(what) + ": " + std::to_string(given) + " values instead of " + std::to_string(expected));
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(given) + " values instead of " +
+                                std::to_string(expected));
 }
 
 }  // namespace

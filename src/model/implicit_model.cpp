@@ -16,8 +16,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const MeasurementModel& measurement,
   Eigen::MatrixXd y(rows, 6), noise(rows, rows);
   // Unit twists about the platform origin: about the origin of M the rotations would be ill-scaled far away.
   Twists local = Twists::Identity(6, 6);
-  for (int k = 0; k < 3; ++k)
-    local.block<3, 1>(0, 3 + k) = X.translation().cross(Eigen::Vector3d::Unit(k));
+  for (int k = 0; k < 3; ++k) local.block<3, 1>(0, 3 + k) = X.translation().cross(Eigen::Vector3d::Unit(k));
   measurement.rows_of_twists(X, {}, local, y);
   measurement.covariance(X, {}, noise);
   const Eigen::LLT<Eigen::MatrixXd> factor(noise);
@@ -28,7 +27,8 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const MeasurementModel& measurement,
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(y * scale.cwiseInverse().asDiagonal());
   const Eigen::Matrix<double, 6, 6> r = qr.matrixQR().topRows(6).triangularView<Eigen::Upper>();
   if (!(r.diagonal().cwiseAbs().minCoeff() > fit_pivot))
-    throw CannotDo("measurement: the readings do not fix the pose of the platform; three targets not in line are needed");
+    throw CannotDo(
+        "measurement: the readings do not fix the pose of the platform; three targets not in line are needed");
   const Eigen::Matrix<double, 6, 6> half =
       local * scale.cwiseInverse().asDiagonal() *
       r.triangularView<Eigen::Upper>().solve(Eigen::Matrix<double, 6, 6>(Eigen::Matrix<double, 6, 6>::Identity()));

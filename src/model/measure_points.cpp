@@ -3,7 +3,7 @@
 namespace posewright {
 namespace {
 
-constexpr double default_target_tolerance = 1e-3;   // m
+constexpr double default_target_tolerance = 1e-3;  // m
 
 }  // namespace
 
@@ -12,8 +12,8 @@ PointsModel::PointsModel(const MeasurementSpec& spec)
   rows_ = int(spec_.targets.size() * spec_.components.size());
   for (const TargetSpec& target : spec_.targets)
     for (int k = 0; k < 3; ++k)
-      parameters_.push_back({"target." + target.name + "." + "xyz"[k], "m", target.position[k], default_target_tolerance,
-                             Role::interest});
+      parameters_.push_back({"target." + target.name + "." + "xyz"[k], "m", target.position[k],
+                             default_target_tolerance, Role::interest});
 }
 
 void PointsModel::rows_of_twists(const Eigen::Isometry3d& X, std::span<const double> correction,

@@ -8,7 +8,9 @@ namespace {
 
 struct Make {
   const MeasurementSpec& spec;
-  std::unique_ptr<MeasurementModel> operator()(const PoseMeasurement&) const { return std::make_unique<PoseModel>(spec); }
+  std::unique_ptr<MeasurementModel> operator()(const PoseMeasurement&) const {
+    return std::make_unique<PoseModel>(spec);
+  }
   std::unique_ptr<MeasurementModel> operator()(const PointsMeasurement&) const {
     return std::make_unique<PointsModel>(spec);
   }

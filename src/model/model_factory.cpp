@@ -24,6 +24,8 @@ struct Make {
 
 }  // namespace
 
-std::unique_ptr<IdentificationModel> make_model(const Problem& problem) { return std::visit(Make{problem}, problem.robot); }
+std::unique_ptr<IdentificationModel> make_model(const Problem& problem) {
+  return std::visit(Make{problem}, problem.robot);
+}
 
 }  // namespace posewright

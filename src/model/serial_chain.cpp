@@ -13,10 +13,10 @@ constexpr std::array<const char*, 6> displacement_names = {"x", "y", "z", "rx", 
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-/// The six axes of a displacement D = T Rz Ry Rx and where they act: translations and rz along the undisplaced axes, ry and
-/// rx along partially rotated ones, all through the displaced origin.
+/// The six axes of a displacement D = T Rz Ry Rx and where they act: translations and rz along the undisplaced axes, ry
+/// and rx along partially rotated ones, all through the displaced origin.
 struct DisplacementAxes {
-  Eigen::Matrix3d translation, rotation;   ///< columns x, y, z
+  Eigen::Matrix3d translation, rotation;  ///< columns x, y, z
   Eigen::Vector3d origin;
 };
 
@@ -54,8 +54,8 @@ struct ChainState {
   std::array<Twist, max_joints> motion;
 };
 
-Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout, const double* q, const double* correction,
-                        ChainState& state) {
+Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout, const double* q,
+                        const double* correction, ChainState& state) {
   const auto part = [&](int index) { return correction == nullptr ? nullptr : correction + index; };
   Frame<double> frame;
   frame.then(chain.X_MeasureBase);
@@ -94,19 +94,20 @@ ChainLayout::ChainLayout(const ChainDescription& chain) : offset(chain.coordinat
 
 SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), layout_(chain_) {
   if (chain_.joints.empty() || chain_.joints.size() > max_joints)
-    throw std::invalid_argument("serial chain: " + std::to_string(chain_.joints.size()) + " joints; 1 to 64 are allowed");
+    throw std::invalid_argument("serial chain: " + std::to_string(chain_.joints.size()) +
+                                " joints; 1 to 64 are allowed");
   coordinates_ = chain_.coordinates;
   encoder_noise_ = chain_.encoder_noise;
   joints_of_coordinate_.resize(coordinates_.size());
 
-  const auto add_displacement = [&](const std::string& name, int joint, int tier, const Eigen::Isometry3d& X, double length,
-                                    double angle) {
+  const auto add_displacement = [&](const std::string& name, int joint, int tier, const Eigen::Isometry3d& X,
+                                    double length, double angle) {
     const Eigen::Vector3d nominal = X.linear().transpose() * X.translation();
     for (int k = 0; k < 6; ++k) {
       geometric_.push_back({int(parameters_.size()), tier});
       columns_.push_back({joint, k});
-      parameters_.push_back({name + "." + displacement_names[std::size_t(k)], k < 3 ? "m" : "rad", k < 3 ? nominal[k] : 0.0,
-                             k < 3 ? length : angle, Role::interest});
+      parameters_.push_back({name + "." + displacement_names[std::size_t(k)], k < 3 ? "m" : "rad",
+                             k < 3 ? nominal[k] : 0.0, k < 3 ? length : angle, Role::interest});
     }
   };
   add_displacement("base", -1, 0, chain_.X_MeasureBase, 10e-3, 1 * degree);
@@ -158,7 +159,8 @@ Eigen::Isometry3d SerialChain::linearise(std::span<const double> q, std::span<co
       continue;
     }
     const DisplacementAxes& axes = state.displacement[std::size_t(column.joint + 1)];
-    out = column.kind < 3 ? prismatic(axes.translation.col(column.kind)) : revolute(axes.rotation.col(column.kind - 3), axes.origin);
+    out = column.kind < 3 ? prismatic(axes.translation.col(column.kind))
+                          : revolute(axes.rotation.col(column.kind - 3), axes.origin);
   }
   if (joint_twists != nullptr) {
     joint_twists->resize(6, Eigen::Index(coordinates_.size()));

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int legs = 6;
 constexpr int leg_parameters = 9;
-constexpr double default_length_tolerance = 0.5e-3;      // m
-constexpr double default_direction_tolerance = 1e-3;     // rad, as components of a unit vector
+constexpr double default_length_tolerance = 0.5e-3;   // m
+constexpr double default_direction_tolerance = 1e-3;  // rad, as components of a unit vector
 
 Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
   using Eigen::AngleAxisd, Eigen::Vector3d;
@@ -33,7 +33,7 @@ bool inverse_kinematics(const LegSpec& leg, const Eigen::Isometry3d& X, double& 
 /// One leg with its corrections applied, and what its column entries are made of.
 struct Leg {
   Eigen::Vector3d a, b, u;
-  double uz_x, uz_y;   ///< ∂uz/∂ux, ∂uz/∂uy
+  double uz_x, uz_y;  ///< ∂uz/∂ux, ∂uz/∂uy
 
   Leg(const LegSpec& spec, std::span<const double> correction) : a(spec.a), b(spec.b), u(spec.u) {
     if (!correction.empty()) {
@@ -48,7 +48,8 @@ struct Leg {
 };
 
 /// ∂g/∂ξ for one leg parameter; e is the unit vector along the leg.
-double column_entry(int parameter, const Leg& leg, const Eigen::Vector3d& e, const Eigen::Vector3d& e_platform, double rho) {
+double column_entry(int parameter, const Leg& leg, const Eigen::Vector3d& e, const Eigen::Vector3d& e_platform,
+                    double rho) {
   if (parameter < 3) return e[parameter];
   if (parameter < 6) return -e_platform[parameter - 3];
   if (parameter == 6) return rho * (e.x() + e.z() * leg.uz_x);
@@ -65,7 +66,8 @@ SixPus::SixPus(const SixPusSpec& spec, const std::vector<CoordinateLimits>& pose
   X_BaseReference_.linear() = rotation(spec.reference.rpy);
   X_BaseReference_.translation() = spec.reference.position;
   rows_ = legs;
-  static constexpr std::array<const char*, leg_parameters> names = {"ax", "ay", "az", "bx", "by", "bz", "ux", "uy", "l"};
+  static constexpr std::array<const char*, leg_parameters> names = {"ax", "ay", "az", "bx", "by",
+                                                                    "bz", "ux", "uy", "l"};
   for (int i = 0; i < legs; ++i) {
     const LegSpec& leg = spec_.legs[std::size_t(i)];
     const std::string prefix = "leg_" + std::to_string(i + 1) + ".";
@@ -115,8 +117,9 @@ bool SixPus::do_rows(std::span<const double> q, std::span<const double> correcti
   for (int i = 0; i < legs; ++i) {
     double rho = 0;
     if (!inverse_kinematics(spec_.legs[std::size_t(i)], X, rho)) return false;
-    const Leg leg(spec_.legs[std::size_t(i)],
-                  correction.empty() ? correction : correction.subspan(std::size_t(i * leg_parameters), leg_parameters));
+    const Leg leg(
+        spec_.legs[std::size_t(i)],
+        correction.empty() ? correction : correction.subspan(std::size_t(i * leg_parameters), leg_parameters));
     const Eigen::Vector3d joint = X * leg.b;
     const Eigen::Vector3d e = (joint - leg.a - rho * leg.u).normalized();
     const Eigen::Vector3d e_platform = X.linear().transpose() * e;

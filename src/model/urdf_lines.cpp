@@ -49,9 +49,10 @@ void check_numbers(const tinyxml2::XMLElement& joint, const std::string& file) {
     for (const NumberAttribute& rule : number_attributes) {
       const char* value = std::strcmp(e->Name(), rule.element) == 0 ? e->Attribute(rule.attribute) : nullptr;
       if (value != nullptr && !are_numbers(value, rule.count))
-        throw InputError({file, e->GetLineNum()},
-                         std::string(rule.element) + " " + rule.attribute + "=\"" + value + "\" is malformed",
-                         rule.count == 1 ? "one finite number is allowed" : "three finite numbers separated by blanks are allowed");
+        throw InputError(
+            {file, e->GetLineNum()},
+            std::string(rule.element) + " " + rule.attribute + "=\"" + value + "\" is malformed",
+            rule.count == 1 ? "one finite number is allowed" : "three finite numbers separated by blanks are allowed");
     }
 }
 
@@ -63,8 +64,10 @@ UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(t
     throw InputError({file, document.ErrorLineNum()}, "is no well-formed XML", "a URDF file is needed");
   const tinyxml2::XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
-    throw InputError({file, robot == nullptr ? 0 : robot->GetLineNum()}, "has no <robot> at its root", "a URDF file is needed");
-  for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint"))
+    throw InputError({file, robot == nullptr ? 0 : robot->GetLineNum()}, "has no <robot> at its root",
+                     "a URDF file is needed");
+  for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr;
+       e = e->NextSiblingElement("joint"))
     check_numbers(*e, file);
 }
 

@@ -14,7 +14,7 @@
 namespace posewright {
 namespace {
 
-constexpr std::uintmax_t largest_urdf = 20'000'000;   // bytes
+constexpr std::uintmax_t largest_urdf = 20'000'000;  // bytes
 
 /// Keeps what urdfdom says, for the error message; its handler is global to the process, so one reader at a time.
 class CapturedMessages : public console_bridge::OutputHandler {
@@ -48,7 +48,8 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
     throw InputError({file, 0}, std::string("is no valid URDF: ") + error.what(), "");
   }
   if (model == nullptr)
-    throw InputError({file, 0}, "is no valid URDF: " + (messages.first().empty() ? "not accepted" : messages.first()), "");
+    throw InputError({file, 0}, "is no valid URDF: " + (messages.first().empty() ? "not accepted" : messages.first()),
+                     "");
   return model;
 }
 
@@ -66,12 +67,14 @@ std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, 
   }
   if (arm.tip) {
     if (model.links_.count(arm.tip->value) == 0)
-      throw InputError({place.file, arm.tip->line}, "tip '" + arm.tip->value + "' is no link of " + arm.urdf.filename().string(),
+      throw InputError({place.file, arm.tip->line},
+                       "tip '" + arm.tip->value + "' is no link of " + arm.urdf.filename().string(),
                        "links: " + names_of(links));
     return arm.tip->value;
   }
   if (leaves.size() != 1)
-    throw InputError(place, "the robot has several ends and no tip is named", "set robot: tip to one of " + names_of(leaves));
+    throw InputError(place, "the robot has several ends and no tip is named",
+                     "set robot: tip to one of " + names_of(leaves));
   return leaves.front();
 }
 
@@ -80,15 +83,16 @@ std::string base_of(const urdf::ModelInterface& model, const SerialArmSpec& arm,
   if (model.links_.count(arm.base->value) == 0) {
     std::vector<std::string> links;
     for (const auto& entry : model.links_) links.push_back(entry.first);
-    throw InputError({place.file, arm.base->line}, "base '" + arm.base->value + "' is no link of " + arm.urdf.filename().string(),
+    throw InputError({place.file, arm.base->line},
+                     "base '" + arm.base->value + "' is no link of " + arm.urdf.filename().string(),
                      "links: " + names_of(links));
   }
   return arm.base->value;
 }
 
 /// Joints from base to tip.
-std::vector<urdf::JointConstSharedPtr> path(const urdf::ModelInterface& model, const std::string& base, const std::string& tip,
-                                            const SourcePlace& place) {
+std::vector<urdf::JointConstSharedPtr> path(const urdf::ModelInterface& model, const std::string& base,
+                                            const std::string& tip, const SourcePlace& place) {
   std::vector<urdf::JointConstSharedPtr> joints;
   urdf::LinkConstSharedPtr link = model.getLink(tip);
   while (link->name != base) {
@@ -104,7 +108,9 @@ std::vector<urdf::JointConstSharedPtr> path(const urdf::ModelInterface& model, c
 Eigen::Isometry3d isometry(const urdf::Pose& pose) {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   X.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
-  X.linear() = Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z).normalized().toRotationMatrix();
+  X.linear() = Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)
+                   .normalized()
+                   .toRotationMatrix();
   return X;
 }
 
@@ -123,7 +129,8 @@ Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   Coordinate c{joint.name, prismatic ? "m" : "rad", -std::numbers::pi, std::numbers::pi};
   if (joint.type == urdf::Joint::CONTINUOUS) return c;
   if (joint.limits == nullptr)
-    throw InputError(place, "joint '" + joint.name + "' has no <limit>", "lower and upper are needed, or type continuous");
+    throw InputError(place, "joint '" + joint.name + "' has no <limit>",
+                     "lower and upper are needed, or type continuous");
   c.lower = joint.limits->lower;
   c.upper = joint.limits->upper;
   if (!(c.lower < c.upper))
@@ -141,8 +148,10 @@ class ChainBuilder {
     const SourcePlace place = lines_.joint(joint.name);
     pending_ = pending_ * isometry(joint.parent_to_joint_origin_transform);
     if (joint.type == urdf::Joint::FIXED) return;
-    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS && joint.type != urdf::Joint::PRISMATIC)
-      throw InputError(place, "joint '" + joint.name + "' is of a type that no arm has", "allowed: revolute, continuous, prismatic, fixed");
+    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
+        joint.type != urdf::Joint::PRISMATIC)
+      throw InputError(place, "joint '" + joint.name + "' is of a type that no arm has",
+                       "allowed: revolute, continuous, prismatic, fixed");
     ChainJoint result;
     result.name = joint.name;
     result.prismatic = joint.type == urdf::Joint::PRISMATIC;
@@ -199,9 +208,11 @@ ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& pl
   for (const auto& joint : path(*model, base, tip, place)) builder.add(*joint);
   ChainDescription chain = builder.finish();
   if (chain.coordinates.empty())
-    throw InputError(place, "no joint moves between '" + base + "' and '" + tip + "'", "name a base and a tip with joints between");
+    throw InputError(place, "no joint moves between '" + base + "' and '" + tip + "'",
+                     "name a base and a tip with joints between");
   if (chain.joints.size() > 64)
-    throw InputError(place, "the chain has " + std::to_string(chain.joints.size()) + " joints", "at most 64 are allowed");
+    throw InputError(place, "the chain has " + std::to_string(chain.joints.size()) + " joints",
+                     "at most 64 are allowed");
   return chain;
 }
 

@@ -76,7 +76,8 @@ bool fits(VariantSpec::Tolerance::Quantity quantity, const std::string& unit) {
   return unit == (quantity == Quantity::length ? "m" : "rad");
 }
 
-void apply_tolerances(const Names& names, const Problem& problem, const VariantSpec& variant, std::vector<Parameter>& all) {
+void apply_tolerances(const Names& names, const Problem& problem, const VariantSpec& variant,
+                      std::vector<Parameter>& all) {
   for (const VariantSpec::Tolerance& tolerance : variant.tolerance) {
     bool used = false;
     for (const int i : names.find(tolerance.pattern)) {
@@ -85,9 +86,10 @@ void apply_tolerances(const Names& names, const Problem& problem, const VariantS
       used = true;
     }
     if (!used)
-      throw InputError(problem.at(tolerance.pattern.line),
-                       "the tolerance of '" + tolerance.pattern.value + "' is in a unit that none of these parameters has",
-                       "lengths in m, mm, um; angles in rad, mrad, urad, deg");
+      throw InputError(
+          problem.at(tolerance.pattern.line),
+          "the tolerance of '" + tolerance.pattern.value + "' is in a unit that none of these parameters has",
+          "lengths in m, mm, um; angles in rad, mrad, urad, deg");
   }
 }
 

@@ -76,8 +76,9 @@ Json pose_json(const PlannedPose& pose) {
 Json statistics_json(const PlanStatistics& s) {
   Json rejected = Json::object();
   for (const auto& [reason, count] : s.rejected) rejected[reason] = count;
-  Json json = {{"candidates_drawn", s.drawn}, {"candidates_feasible", s.feasible}, {"rejected", rejected},
-               {"exchanges", s.exchanges}, {"restarts", s.restarts}, {"seconds", s.seconds}};
+  Json json = {{"candidates_drawn", s.drawn}, {"candidates_feasible", s.feasible},
+               {"rejected", rejected},        {"exchanges", s.exchanges},
+               {"restarts", s.restarts},      {"seconds", s.seconds}};
   if (s.poses_on_boundary) json["poses_on_boundary"] = *s.poses_on_boundary;
   if (s.coordinates_on_limits) json["coordinates_on_limits"] = *s.coordinates_on_limits;
   return json;

@@ -34,8 +34,8 @@ std::string certificate_text(const Plan& plan) {
 std::string indices_text(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
   std::string text = fmt::format("log det {:.6f} (bound {:.6f})\n", plan.log_det, plan.certificate.log_det_bound);
-  text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  (columns scaled by tolerance)\n", o.o1, o.o2,
-                      o.o3, o.o4, o.o5);
+  text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  (columns scaled by tolerance)\n", o.o1,
+                      o.o2, o.o3, o.o4, o.o5);
   if (plan.condition > 1e6)
     text += fmt::format("Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some directions are hardly measured.\n",
                         plan.condition);
@@ -73,18 +73,19 @@ std::string candidates_text(const Plan& plan) {
     text += fmt::format("; {:.1f} % rejected: {}", 100.0 * double(count) / double(s.drawn), reason);
   text += "\n";
   if (s.poses_on_boundary)
-    text += fmt::format("{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",
-                        100 * *s.poses_on_boundary, 100 * s.coordinates_on_limits.value_or(0));
+    text += fmt::format(
+        "{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",
+        100 * *s.poses_on_boundary, 100 * s.coordinates_on_limits.value_or(0));
   return text;
 }
 
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + indices_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) +
-         "\n" + candidates_text(plan) +
-         fmt::format("Search: {} restarts, {} exchanges, {:.1f} s\n", plan.statistics.restarts, plan.statistics.exchanges,
-                     plan.statistics.seconds);
+  return headline(plan) + certificate_text(plan) + indices_text(plan) + "\n" + parameter_table(plan) +
+         dropped_text(plan) + "\n" + candidates_text(plan) +
+         fmt::format("Search: {} restarts, {} exchanges, {:.1f} s\n", plan.statistics.restarts,
+                     plan.statistics.exchanges, plan.statistics.seconds);
 }
 
 }  // namespace posewright

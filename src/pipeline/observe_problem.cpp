@@ -28,7 +28,8 @@ Observation observe(const Study& study, const Problem& problem, const VariantSpe
 
 }  // namespace
 
-std::vector<Observation> observe_problem(const Problem& problem, const ObserveOptions& options, const Monitor& monitor) {
+std::vector<Observation> observe_problem(const Problem& problem, const ObserveOptions& options,
+                                         const Monitor& monitor) {
   SamplingOptions sampling;
   sampling.count = std::size_t(options.candidates);
   sampling.seed = options.seed;

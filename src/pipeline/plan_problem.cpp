@@ -113,8 +113,14 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   plan.certificate = found.certificate;
   certify(plan.certificate, plan.log_det, int(columns.selected.size()) - columns.nuisance);
   fill_parameters(plan, resolved, evaluation);
-  plan.statistics = {study.configurations.drawn, long(study.configurations.count()), study.configurations.rejected,
-                     found.design.exchanges, found.design.restarts, 0.0, {}, {}};
+  plan.statistics = {study.configurations.drawn,
+                     long(study.configurations.count()),
+                     study.configurations.rejected,
+                     found.design.exchanges,
+                     found.design.restarts,
+                     0.0,
+                     {},
+                     {}};
   fill_poses(plan, study, found.design, evaluation);
   plan.interrupted = found.stopped;
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

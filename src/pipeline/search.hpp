@@ -20,8 +20,8 @@ struct SearchRequest {
 
 struct SearchResult {
   Design design;
-  BlockArray chosen;            ///< raw blocks of the design's members, in their order
-  Certificate certificate;      ///< efficiency still to be filled from an evaluation, see certify()
+  BlockArray chosen;        ///< raw blocks of the design's members, in their order
+  Certificate certificate;  ///< efficiency still to be filled from an evaluation, see certify()
   bool stopped = false;
 };
 

@@ -19,10 +19,12 @@ std::vector<Parameter> labels(const std::vector<std::string>& names, int nuisanc
 void require_enough(const BlockFile& file, const SelectOptions& options) {
   const int m = file.blocks.columns(), r = file.blocks.rows();
   if (options.nuisance < 0 || options.nuisance >= m)
-    throw InputError({}, "--nuisance " + std::to_string(options.nuisance), "0 to " + std::to_string(m - 1) + " of the " + std::to_string(m) + " columns");
+    throw InputError({}, "--nuisance " + std::to_string(options.nuisance),
+                     "0 to " + std::to_string(m - 1) + " of the " + std::to_string(m) + " columns");
   if (options.poses * r < m)
-    throw CannotDo(std::to_string(options.poses) + " poses give " + std::to_string(options.poses * r) + " equations for " +
-                   std::to_string(m) + " parameters: at least " + std::to_string((m + r - 1) / r) + " poses are needed");
+    throw CannotDo(std::to_string(options.poses) + " poses give " + std::to_string(options.poses * r) +
+                   " equations for " + std::to_string(m) + " parameters: at least " + std::to_string((m + r - 1) / r) +
+                   " poses are needed");
 }
 
 }  // namespace

@@ -33,8 +33,9 @@ std::string dropped_names(const Identifiability& found, const std::vector<Parame
     text += (first ? "" : ", ") + describe(d, columns.parameters);
     first = false;
   }
-  throw CannotDo(text + ": these cannot be told apart by any number of poses; list one of each group under fixed, or use "
-                        "parameters: auto");
+  throw CannotDo(text +
+                 ": these cannot be told apart by any number of poses; list one of each group under fixed, or use "
+                 "parameters: auto");
 }
 
 }  // namespace
@@ -97,10 +98,10 @@ void require_enough_poses(const Study& study, const VariantColumns& columns, int
   const int most = int(std::min<std::size_t>(study.configurations.count(), columns.selected.size() + 1));
   int enough = poses + 1;
   while (enough <= most && !missing(enough).dependencies.empty()) ++enough;
-  throw CannotDo(std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
-                 std::to_string(columns.selected.size()) + " parameters (not " + dropped_names(found, columns.parameters) +
-                 "); " + (enough <= most ? "at least " + std::to_string(enough) + " poses are needed"
-                                         : "more candidates are needed"));
+  throw CannotDo(
+      std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
+      std::to_string(columns.selected.size()) + " parameters (not " + dropped_names(found, columns.parameters) + "); " +
+      (enough <= most ? "at least " + std::to_string(enough) + " poses are needed" : "more candidates are needed"));
 }
 
 }  // namespace posewright

@@ -28,17 +28,17 @@ Configurations thinned(const Configurations& configurations, std::size_t count);
 /// A variant's columns that can be identified, and what was dropped.
 struct ResolvedColumns {
   VariantColumns columns;
-  std::vector<std::string> dropped;         ///< names
+  std::vector<std::string> dropped;  ///< names
   std::vector<Parameter> dropped_labels;
-  std::vector<std::string> reasons;         ///< one equation per dropped parameter
+  std::vector<std::string> reasons;  ///< one equation per dropped parameter
 };
 
 /// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
 /// they are independent. Throws CannotDo with the equations where they are not.
 ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, int threads);
 
-/// Throws CannotDo where `poses` generic configurations leave parameters undetermined: names the shortfall, the parameters
-/// and the number of poses that suffices.
+/// Throws CannotDo where `poses` generic configurations leave parameters undetermined: names the shortfall, the
+/// parameters and the number of poses that suffices.
 void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads);
 
 }  // namespace posewright

@@ -64,7 +64,8 @@ std::vector<int> next_working_set(const RestrictedDesign& restricted, const std:
   for (std::size_t i = 0; i < restricted.candidates().size(); ++i) {
     const int c = restricted.candidates()[i];
     const std::size_t left = restricted.candidates().size() - i;
-    if (set.size() + left > least && restricted.weights()[Eigen::Index(i)] < negligible && d[std::size_t(c)] < 0.98 * price)
+    if (set.size() + left > least && restricted.weights()[Eigen::Index(i)] < negligible &&
+        d[std::size_t(c)] < 0.98 * price)
       continue;
     set.push_back(c);
     kept[std::size_t(c)] = true;
@@ -105,7 +106,8 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisanc
   const std::size_t n = blocks.count();
   const int m = blocks.columns(), interest = m - nuisance;
   const auto top = std::size_t(std::lround(1 / options.cap));
-  if (n == 0 || top > n) throw std::invalid_argument("approximate design: the cap times the number of candidates is below 1");
+  if (n == 0 || top > n)
+    throw std::invalid_argument("approximate design: the cap times the number of candidates is below 1");
   const std::size_t start = std::max<std::size_t>({std::size_t(6 * m), 4 * top, 50});
   const std::size_t room = std::max<std::size_t>(std::size_t(3 * m), 2 * top);
 

@@ -27,8 +27,8 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   if (g.rows() < m)
     throw CannotDo(std::to_string(chosen.count()) + " poses give " + std::to_string(g.rows()) + " equations for " +
                    std::to_string(m) + " parameters");
-  const auto nuisance = std::count_if(parameters.begin(), parameters.end(),
-                                      [](const Parameter& p) { return p.role == Role::nuisance; });
+  const auto nuisance =
+      std::count_if(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.role == Role::nuisance; });
   Eigen::VectorXd tolerance(m);
   for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
 
@@ -43,7 +43,8 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   result.log_det = 2 * pivots.tail(m - nuisance).sum();
   const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
   result.sigma = tolerance.array() * inverse.rowwise().norm().array();
-  result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(r.bottomRightCorner(m - nuisance, m - nuisance)).singularValues();
+  result.singular_values =
+      Eigen::JacobiSVD<Eigen::MatrixXd>(r.bottomRightCorner(m - nuisance, m - nuisance)).singularValues();
   result.indices = observability_indices(result.singular_values, int(chosen.count()));
   result.condition = result.indices.o2 > 0 ? 1 / result.indices.o2 : std::numeric_limits<double>::infinity();
 

@@ -63,7 +63,8 @@ bool RestrictedDesign::factorise() {
   const int m = blocks_.columns(), r = blocks_.rows();
   const auto s = Eigen::Index(candidates_.size());
   BlockArray::RowMatrix rows(s * r, m);
-  for (Eigen::Index i = 0; i < s; ++i) rows.middleRows(i * r, r) = blocks_.block(std::size_t(candidates_[std::size_t(i)]));
+  for (Eigen::Index i = 0; i < s; ++i)
+    rows.middleRows(i * r, r) = blocks_.block(std::size_t(candidates_[std::size_t(i)]));
   BlockArray::RowMatrix scaled(s * r, m);
   for (Eigen::Index i = 0; i < s; ++i) scaled.middleRows(i * r, r) = std::sqrt(w_[i]) * rows.middleRows(i * r, r);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(m, m);

@@ -18,8 +18,8 @@ class RestrictedDesign {
   /// New working set; candidates already in it keep their weight, new ones enter with a small one.
   /// Returns false where they leave M(w) singular; the set is then of no use.
   bool set_candidates(const std::vector<int>& candidates);
-  /// Newton steps until the optimality gap on the working set, relative to the number of interest parameters, is at most
-  /// `gap`. Returns the number of steps. Throws CannotDo where M(w) is singular.
+  /// Newton steps until the optimality gap on the working set, relative to the number of interest parameters, is at
+  /// most `gap`. Returns the number of steps. Throws CannotDo where M(w) is singular.
   int solve(double gap);
 
   const std::vector<int>& candidates() const { return candidates_; }
@@ -44,7 +44,7 @@ class RestrictedDesign {
   Eigen::VectorXd w_, z_, y_, d_;
   double lambda_ = 0.0, log_det_ = 0.0;
   Eigen::MatrixXd inverse_factor_;
-  BlockArray::RowMatrix rotated_;   ///< rows J_i L⁻ᵀ of the working set
+  BlockArray::RowMatrix rotated_;  ///< rows J_i L⁻ᵀ of the working set
   Eigen::MatrixXd hessian_;
 };
 

@@ -37,9 +37,8 @@ Whitening whiten(BlockArray& blocks) {
     Eigen::VectorXd scale = information.diagonal().cwiseSqrt();
     if (!(scale.minCoeff() > 0)) throw CannotDo("a parameter has no effect on any candidate");
     const Eigen::VectorXd inverse = scale.cwiseInverse();
-    const Eigen::LLT<Eigen::MatrixXd> factor(inverse.asDiagonal() *
-                                             Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>()) *
-                                             inverse.asDiagonal());
+    const Eigen::LLT<Eigen::MatrixXd> factor(
+        inverse.asDiagonal() * Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>()) * inverse.asDiagonal());
     if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() > 1e-7))
       throw CannotDo("the parameters cannot be identified from these candidates: columns are linearly dependent");
     const Eigen::MatrixXd r = factor.matrixU() * Eigen::MatrixXd(scale.asDiagonal());

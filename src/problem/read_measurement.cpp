@@ -72,15 +72,11 @@ PointsMeasurement read_points(const Section& section, bool single) {
   const std::string_view key = single ? "target" : "targets";
   section.allow({"type", key, "components", "device", "repeats", "repeatability"});
   PointsMeasurement points;
-  if (single)
-    points.targets.push_back(read_target("target", section.at(key)));
-  else
-    points.targets = read_targets(section.at(key));
+  if (single) points.targets.push_back(read_target("target", section.at(key)));
+  else points.targets = read_targets(section.at(key));
   const Value noise = read_device(section.at("device"));
-  if (noise.is_list())
-    points.sigma = noise.vector(Quantity::length, Sign::positive);
-  else
-    points.sigma.setConstant(noise.number(Quantity::length, Sign::positive));
+  if (noise.is_list()) points.sigma = noise.vector(Quantity::length, Sign::positive);
+  else points.sigma.setConstant(noise.number(Quantity::length, Sign::positive));
   if (const Value* components = section.find("components"))
     points.components = read_components(*components, std::span(pose_components).first(3));
   return points;
@@ -93,10 +89,8 @@ MeasurementSpec read_measurement(const Value& value) {
   MeasurementSpec measurement;
   measurement.line = value.line();
   const std::string type = section.at("type").choice({"pose", "points", "position"});
-  if (type == "pose")
-    measurement.instrument = read_pose(section);
-  else
-    measurement.instrument = read_points(section, type == "position");
+  if (type == "pose") measurement.instrument = read_pose(section);
+  else measurement.instrument = read_points(section, type == "position");
   if (const Value* repeats = section.find("repeats"))
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))

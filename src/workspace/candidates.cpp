@@ -27,16 +27,20 @@ class Sampler {
 
   void interior(std::size_t wanted, const Monitor& monitor) {
     LowDiscrepancy points(result_.dimension, options_.seed);
-    draw(wanted, monitor, [&](std::size_t, std::span<double> q) { points.next(q); }, false);
+    draw(
+        wanted, monitor, [&](std::size_t, std::span<double> q) { points.next(q); }, false);
   }
 
   void boundary(std::size_t wanted, const Monitor& monitor) {
     LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + boundary_stream));
     anchors_ = result_.count();
-    draw(wanted, monitor, [&](std::size_t i, std::span<double> q) {
-      points.next(q);
-      pin(i, q);
-    }, true);
+    draw(
+        wanted, monitor,
+        [&](std::size_t i, std::span<double> q) {
+          points.next(q);
+          pin(i, q);
+        },
+        true);
   }
 
   Configurations take() {
@@ -81,8 +85,9 @@ class Sampler {
       for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
         ++result_.drawn;
         if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
-        else result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
-                                   points.begin() + std::ptrdiff_t((i + 1) * d));
+        else
+          result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
+                                points.begin() + std::ptrdiff_t((i + 1) * d));
       }
       monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}});
     }
@@ -130,7 +135,8 @@ class Sampler {
 
 }  // namespace
 
-Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options, const Monitor& monitor) {
+Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
+                                     const Monitor& monitor) {
   Sampler sampler(workspace, options);
   sampler.interior(options.count - options.count / 2, monitor);
   sampler.boundary(options.count / 2, monitor);

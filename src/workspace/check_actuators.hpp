@@ -8,8 +8,8 @@
 
 namespace posewright {
 
-/// Checks of a parallel robot: a solution of the inverse kinematics exists; every actuator stays within its travel. None
-/// for robots without actuators of that kind.
+/// Checks of a parallel robot: a solution of the inverse kinematics exists; every actuator stays within its travel.
+/// None for robots without actuators of that kind.
 std::vector<std::unique_ptr<ValidityCheck>> actuator_checks(const IdentificationModel& model);
 
 }  // namespace posewright

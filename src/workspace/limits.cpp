@@ -29,11 +29,15 @@ void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits
   const auto found = std::find_if(coordinates.begin(), coordinates.end(),
                                   [&](const Coordinate& c) { return c.name == limits.name.value; });
   if (found == coordinates.end())
-    throw InputError(place, "'" + limits.name.value + "' is no coordinate of this robot", "allowed: " + names(coordinates));
-  if (limits.quantity != Quantity::number && limits.quantity != (found->unit == "rad" ? Quantity::angle : Quantity::length))
-    throw InputError(place, "limits of '" + limits.name.value + "' have the wrong unit", "allowed: " + allowed_units({found->unit == "rad" ? Quantity::angle : Quantity::length}));
+    throw InputError(place, "'" + limits.name.value + "' is no coordinate of this robot",
+                     "allowed: " + names(coordinates));
+  if (limits.quantity != Quantity::number &&
+      limits.quantity != (found->unit == "rad" ? Quantity::angle : Quantity::length))
+    throw InputError(place, "limits of '" + limits.name.value + "' have the wrong unit",
+                     "allowed: " + allowed_units({found->unit == "rad" ? Quantity::angle : Quantity::length}));
   if (limits.lower < found->lower - slack || limits.upper > found->upper + slack)
-    throw InputError(place, "limits of '" + limits.name.value + "' go beyond the robot's own", "allowed: " + range_text(*found));
+    throw InputError(place, "limits of '" + limits.name.value + "' go beyond the robot's own",
+                     "allowed: " + range_text(*found));
   found->lower = std::max(found->lower, limits.lower);
   found->upper = std::min(found->upper, limits.upper);
 }

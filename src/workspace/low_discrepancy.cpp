@@ -35,7 +35,8 @@ class LowDiscrepancy::Engine {
   std::uint64_t seed;
 };
 
-LowDiscrepancy::LowDiscrepancy(int dimension, std::uint64_t seed) : engine_(std::make_unique<Engine>(dimension, seed)) {}
+LowDiscrepancy::LowDiscrepancy(int dimension, std::uint64_t seed)
+    : engine_(std::make_unique<Engine>(dimension, seed)) {}
 LowDiscrepancy::~LowDiscrepancy() = default;
 
 void LowDiscrepancy::next(std::span<double> point) {

@@ -22,7 +22,8 @@ TEST(Identifiability, IndependentColumnsAreAllKept) {
 TEST(Identifiability, DependencyIsFoundWithItsCoefficientsInPhysicalUnits) {
   BlockArray blocks = random_blocks(30, 2, 5, 2);
   // p3 = 2 p0 − 0.5 p1, with tolerances that differ a thousandfold.
-  for (std::size_t i = 0; i < 30; ++i) blocks.block(i).col(3) = 2 * blocks.block(i).col(0) - 0.5 * blocks.block(i).col(1);
+  for (std::size_t i = 0; i < 30; ++i)
+    blocks.block(i).col(3) = 2 * blocks.block(i).col(0) - 0.5 * blocks.block(i).col(1);
   auto parameters = labels(5);
   parameters[0].tolerance = 1;
   parameters[3].unit = "rad";

@@ -35,7 +35,8 @@ std::string header(const std::string& shape, const std::string& kind = "<f8", co
 
 TEST(ReadBlocks, ThreeDimensionalArrayBecomesBlocks) {
   const TemporaryFolder folder;
-  const BlockFile file = read_blocks(folder.write("b.npy", npy(header("(2, 2, 3)"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})), {});
+  const BlockFile file =
+      read_blocks(folder.write("b.npy", npy(header("(2, 2, 3)"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})), {});
   EXPECT_EQ(file.blocks.count(), 2U);
   EXPECT_EQ(file.blocks.rows(), 2);
   EXPECT_EQ(file.blocks.columns(), 3);
@@ -126,7 +127,8 @@ TEST(ReadBlocks, MutatedFilesAreReadOrRefusedButNeverCrash) {
       if (bytes.empty()) bytes = "x";
     }
     try {
-      read_blocks(folder.write("m", bytes), random.index(2) == 0 ? std::optional<int>(1 + random.index(3)) : std::nullopt);
+      read_blocks(folder.write("m", bytes),
+                  random.index(2) == 0 ? std::optional<int>(1 + random.index(3)) : std::nullopt);
       ++read;
     } catch (const InputError&) {
       ++refused;

@@ -34,7 +34,8 @@ std::vector<double> all_results(const Kernels& kernels, int rows, int columns) {
   double best = 0;
   std::vector<unsigned char> blocked(33, 0);
   std::vector<double> d(traces);
-  const long found = rows == 1 ? kernels.scan_rows(blocks.data(), 33, stride, y.data(), d.data(), 0.5, blocked.data(), &best) : 0;
+  const long found =
+      rows == 1 ? kernels.scan_rows(blocks.data(), 33, stride, y.data(), d.data(), 0.5, blocked.data(), &best) : 0;
   std::vector<double> all = traces;
   all.insert(all.end(), reduced.begin(), reduced.end());
   all.insert(all.end(), cross.begin(), cross.end());

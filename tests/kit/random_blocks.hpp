@@ -15,8 +15,8 @@ inline BlockArray random_blocks(std::size_t count, int rows, int columns, std::u
   for (std::size_t i = 0; i < count; ++i)
     for (int r = 0; r < rows; ++r)
       for (int c = 0; c < columns; ++c)
-        blocks.row(i, r)[c] = std::sqrt(-2 * std::log(1 - random.uniform())) *
-                              std::cos(2 * std::numbers::pi * random.uniform());
+        blocks.row(i, r)[c] =
+            std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
   return blocks;
 }
 

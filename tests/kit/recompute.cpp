@@ -9,7 +9,8 @@
 
 namespace posewright {
 
-double recomputed_log_det(const Problem& problem, const std::string& variant, const std::vector<std::vector<double>>& poses) {
+double recomputed_log_det(const Problem& problem, const std::string& variant,
+                          const std::vector<std::vector<double>>& poses) {
   const auto model = make_model(problem);
   const VariantColumns columns = select_columns(*model, problem, find_variant(problem, variant));
   const auto m = Eigen::Index(columns.selected.size());

@@ -10,7 +10,8 @@ namespace posewright {
 
 /// log det of the interest information of a variant at the given configurations, by LDLᵀ of the summed information and
 /// of its nuisance block: another road than the product's QR of stacked rows.
-double recomputed_log_det(const Problem& problem, const std::string& variant, const std::vector<std::vector<double>>& poses);
+double recomputed_log_det(const Problem& problem, const std::string& variant,
+                          const std::vector<std::vector<double>>& poses);
 
 /// What a reader of plan.json finds.
 struct WrittenPlan {

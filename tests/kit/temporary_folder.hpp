@@ -29,7 +29,8 @@ class TemporaryFolder {
     return path_ / name;
   }
   std::size_t count_files() const {
-    return std::size_t(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+    return std::size_t(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
   }
 
  private:

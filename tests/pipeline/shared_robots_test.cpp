@@ -27,10 +27,12 @@ TEST_P(SharedRobots, AutomaticSubsetHas4RPlus6ParametersAndAPlanIsFound) {
   const TemporaryFolder folder;
   const Robot& robot = GetParam();
   const Problem problem = read_problem(folder.write(
-      "p.yaml", "posewright: 1\nrobot: {urdf: \"" + (robots / robot.name / robot.urdf).string() + "\", tip: " + robot.tip + "}\n" +
-                    "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}\n"
-                    "variants: {all: {parameters: auto}}\n"
-                    "design: {poses: 20, candidates: 2000, restarts: 2}\n"));
+      "p.yaml",
+      "posewright: 1\nrobot: {urdf: \"" + (robots / robot.name / robot.urdf).string() + "\", tip: " + robot.tip +
+          "}\n" +
+          "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}\n"
+          "variants: {all: {parameters: auto}}\n"
+          "design: {poses: 20, candidates: 2000, restarts: 2}\n"));
   const Observation o = observe_problem(problem, {}, Monitor{}).front();
   std::string equations;
   for (const Dependency& d : o.identifiability.dependencies) equations += "  " + describe(d, o.parameters) + "\n";
@@ -44,13 +46,12 @@ TEST_P(SharedRobots, AutomaticSubsetHas4RPlus6ParametersAndAPlanIsFound) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SharedRobots,
-    testing::Values(
-        Robot{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf", "tool0", 6},
-        Robot{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "tool0", 6},
-        Robot{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "tool0", 6},
-        Robot{"franka_panda", "moveit_resources_panda_description/urdf/panda.urdf", "panda_link8", 7},
-        Robot{"ur10", "example-robot-data/robots/ur_description/urdf/ur10_robot.urdf", "tool0", 6},
-        Robot{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "tool0", 6}),
+    testing::Values(Robot{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf", "tool0", 6},
+                    Robot{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "tool0", 6},
+                    Robot{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "tool0", 6},
+                    Robot{"franka_panda", "moveit_resources_panda_description/urdf/panda.urdf", "panda_link8", 7},
+                    Robot{"ur10", "example-robot-data/robots/ur_description/urdf/ur10_robot.urdf", "tool0", 6},
+                    Robot{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "tool0", 6}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

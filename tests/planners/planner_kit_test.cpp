@@ -56,7 +56,8 @@ double optimum(const Criterion& criterion, const CandidateView& view, int poses,
 
 class PlannerKit : public testing::TestWithParam<Case> {
  protected:
-  Design plan(const BlockArray& blocks, int poses, std::uint64_t seed, int threads, int nuisance = 0, int restarts = 8) const {
+  Design plan(const BlockArray& blocks, int poses, std::uint64_t seed, int threads, int nuisance = 0,
+              int restarts = 8) const {
     const auto criterion = make_criterion(GetParam().criterion);
     ApproximateDesignOptions bound;
     bound.cap = GetParam().repeats ? 1.0 : 1.0 / poses;
@@ -102,7 +103,8 @@ TEST_P(PlannerKit, ReturnsExactlyNWithinTheRepeatPolicyAndBeatsRandomSets) {
   for (int trial = 0; trial < 1000; ++trial) {
     std::vector<int> members;
     while (members.size() < 20)
-      if (const int i = random.index(500); std::find(members.begin(), members.end(), i) == members.end()) members.push_back(i);
+      if (const int i = random.index(500); std::find(members.begin(), members.end(), i) == members.end())
+        members.push_back(i);
     EXPECT_LT(value_of(*criterion, view, members), design.value);
   }
 }
@@ -154,7 +156,8 @@ TEST_P(PlannerKit, StopsWhenToldAndStillReturnsAPlan) {
   monitor.interrupted = &stop;
   PlannerOptions options;
   options.restarts = 1000000;
-  const Design design = make_planner(GetParam().planner)->plan({{&blocks, 0, 1}, criterion.get(), 20, nullptr}, options, monitor);
+  const Design design =
+      make_planner(GetParam().planner)->plan({{&blocks, 0, 1}, criterion.get(), 20, nullptr}, options, monitor);
   EXPECT_EQ(design.members.size(), 20U);
   EXPECT_TRUE(design.stopped);
 }

@@ -71,14 +71,16 @@ TEST_P(Bounds, NoRandomFeasibleWeightsExceedTheBoundAndCapsHold) {
   for (int trial = 0; trial < 200; ++trial) {
     std::vector<int> order(300);
     std::iota(order.begin(), order.end(), 0);
-    for (std::size_t i = 0; i < std::size_t(poses); ++i) std::swap(order[i], order[i + std::size_t(random.index(int(300 - i)))]);
+    for (std::size_t i = 0; i < std::size_t(poses); ++i)
+      std::swap(order[i], order[i + std::size_t(random.index(int(300 - i)))]);
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(columns, columns);
     for (int i = 0; i < poses; ++i) {
       const auto block = blocks.block(std::size_t(order[std::size_t(i)]));
       m += block.transpose() * block / poses;
     }
-    const double log_det = m.ldlt().vectorD().array().log().sum() -
-                           (nuisance > 0 ? m.topLeftCorner(nuisance, nuisance).ldlt().vectorD().array().log().sum() : 0.0);
+    const double log_det =
+        m.ldlt().vectorD().array().log().sum() -
+        (nuisance > 0 ? m.topLeftCorner(nuisance, nuisance).ldlt().vectorD().array().log().sum() : 0.0);
     EXPECT_LE(log_det, design.log_det_bound);
   }
 }

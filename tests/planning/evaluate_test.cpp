@@ -13,7 +13,8 @@ namespace {
 std::vector<Parameter> labels(int count, int nuisance) {
   std::vector<Parameter> parameters;
   for (int j = 0; j < count; ++j)
-    parameters.push_back({"p" + std::to_string(j), "m", 0, 0.01 * (j + 1), j < nuisance ? Role::nuisance : Role::interest});
+    parameters.push_back(
+        {"p" + std::to_string(j), "m", 0, 0.01 * (j + 1), j < nuisance ? Role::nuisance : Role::interest});
   return parameters;
 }
 
@@ -39,7 +40,8 @@ TEST(Evaluate, MeasuringEverythingTwiceHalvesEveryVariance) {
 
 TEST(Evaluate, OrderOfPosesDoesNotMatter) {
   const BlockArray blocks = random_blocks(8, 2, 7, 3);
-  const Evaluation a = evaluate(blocks, labels(7, 3)), b = evaluate(blocks.subset({7, 3, 1, 0, 2, 6, 5, 4}), labels(7, 3));
+  const Evaluation a = evaluate(blocks, labels(7, 3)),
+                   b = evaluate(blocks.subset({7, 3, 1, 0, 2, 6, 5, 4}), labels(7, 3));
   EXPECT_NEAR(a.log_det, b.log_det, 1e-11);
 }
 

@@ -63,7 +63,10 @@ TEST(ParallelFor, EveryIndexOnceOnAnyNumberOfThreads) {
 
 TEST(ParallelFor, AnExceptionReachesTheCaller) {
   for (const int threads : {1, 3})
-    EXPECT_THROW(parallel_for(100, threads, [](std::size_t i, int) { if (i == 42) throw std::runtime_error("x"); }),
+    EXPECT_THROW(parallel_for(100, threads,
+                              [](std::size_t i, int) {
+                                if (i == 42) throw std::runtime_error("x");
+                              }),
                  std::runtime_error);
 }
 

@@ -27,7 +27,8 @@ class Stage : public IdentificationModel {
   }
 
  private:
-  bool do_linearise(std::span<const double> q, std::span<const double>, std::span<const int>, Linearisation& out) const override {
+  bool do_linearise(std::span<const double> q, std::span<const double>, std::span<const int>,
+                    Linearisation& out) const override {
     out.G = Eigen::MatrixXd::Constant(1, 1, q[0]);
     out.covariance = Eigen::MatrixXd::Constant(1, 1, 4.0);
     return true;
@@ -69,8 +70,10 @@ TEST(Workspace, ContradictoryLimitsNameLineAndRange) {
       return error.what();
     }
   };
-  EXPECT_THAT(text(problem_with({{{"w", 4}, 0, 1}})), HasSubstr("p.yaml:4: 'w' is no coordinate of this robot; allowed: x, y, z"));
-  EXPECT_THAT(text(problem_with({{{"x", 5}, 0, 3}})), HasSubstr("p.yaml:5: limits of 'x' go beyond the robot's own; allowed: -1000 to 1000 mm"));
+  EXPECT_THAT(text(problem_with({{{"w", 4}, 0, 1}})),
+              HasSubstr("p.yaml:4: 'w' is no coordinate of this robot; allowed: x, y, z"));
+  EXPECT_THAT(text(problem_with({{{"x", 5}, 0, 3}})),
+              HasSubstr("p.yaml:5: limits of 'x' go beyond the robot's own; allowed: -1000 to 1000 mm"));
   EXPECT_THAT(text(problem_with({}, 1.5)), HasSubstr("nothing is left of the range of 'x'"));
 }
 

@@ -12,20 +12,20 @@ namespace posewright {
 /// A parameter whose effect on every measurement equals a combination of kept ones (to `remainder` of its own effect).
 struct Dependency {
   struct Term {
-    int parameter;        ///< index of a kept parameter
-    double coefficient;   ///< SI: effect of one unit of `dropped` = Σ coefficient · effect of one unit of `parameter`
+    int parameter;       ///< index of a kept parameter
+    double coefficient;  ///< SI: effect of one unit of `dropped` = Σ coefficient · effect of one unit of `parameter`
   };
   int dropped = -1;
-  std::vector<Term> terms;   ///< without negligible ones; empty: the parameter has no effect at all
-  double remainder = 0.0;    ///< share of the column's norm that the terms do not explain
+  std::vector<Term> terms;  ///< without negligible ones; empty: the parameter has no effect at all
+  double remainder = 0.0;   ///< share of the column's norm that the terms do not explain
 };
 
 /// Structural identifiability of a set of columns over a sample of configurations.
 struct Identifiability {
-  int rank = 0;                        ///< columns kept
-  Eigen::VectorXd singular_values;     ///< of G with columns in units of tolerance, descending
-  std::vector<int> kept;               ///< an irreducible subset, ascending
-  std::vector<Dependency> dependencies;   ///< one per dropped column
+  int rank = 0;                          ///< columns kept
+  Eigen::VectorXd singular_values;       ///< of G with columns in units of tolerance, descending
+  std::vector<int> kept;                 ///< an irreducible subset, ascending
+  std::vector<Dependency> dependencies;  ///< one per dropped column
 };
 
 struct IdentifiabilityOptions {
@@ -37,8 +37,8 @@ struct IdentifiabilityOptions {
 };
 
 /// Rank-revealing QR with column pivoting (Golub & Van Loan, Matrix Computations, §5.4) on columns in units of their
-/// tolerance: within a tier the column with the largest remaining norm is kept next, so of a dependent group the parameters
-/// with the largest tolerance stay. Nearly equal norms (1e-6) go to the first in order.
+/// tolerance: within a tier the column with the largest remaining norm is kept next, so of a dependent group the
+/// parameters with the largest tolerance stay. Nearly equal norms (1e-6) go to the first in order.
 /// @param sample      blocks over many configurations; uses all rows
 /// @param parameters  labels of the columns
 Identifiability identifiability(const BlockArray& sample, const std::vector<Parameter>& parameters,

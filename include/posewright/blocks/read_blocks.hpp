@@ -12,8 +12,8 @@ namespace posewright {
 /// Jacobian blocks that a user brings.
 struct BlockFile {
   BlockArray blocks;
-  std::vector<std::string> columns;   ///< from the CSV header; "column 0", … where there is none
-  std::string sha256;                 ///< of the file's bytes
+  std::vector<std::string> columns;  ///< from the CSV header; "column 0", … where there is none
+  std::string sha256;                ///< of the file's bytes
 };
 
 /// Reads whitened Jacobian blocks: NumPy .npy (float64 or float32, little endian, C order, shape n × r × m, or

@@ -11,13 +11,13 @@ namespace posewright {
 /// What a criterion sees of a design problem: candidate blocks, well conditioned (see planning/whiten.hpp).
 struct CandidateView {
   const BlockArray* blocks = nullptr;
-  int nuisance = 0;        ///< the leading columns that are nuisance; eliminated by Schur complement
-  int max_repeats = 1;     ///< how often one candidate may be chosen
+  int nuisance = 0;     ///< the leading columns that are nuisance; eliminated by Schur complement
+  int max_repeats = 1;  ///< how often one candidate may be chosen
 };
 
 /// One exchange: candidate `enter` takes the place of the member at a position; `gain` is Φ(after) − Φ(before).
 struct Swap {
-  int enter = -1;          ///< −1: nothing gains more than was asked for
+  int enter = -1;  ///< −1: nothing gains more than was asked for
   double gain = 0.0;
 };
 

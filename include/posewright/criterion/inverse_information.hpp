@@ -33,7 +33,7 @@ class InverseInformation {
  private:
   const BlockArray& blocks_;
   int columns_, stride_, rows_;
-  std::vector<double> v_;            ///< columns × stride, row-major
+  std::vector<double> v_;  ///< columns × stride, row-major
   std::vector<double> d_;
   double log_det_ = 0.0;
   std::vector<double> y_, scratch_;  ///< 2r × stride

@@ -13,8 +13,8 @@ namespace posewright {
 void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
                         std::vector<double>& d);
 
-/// d_i = tr(J_i M⁻¹ J_iᵀ) − tr(J_i,n M_nn⁻¹ J_i,nᵀ) of every candidate: what a unit of weight on i adds to the log det of
-/// the interest information. One pass over the blocks, O(n r m²/2).
+/// d_i = tr(J_i M⁻¹ J_iᵀ) − tr(J_i,n M_nn⁻¹ J_i,nᵀ) of every candidate: what a unit of weight on i adds to the log det
+/// of the interest information. One pass over the blocks, O(n r m²/2).
 /// @param inverse_factor  L⁻¹ of M = L Lᵀ, nuisance columns first
 /// @param d               resized to blocks.count()
 void sensitivities(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd& inverse_factor,

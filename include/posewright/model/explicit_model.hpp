@@ -23,7 +23,7 @@ class ExplicitModel : public IdentificationModel {
 
   std::unique_ptr<TipModel> tip_;
   std::unique_ptr<MeasurementModel> measurement_;
-  int tip_parameters_ = 0;      ///< how many of the tip's parameters are in use (tool.* are its last)
+  int tip_parameters_ = 0;  ///< how many of the tip's parameters are in use (tool.* are its last)
   bool encoder_noise_ = false;
 };
 

@@ -13,15 +13,15 @@ namespace posewright {
 /// One entry of a configuration (or one actuator that follows from it).
 struct Coordinate {
   std::string name;
-  std::string unit;      ///< "rad" or "m"
+  std::string unit;  ///< "rad" or "m"
   double lower = 0.0;
   double upper = 0.0;
 };
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
-  Eigen::MatrixXd G;            ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
-  Eigen::MatrixXd covariance;   ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
+  Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
+  Eigen::MatrixXd covariance;  ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;        ///< scratch: tip twist per selected parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> joint_twists;  ///< scratch: tip twist per configuration coordinate
   Eigen::MatrixXd rows;                                   ///< scratch

@@ -7,8 +7,9 @@
 
 namespace posewright {
 
-/// Closed-chain robots: g(X, ρ, ξ) = 0 ties the measured pose X of the platform to the actuators ρ. A robot gives the rows
-/// of g; the instrument gives the covariance of X, whatever it measures, through the linear fit of X to its readings:
+/// Closed-chain robots: g(X, ρ, ξ) = 0 ties the measured pose X of the platform to the actuators ρ. A robot gives the
+/// rows of g; the instrument gives the covariance of X, whatever it measures, through the linear fit of X to its
+/// readings:
 ///   Σ_X = (Yᵀ Σ_y⁻¹ Y)⁻¹,  Y = derivative of the readings along the six unit twists of the platform.
 /// The covariance of the residual is then G_X Σ_X G_Xᵀ + G_ρ Σ_ρ G_ρᵀ, full: one pose enters every row.
 class ImplicitModel : public IdentificationModel {

@@ -5,8 +5,8 @@
 
 namespace posewright {
 
-/// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a spatial
-/// rotation vector in M): v + ω × p and ω of a twist. No parameters of its own.
+/// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a
+/// spatial rotation vector in M): v + ω × p and ω of a twist. No parameters of its own.
 class PoseModel : public MeasurementModel {
  public:
   explicit PoseModel(const MeasurementSpec& spec);

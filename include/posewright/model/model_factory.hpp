@@ -7,7 +7,8 @@
 
 namespace posewright {
 
-/// Robot and instrument of a problem file. Throws InputError (URDF, limits) or CannotDo (instrument and robot do not fit).
+/// Robot and instrument of a problem file. Throws InputError (URDF, limits) or CannotDo (instrument and robot do not
+/// fit).
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
 
 }  // namespace posewright

@@ -5,9 +5,9 @@
 
 namespace posewright {
 
-/// Serial arm: base.{x,y,z,rx,ry,rz}; per joint NAME.{x,y,z,rx,ry,rz} (displacement of its frame before it moves), NAME.offset
-/// and NAME.gear (not for mimic joints); tool.{x,…,rz}. More than can be identified on purpose: the irreducible subset comes
-/// out of the identifiability analysis.
+/// Serial arm: base.{x,y,z,rx,ry,rz}; per joint NAME.{x,y,z,rx,ry,rz} (displacement of its frame before it moves),
+/// NAME.offset and NAME.gear (not for mimic joints); tool.{x,…,rz}. More than can be identified on purpose: the
+/// irreducible subset comes out of the identifiability analysis.
 class SerialChain : public TipModel {
  public:
   /// Throws std::invalid_argument for a chain without joints or with more than 64.
@@ -24,13 +24,13 @@ class SerialChain : public TipModel {
  private:
   /// What a column is made of: the n-th stored axis, as rotation or translation, times a factor.
   struct Column {
-    int joint;      ///< −1 base, joints() tool
-    int kind;       ///< 0–2 translation, 3–5 rotation, 6 offset, 7 gear
+    int joint;  ///< −1 base, joints() tool
+    int kind;   ///< 0–2 translation, 3–5 rotation, 6 offset, 7 gear
   };
 
   ChainDescription chain_;
   ChainLayout layout_;
-  std::vector<Column> columns_;                       ///< per parameter
+  std::vector<Column> columns_;  ///< per parameter
   std::vector<std::vector<int>> joints_of_coordinate_;
 };
 

@@ -14,9 +14,9 @@ struct ChainJoint {
   std::string name;
   bool prismatic = false;
   Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit, joint frame
-  int coordinate = 0;                                ///< index into the configuration
-  double multiplier = 1.0, offset = 0.0;             ///< of a mimic joint
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, joint frame
+  int coordinate = 0;                               ///< index into the configuration
+  double multiplier = 1.0, offset = 0.0;            ///< of a mimic joint
   bool mimic = false;
 };
 
@@ -26,16 +26,16 @@ struct ChainDescription {
   std::vector<ChainJoint> joints;
   Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
   std::vector<Coordinate> coordinates;
-  std::vector<double> encoder_noise;                 ///< 1σ per coordinate
+  std::vector<double> encoder_noise;  ///< 1σ per coordinate
 };
 
-/// Where each parameter of a serial chain stands: base (6), per joint displacement (6), offset and gear of each coordinate's
-/// own joint, tool (6).
+/// Where each parameter of a serial chain stands: base (6), per joint displacement (6), offset and gear of each
+/// coordinate's own joint, tool (6).
 struct ChainLayout {
   explicit ChainLayout(const ChainDescription& chain);
-  std::vector<int> displacement;   ///< per joint: index of NAME.x
-  std::vector<int> offset;         ///< per coordinate: index of NAME.offset; gear follows
-  int tool = 0;                    ///< index of tool.x
+  std::vector<int> displacement;  ///< per joint: index of NAME.x
+  std::vector<int> offset;        ///< per coordinate: index of NAME.offset; gear follows
+  int tool = 0;                   ///< index of tool.x
   int count = 0;
 };
 
@@ -57,8 +57,7 @@ struct Frame {
     K << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
     const Eigen::Matrix3d K2 = K * K;
     const T s = sin(angle), c = T(1.0) - cos(angle);
-    const Eigen::Matrix<T, 3, 3> rotation =
-        Eigen::Matrix<T, 3, 3>::Identity() + K.cast<T>() * s + K2.cast<T>() * c;
+    const Eigen::Matrix<T, 3, 3> rotation = Eigen::Matrix<T, 3, 3>::Identity() + K.cast<T>() * s + K2.cast<T>() * c;
     R = (R * rotation).eval();
   }
   /// Displacement D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), the convention of URDF origins.
@@ -71,7 +70,8 @@ struct Frame {
 };
 
 /// Pose of the tip in the measurement frame:
-///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] · X_LastTip D(tool).
+///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
+///   X_LastTip D(tool).
 /// @param correction  all parameters in the order of ChainLayout
 template <class T>
 Frame<T> tip_pose(const ChainDescription& chain, const ChainLayout& layout, const double* q, const T* correction) {

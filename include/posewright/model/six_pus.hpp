@@ -8,7 +8,7 @@ namespace posewright {
 /// One leg's parameters in the scalar type T: base joint a, platform joint b, actuator direction u, length l.
 template <class T>
 struct LegParameters {
-  T a[3], b[3], u[2], l;   ///< u without its third component, which is √(1 − ux² − uy²) with the nominal sign
+  T a[3], b[3], u[2], l;  ///< u without its third component, which is √(1 − ux² − uy²) with the nominal sign
 };
 
 /// Residual of one leg, g = l − ‖p + R b − a − ρ u‖, design §3.4 (Gough platform with inclined base actuators).

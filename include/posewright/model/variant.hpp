@@ -14,15 +14,15 @@ namespace posewright {
 /// in the order the variant lists them). The only place that puts columns in order.
 struct VariantColumns {
   std::string name;
-  bool automatic = false;               ///< still to be reduced to an irreducible subset
-  std::vector<int> selected;            ///< indices into the model's parameters()
-  std::vector<Parameter> parameters;    ///< labels: the user's names, roles and tolerances
-  std::vector<int> tiers;               ///< preference of identifiability()
-  int nuisance = 0;                     ///< how many lead
+  bool automatic = false;             ///< still to be reduced to an irreducible subset
+  std::vector<int> selected;          ///< indices into the model's parameters()
+  std::vector<Parameter> parameters;  ///< labels: the user's names, roles and tolerances
+  std::vector<int> tiers;             ///< preference of identifiability()
+  int nuisance = 0;                   ///< how many lead
 };
 
-/// Resolves names, globs, roles and tolerances of a variant. Throws InputError for a pattern that matches nothing (naming
-/// some that exist) and for a tolerance in a unit that none of the matched parameters has.
+/// Resolves names, globs, roles and tolerances of a variant. Throws InputError for a pattern that matches nothing
+/// (naming some that exist) and for a tolerance in a unit that none of the matched parameters has.
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
 
 /// The columns that `kept` (ascending indices into columns) names.

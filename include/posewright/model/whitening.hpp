@@ -6,9 +6,9 @@
 
 namespace posewright {
 
-/// Whitened block J = L⁻¹ G with covariance = L Lᵀ of the residual, i.e. J = W^{1/2} ∂g/∂ξ up to a rotation of the rows,
-/// W = (G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ)⁻¹; JᵀJ = Gᵀ W G. Written row-major, r rows of selected.size() doubles, `stride`
-/// doubles apart. Does not allocate once `scratch` has been used with the same sizes.
+/// Whitened block J = L⁻¹ G with covariance = L Lᵀ of the residual, i.e. J = W^{1/2} ∂g/∂ξ up to a rotation of the
+/// rows, W = (G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ)⁻¹; JᵀJ = Gᵀ W G. Written row-major, r rows of selected.size() doubles,
+/// `stride` doubles apart. Does not allocate once `scratch` has been used with the same sizes.
 /// @return false where q is unreachable; nothing is written then
 /// Throws CannotDo where the covariance is not positive definite.
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,

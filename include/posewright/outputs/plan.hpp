@@ -30,17 +30,17 @@ struct PlannedPose {
 
 struct PlannedParameter {
   Parameter label;
-  std::optional<double> sigma;                 ///< predicted 1σ after calibration, SI; none where not identifiable
-  std::string dropped_because;                 ///< equation among kept parameters; empty where it is kept
+  std::optional<double> sigma;  ///< predicted 1σ after calibration, SI; none where not identifiable
+  std::string dropped_because;  ///< equation among kept parameters; empty where it is kept
 };
 
 /// What is proved about a plan over its candidates.
 struct Certificate {
-  double efficiency = 0.0;                     ///< lower bound of (det M / det M*)^{1/s}, in (0, 1]
-  double log_det_bound = 0.0;                  ///< no plan of as many of these candidates exceeds it; same scale as log_det
-  double max_sensitivity_ratio = 1.0;          ///< how near the weights behind the bound are to their own optimum
-  std::size_t count = 0;                       ///< candidates
-  bool repeats = false;                        ///< whether the bound allows repeats
+  double efficiency = 0.0;             ///< lower bound of (det M / det M*)^{1/s}, in (0, 1]
+  double log_det_bound = 0.0;          ///< no plan of as many of these candidates exceeds it; same scale as log_det
+  double max_sensitivity_ratio = 1.0;  ///< how near the weights behind the bound are to their own optimum
+  std::size_t count = 0;               ///< candidates
+  bool repeats = false;                ///< whether the bound allows repeats
 };
 
 struct PlanStatistics {
@@ -49,24 +49,24 @@ struct PlanStatistics {
   long exchanges = 0;
   int restarts = 0;
   double seconds = 0.0;
-  std::optional<double> poses_on_boundary;     ///< share of poses on the boundary of the feasible set
-  std::optional<double> coordinates_on_limits; ///< share of coordinates on a limit
+  std::optional<double> poses_on_boundary;      ///< share of poses on the boundary of the feasible set
+  std::optional<double> coordinates_on_limits;  ///< share of coordinates on a limit
 };
 
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
   std::string problem_file, problem_sha256;
-  std::string variant;                         ///< empty for a plan from bare blocks
+  std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1";
   double log_det = 0.0, log_det_full = 0.0;
   ObservabilityIndices indices;
   double condition = 0.0;
   Certificate certificate;
-  std::vector<PlannedParameter> parameters;    ///< interest first, then nuisance, then dropped ones
+  std::vector<PlannedParameter> parameters;  ///< interest first, then nuisance, then dropped ones
   std::vector<PlannedPose> poses;
   PlanStatistics statistics;
-  bool interrupted = false;                    ///< the search was ended before it was done
+  bool interrupted = false;  ///< the search was ended before it was done
 };
 
 }  // namespace posewright

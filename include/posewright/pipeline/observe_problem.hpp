@@ -12,8 +12,8 @@
 namespace posewright {
 
 struct ObserveOptions {
-  std::string variant;             ///< empty = all variants
-  int candidates = 2000;           ///< configurations in the pool
+  std::string variant;    ///< empty = all variants
+  int candidates = 2000;  ///< configurations in the pool
   std::uint64_t seed = 0;
   int threads = 0;
 };
@@ -22,11 +22,11 @@ struct ObserveOptions {
 struct Observation {
   std::string variant;
   std::size_t configurations = 0;
-  int rows = 0;                            ///< of one block
-  std::vector<Parameter> parameters;       ///< all free columns, nuisance first
-  Identifiability identifiability;         ///< over those columns
-  int exact_rank = 0;                      ///< rank where only dependencies to rounding count
-  ObservabilityIndices indices;            ///< of the kept interest columns, nuisance eliminated, scaled by tolerance
+  int rows = 0;                       ///< of one block
+  std::vector<Parameter> parameters;  ///< all free columns, nuisance first
+  Identifiability identifiability;    ///< over those columns
+  int exact_rank = 0;                 ///< rank where only dependencies to rounding count
+  ObservabilityIndices indices;       ///< of the kept interest columns, nuisance eliminated, scaled by tolerance
 };
 
 /// Per variant: rank, scaled singular values, indices of the pool, dependencies.

@@ -12,17 +12,16 @@ namespace posewright {
 
 /// What a command line may say over the problem file's design block.
 struct PlanOptions {
-  std::string variant, criterion, method;       ///< empty = as in the file
+  std::string variant, criterion, method;  ///< empty = as in the file
   std::optional<int> poses, candidates, restarts;
   std::optional<Repeats> repeats;
   std::uint64_t seed = 0;
-  int threads = 0;                              ///< 0 = all
+  int threads = 0;  ///< 0 = all
 };
 
-/// Problem → model → candidates → blocks → search → plan. Reproducible for the same problem, options and version, whatever
-/// the number of threads, as long as the monitor does not stop it.
-/// Throws InputError and CannotDo as the stages do; CannotDo naming the shortfall where there are fewer poses than the
-/// parameters need.
+/// Problem → model → candidates → blocks → search → plan. Reproducible for the same problem, options and version,
+/// whatever the number of threads, as long as the monitor does not stop it. Throws InputError and CannotDo as the
+/// stages do; CannotDo naming the shortfall where there are fewer poses than the parameters need.
 Plan plan_problem(const Problem& problem, const PlanOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

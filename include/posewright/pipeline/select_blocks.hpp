@@ -13,10 +13,10 @@
 namespace posewright {
 
 struct SelectOptions {
-  std::optional<int> rows;                      ///< r; needed for CSV and two-dimensional arrays
+  std::optional<int> rows;  ///< r; needed for CSV and two-dimensional arrays
   int poses = 0;
   std::string criterion = "o1", method = "exchange";
-  int nuisance = 0;                             ///< how many leading columns are nuisance
+  int nuisance = 0;  ///< how many leading columns are nuisance
   int restarts = 10;
   Repeats repeats = Repeats::forbid;
   std::uint64_t seed = 0;

@@ -9,17 +9,17 @@ namespace posewright {
 
 /// Optimal weights on candidates, Σw = 1, and what they prove.
 struct ApproximateDesign {
-  std::vector<int> support;        ///< candidates with positive weight, ascending
-  std::vector<double> weights;     ///< one per support candidate
-  double log_det = 0.0;            ///< Φ(w) = log det of the interest information M(w)
+  std::vector<int> support;     ///< candidates with positive weight, ascending
+  std::vector<double> weights;  ///< one per support candidate
+  double log_det = 0.0;         ///< Φ(w) = log det of the interest information M(w)
   /// Mean of the largest d_i over the candidates (one for no cap, N where w ≤ 1/N) divided by the number of
   /// interest parameters; ≥ 1, and 1 at the optimum (Kiefer & Wolfowitz 1960).
   double max_sensitivity_ratio = 1.0;
-  double log_det_bound = 0.0;      ///< upper bound of Φ over all feasible weights
-  double price = 0.0;              ///< multiplier of Σw = 1: candidates with d_i well below it are in no good plan
-  std::vector<double> sensitivity; ///< d_i of every candidate at w
+  double log_det_bound = 0.0;       ///< upper bound of Φ over all feasible weights
+  double price = 0.0;               ///< multiplier of Σw = 1: candidates with d_i well below it are in no good plan
+  std::vector<double> sensitivity;  ///< d_i of every candidate at w
   int rounds = 0, newton_steps = 0;
-  bool stopped = false;            ///< the monitor stopped it; the bound is valid all the same
+  bool stopped = false;  ///< the monitor stopped it; the bound is valid all the same
 
   /// Upper bound of Φ over all exact plans of `poses` poses with `interest` parameters: M of N poses is N times that of
   /// weights k_i/N.
@@ -28,8 +28,8 @@ struct ApproximateDesign {
 
 /// Options of solve_approximate_design.
 struct ApproximateDesignOptions {
-  double cap = 1.0;                ///< w_i ≤ cap; 1/N where an exact plan of N poses may not repeat one
-  double tolerance = 1e-9;         ///< stop at max_sensitivity_ratio ≤ 1 + tolerance
+  double cap = 1.0;         ///< w_i ≤ cap; 1/N where an exact plan of N poses may not repeat one
+  double tolerance = 1e-9;  ///< stop at max_sensitivity_ratio ≤ 1 + tolerance
   int max_rounds = 200;
 };
 

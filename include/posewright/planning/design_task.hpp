@@ -19,19 +19,19 @@ struct DesignTask {
 };
 
 struct PlannerOptions {
-  int restarts = 10;          ///< ≥ 1
-  int kicks = 50;             ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
+  int restarts = 10;  ///< ≥ 1
+  int kicks = 50;     ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
   std::uint64_t seed = 0;
-  int threads = 0;            ///< 0 = all
+  int threads = 0;  ///< 0 = all
 };
 
 /// The best exact design found.
 struct Design {
-  std::vector<int> members;   ///< N candidate indices, ascending; equal ones only where repeats are allowed
-  double value = 0.0;         ///< Φ from a fresh factorisation, whitened coordinates
-  int restarts = 0;           ///< carried out
-  long exchanges = 0;         ///< accepted over all restarts
-  bool stopped = false;       ///< by the monitor, before all restarts were done
+  std::vector<int> members;  ///< N candidate indices, ascending; equal ones only where repeats are allowed
+  double value = 0.0;        ///< Φ from a fresh factorisation, whitened coordinates
+  int restarts = 0;          ///< carried out
+  long exchanges = 0;        ///< accepted over all restarts
+  bool stopped = false;      ///< by the monitor, before all restarts were done
 };
 
 /// A search algorithm over sets of N candidates. Works for every criterion.

@@ -11,13 +11,14 @@ namespace posewright {
 
 /// What a given set of poses is worth. The same code judges a plan, a user's list and a random baseline.
 struct Evaluation {
-  double log_det = 0.0;             ///< of the interest information (nuisance eliminated), raw blocks, SI
-  double log_det_full = 0.0;        ///< of Σ JᵢᵀJᵢ, nuisance columns included
-  Eigen::VectorXd sigma;            ///< predicted 1σ of every parameter, in the columns' order and SI units
-  Eigen::VectorXd singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled by tolerance; descending
-  ObservabilityIndices indices;     ///< O1 … O5 from singular_values
-  Eigen::VectorXd contribution;     ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
-  double condition = 0.0;           ///< σ1/σm
+  double log_det = 0.0;       ///< of the interest information (nuisance eliminated), raw blocks, SI
+  double log_det_full = 0.0;  ///< of Σ JᵢᵀJᵢ, nuisance columns included
+  Eigen::VectorXd sigma;      ///< predicted 1σ of every parameter, in the columns' order and SI units
+  Eigen::VectorXd
+      singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled by tolerance; descending
+  ObservabilityIndices indices;  ///< O1 … O5 from singular_values
+  Eigen::VectorXd contribution;  ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
+  double condition = 0.0;        ///< σ1/σm
 };
 
 /// By Householder QR of the stacked rows; no inverse of M is formed.

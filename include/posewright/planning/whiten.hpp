@@ -8,15 +8,15 @@ namespace posewright {
 
 /// Upper triangular R of X_raw = X R; see whiten().
 struct Whitening {
-  Eigen::MatrixXd R;   ///< m × m
+  Eigen::MatrixXd R;  ///< m × m
 
   /// log det of the interest information in raw coordinates minus that in whitened ones.
   double log_det_offset(int nuisance) const;
 };
 
 /// Replaces every block J by J R⁻¹ so that Σ JᵀJ / n = I over the whole array. R is triangular: the leading k columns
-/// keep their span, so Schur complements only gain a constant factor. Two passes of Cholesky QR on columns scaled to unit
-/// length (Yamamoto et al. 2015, ETNA 44): orthogonal to machine precision for condition numbers up to about 1e8.
+/// keep their span, so Schur complements only gain a constant factor. Two passes of Cholesky QR on columns scaled to
+/// unit length (Yamamoto et al. 2015, ETNA 44): orthogonal to machine precision for condition numbers up to about 1e8.
 /// Throws CannotDo where the columns are linearly dependent.
 Whitening whiten(BlockArray& blocks);
 

@@ -11,10 +11,10 @@ namespace posewright {
 
 /// What a long computation tells while it runs.
 struct Progress {
-  std::string stage;                ///< "candidates", "bound", "exchange", …
-  double done = 0.0, total = 0.0;   ///< in units of the stage (restarts, samples)
-  std::optional<double> best;       ///< criterion's log det so far, whitened coordinates
-  std::optional<double> bound;      ///< the same scale as `best`
+  std::string stage;               ///< "candidates", "bound", "exchange", …
+  double done = 0.0, total = 0.0;  ///< in units of the stage (restarts, samples)
+  std::optional<double> best;      ///< criterion's log det so far, whitened coordinates
+  std::optional<double> bound;     ///< the same scale as `best`
 };
 
 /// The one channel between a long computation and its caller: progress out, stop in. Safe from several threads.
@@ -22,8 +22,8 @@ class Monitor {
  public:
   using Clock = std::chrono::steady_clock;
 
-  std::function<void(const Progress&)> on_progress;       ///< may be empty; calls are serialised
-  const std::atomic<bool>* interrupted = nullptr;         ///< set by a signal handler or another thread
+  std::function<void(const Progress&)> on_progress;  ///< may be empty; calls are serialised
+  const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler or another thread
   std::optional<Clock::time_point> deadline;
 
   bool was_interrupted() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }

@@ -15,10 +15,10 @@ namespace posewright {
 
 /// Feasible configurations and why others were not: drawn = feasible + Σ rejected.
 struct Configurations {
-  std::vector<double> values;      ///< count × dimension, one configuration after the other
+  std::vector<double> values;  ///< count × dimension, one configuration after the other
   int dimension = 0;
   long drawn = 0;
-  std::vector<std::pair<std::string, long>> rejected;   ///< per reason, in the workspace's order
+  std::vector<std::pair<std::string, long>> rejected;  ///< per reason, in the workspace's order
 
   std::size_t count() const { return dimension == 0 ? 0 : values.size() / std::size_t(dimension); }
   std::span<const double> operator[](std::size_t i) const {
@@ -27,7 +27,7 @@ struct Configurations {
 };
 
 struct SamplingOptions {
-  std::size_t count = 10000;       ///< wanted
+  std::size_t count = 10000;  ///< wanted
   std::uint64_t seed = 0;
   int threads = 0;
   /// Draws given up after, so that a workspace that is (almost) empty ends with a message.
@@ -37,9 +37,10 @@ struct SamplingOptions {
 /// Half of the configurations fill the workspace evenly (Sobol points with Owen scrambling), half lie on its boundary:
 /// corners, edges, faces of the box; where a constraint cuts those off, the last feasible point on the way from a
 /// feasible one. Optimal poses lie there. Depends on the seed alone.
-/// Throws CannotDo where nothing feasible is found, naming the constraint that rejects most. Fewer than wanted are returned
-/// where the draws run out.
-Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options, const Monitor& monitor);
+/// Throws CannotDo where nothing feasible is found, naming the constraint that rejects most. Fewer than wanted are
+/// returned where the draws run out.
+Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
+                                     const Monitor& monitor);
 
 /// Whitened raw blocks of the configurations for the columns `selected`, computed in parallel.
 BlockArray build_blocks(const IdentificationModel& model, std::span<const int> selected,

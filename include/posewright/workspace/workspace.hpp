@@ -19,8 +19,8 @@ namespace posewright {
 class Workspace {
  public:
   /// @param model  must outlive the workspace
-  /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are empty
-  /// once the margin is taken off.
+  /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are
+  /// empty once the margin is taken off.
   Workspace(const IdentificationModel& model, const Problem& problem);
   ~Workspace();
 

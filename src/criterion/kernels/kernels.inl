@@ -154,7 +154,8 @@ double determinant_ratio(const double* x, int rows, int stride, const double* t,
       const double unit = i == j ? 1.0 : 0.0;
       const double leading = nuisance > 0 ? dot(z + i * t_stride, z + j * t_stride, nuisance) : 0.0;
       own[i * rows + j] = unit + leading;
-      all[i * rows + j] = unit + leading + dot(z + i * t_stride + nuisance, z + j * t_stride + nuisance, t_stride - nuisance);
+      all[i * rows + j] =
+          unit + leading + dot(z + i * t_stride + nuisance, z + j * t_stride + nuisance, t_stride - nuisance);
     }
   return determinant(all, rows) / (nuisance > 0 ? determinant(own, rows) : 1.0);
 }
@@ -163,7 +164,8 @@ void cross(const double* x, int rows, int stride, const double* y, int vectors, 
   for (int i = 0; i < rows; ++i) {
     int l = 0;
     for (; l + 1 < vectors; l += 2)
-      dot2(x + i * stride, y + l * stride, y + (l + 1) * stride, stride, out + i * vectors + l, out + i * vectors + l + 1);
+      dot2(x + i * stride, y + l * stride, y + (l + 1) * stride, stride, out + i * vectors + l,
+           out + i * vectors + l + 1);
     if (l < vectors) out[i * vectors + l] = dot(x + i * stride, y + l * stride, stride);
   }
 }

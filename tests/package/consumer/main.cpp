@@ -1,0 +1,11 @@
+#include <iostream>
+
+#include "planners/registry.hpp"
+#include "posewright/criterion/observability_indices.hpp"
+#include "posewright/pipeline/plan_problem.hpp"
+
+int main() {
+  std::cout << posewright::observability_indices(Eigen::Vector3d(4, 2, 1), 3).o2 << " " << posewright::planner_names()
+            << "\n";
+  return posewright::make_planner("exchange") == nullptr;
+}

@@ -1,0 +1,3 @@
+// What the layer check must find.
+
+#include "posewright/model/six_pus.hpp"

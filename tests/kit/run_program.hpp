@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace posewright {
+
+struct ProgramRun {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// Runs the command-line program in `folder`; SIGINT is sent after `interrupt_after` seconds where that is positive.
+ProgramRun run_program(const std::filesystem::path& folder, const std::vector<std::string>& words,
+                       double interrupt_after = 0);
+
+}  // namespace posewright

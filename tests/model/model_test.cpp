@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/model/whitening.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::HasSubstr;
+
+Problem example(const std::string& name) {
+  return read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / name / "problem.yaml");
+}
+
+TEST(Whitening, BlockTransposedTimesBlockIsGWeightedByTheInverseCovariance) {
+  const Problem problem = example("telescope");
+  const auto model = make_model(problem);
+  const std::vector<int> selected = {0, 1, 3, 8, 20, 53};
+  const std::vector<double> q = {1e-3, -5e-4, 1e-4, 2e-3, -1e-3, 3e-3};
+  Linearisation scratch;
+  std::vector<double> out(6 * 8, -1.0);
+  ASSERT_TRUE(whitened_block(*model, q, {}, selected, scratch, out.data(), 8));
+  const Eigen::Map<Eigen::Matrix<double, 6, 8, Eigen::RowMajor>> all(out.data());
+  const Eigen::MatrixXd j = all.leftCols(6);
+  const Eigen::MatrixXd expected = scratch.G.transpose() * scratch.covariance.inverse() * scratch.G;
+  EXPECT_LT((j.transpose() * j - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_EQ(all(0, 6), -1) << "nothing beyond the columns is touched";
+}
+
+TEST(Whitening, RepeatsDivideTheReadingNoiseButNotWhatStaysAtAPose) {
+  Problem problem = example("kr270");
+  problem.measurement.repeats = 4;
+  problem.measurement.repeatability = 3e-5;
+  const auto model = make_model(problem);
+  Linearisation scratch;
+  ASSERT_TRUE(model->linearise(std::vector<double>{0.1, -1, 0.5, 0, 0.3, 0}, {}, std::vector<int>{0}, scratch));
+  EXPECT_NEAR(scratch.covariance(4, 4), 1e-8 / 4 + 9e-10, 1e-20);
+  EXPECT_EQ(scratch.covariance(4, 3), 0);
+}
+
+TEST(Whitening, EncoderNoiseEntersThroughTheJointTwists) {
+  Problem problem = example("kr270");
+  std::get<SerialArmSpec>(problem.robot).encoder_noise = 1e-5;
+  const auto model = make_model(problem);
+  std::vector<int> offsets;
+  for (int i = 0; i < int(model->parameters().size()); ++i)
+    if (model->parameters()[std::size_t(i)].name.ends_with(".offset")) offsets.push_back(i);
+  ASSERT_EQ(offsets.size(), 6U);
+  Linearisation scratch;
+  ASSERT_TRUE(model->linearise(std::vector<double>{0.1, -1, 0.5, 0.2, 0.3, 0.4}, {}, offsets, scratch));
+  // A joint offset moves the tip as a reading error does.
+  const Eigen::MatrixXd expected =
+      1e-8 / 3 * Eigen::MatrixXd::Identity(9, 9) + 1e-10 * scratch.G * scratch.G.transpose();
+  EXPECT_LT((scratch.covariance - expected).norm(), 1e-12 * expected.norm());
+}
+
+TEST(Variant, GlobsNamesRolesAndTolerancesAreResolved) {
+  const Problem problem = example("kr270");
+  const auto model = make_model(problem);
+  const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+  EXPECT_EQ(columns.nuisance, 15);
+  ASSERT_EQ(columns.parameters.size(), 33U);
+  EXPECT_EQ(columns.parameters[0].role, Role::nuisance);
+  EXPECT_EQ(columns.parameters[15].name, "px1");
+  EXPECT_NEAR(columns.parameters[15].nominal, 0.35, 1e-12);
+  EXPECT_EQ(columns.parameters[32].name, "phiz5");
+}
+
+std::string complaint(Problem problem, const std::function<void(VariantSpec&)>& change) {
+  change(problem.variants.front());
+  try {
+    select_columns(*make_model(problem), problem, problem.variants.front());
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Variant, BadPatternsNameWhatExists) {
+  const Problem problem = example("kr270");
+  EXPECT_THAT(complaint(problem,
+                        [](VariantSpec& v) {
+                          v.parameters = {{"joint_9.*", 7}};
+                        }),
+              HasSubstr("problem.yaml:7: 'joint_9.*' matches no parameter of this robot; parameters: base.x"));
+  EXPECT_THAT(complaint(problem,
+                        [](VariantSpec& v) {
+                          v.nuisance = {{"*", 8}};
+                        }),
+              HasSubstr("leaves no parameter of interest free"));
+  EXPECT_THAT(complaint(problem,
+                        [](VariantSpec& v) {
+                          v.tolerance = {{{"dq2", 9}, 1e-3, VariantSpec::Tolerance::Quantity::length}};
+                        }),
+              HasSubstr(":9: the tolerance of 'dq2' is in a unit"));
+}
+
+TEST(ImplicitModel, ReadingsThatDoNotFixThePoseAreRefused) {
+  Problem problem = example("telescope");
+  auto& points = std::get<PointsMeasurement>(problem.measurement.instrument);
+  points.targets = {{"A", {0, 0, 0}, 0}, {"B", {0.1, 0, 0}, 0}, {"C", {0.2, 0, 0}, 0}};
+  const auto model = make_model(problem);
+  Linearisation scratch;
+  EXPECT_THROW(model->linearise(std::vector<double>(6, 0.0), {}, std::vector<int>{0}, scratch), CannotDo);
+  points.targets.resize(1);
+  EXPECT_THROW(make_model(problem), CannotDo);
+}
+
+TEST(SixPus, PlatformAtReferenceNeedsAlmostNoActuation) {
+  const auto model = make_model(example("telescope"));
+  std::vector<double> rho(6);
+  ASSERT_TRUE(model->actuator_values(std::vector<double>(6, 0.0), rho));
+  for (const double r : rho) EXPECT_NEAR(r, 0, 1e-5);
+  EXPECT_FALSE(model->actuator_values(std::vector<double>{0.9, 0, 0, 0, 0, 0}, rho)) << "out of reach";
+}
+
+TEST(IdentificationModel, WrongSizesAreRefused) {
+  const auto model = make_model(example("telescope"));
+  Linearisation scratch;
+  EXPECT_THROW(model->linearise(std::vector<double>(5), {}, std::vector<int>{0}, scratch), std::invalid_argument);
+  EXPECT_THROW(model->linearise(std::vector<double>(6), std::vector<double>(3), std::vector<int>{0}, scratch),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace posewright

@@ -1,5 +1,5 @@
-// Exchange, bound and their kernels on the sizes of the shared instances: Gaussian blocks from the project's own generator, so
-// that the figures need no files. One thread.
+// Exchange, bound and their kernels on the sizes of the shared instances: Gaussian blocks from the project's own
+// generator, so that the figures need no files. One thread.
 
 #include <benchmark/benchmark.h>
 
@@ -19,7 +19,9 @@ struct Size {
 constexpr Size sizes[] = {{5000, 1, 30, 0, 60}, {100000, 1, 20, 0, 40}, {5000, 3, 30, 0, 25}, {5000, 9, 33, 15, 18}};
 
 struct Prepared {
-  explicit Prepared(const Size& s) : size(s), blocks(random_blocks(s.count, s.rows, s.columns, 20240002)) { whiten(blocks); }
+  explicit Prepared(const Size& s) : size(s), blocks(random_blocks(s.count, s.rows, s.columns, 20240002)) {
+    whiten(blocks);
+  }
   Size size;
   BlockArray blocks;
   std::unique_ptr<Criterion> criterion = make_criterion("o1");
@@ -37,7 +39,8 @@ Design restart(const Prepared& p, const ApproximateDesign* approximate, int kick
   options.kicks = kicks;
   options.threads = 1;
   options.seed = seed;
-  return make_planner("exchange")->plan({{&p.blocks, p.size.nuisance, 1}, p.criterion.get(), p.size.poses, approximate}, options, Monitor{});
+  return make_planner("exchange")
+      ->plan({{&p.blocks, p.size.nuisance, 1}, p.criterion.get(), p.size.poses, approximate}, options, Monitor{});
 }
 
 /// One start from uniform draws to a local optimum over all candidates.

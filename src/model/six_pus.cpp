@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "posewright/model/placement.hpp"
+
 namespace posewright {
 namespace {
 
@@ -12,13 +14,6 @@ constexpr int legs = 6;
 constexpr int leg_parameters = 9;
 constexpr double default_length_tolerance = 0.5e-3;   // m
 constexpr double default_direction_tolerance = 1e-3;  // rad, as components of a unit vector
-
-Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  return (AngleAxisd(rpy.z(), Vector3d::UnitZ()) * AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-          AngleAxisd(rpy.x(), Vector3d::UnitX()))
-      .toRotationMatrix();
-}
 
 /// Actuator position that gives the leg its length: ‖q − ρu‖ = l, q = p + R b − a.
 bool inverse_kinematics(const LegSpec& leg, const Eigen::Isometry3d& X, double& rho) {
@@ -62,9 +57,7 @@ double column_entry(int parameter, const Leg& leg, const Eigen::Vector3d& e, con
 SixPus::SixPus(const SixPusSpec& spec, const std::vector<CoordinateLimits>& pose_limits,
                std::unique_ptr<MeasurementModel> measurement)
     : ImplicitModel(std::move(measurement), spec.actuator_noise), spec_(spec) {
-  X_BaseReference_.setIdentity();
-  X_BaseReference_.linear() = rotation(spec.reference.rpy);
-  X_BaseReference_.translation() = spec.reference.position;
+  X_BaseReference_ = isometry(spec.reference);
   rows_ = legs;
   static constexpr std::array<const char*, leg_parameters> names = {"ax", "ay", "az", "bx", "by",
                                                                     "bz", "ux", "uy", "l"};
@@ -96,7 +89,7 @@ SixPus::SixPus(const SixPusSpec& spec, const std::vector<CoordinateLimits>& pose
 
 Eigen::Isometry3d SixPus::do_tool_pose(std::span<const double> q) const {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.linear() = rotation({q[3], q[4], q[5]}) * X_BaseReference_.linear();
+  X.linear() = rotation_of_rpy({q[3], q[4], q[5]}) * X_BaseReference_.linear();
   X.translation() = X_BaseReference_.translation() + Eigen::Vector3d(q[0], q[1], q[2]);
   return X;
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <string_view>
 
 namespace posewright {
@@ -56,6 +57,33 @@ void check_numbers(const tinyxml2::XMLElement& joint, const std::string& file) {
     }
 }
 
+/// Name of a joint's parent or child link, empty where there is none.
+std::string end_of(const tinyxml2::XMLElement& joint, const char* which) {
+  const tinyxml2::XMLElement* end = joint.FirstChildElement(which);
+  const char* name = end == nullptr ? nullptr : end->Attribute("link");
+  return name == nullptr ? std::string() : std::string(name);
+}
+
+/// Every link has at most one parent and no chain of parents comes back to where it started: urdfdom accepts closed
+/// loops in part and never frees them.
+void check_tree(const tinyxml2::XMLElement& robot, const std::string& file) {
+  std::map<std::string, std::string> parent;
+  for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const std::string child = end_of(*joint, "child");
+    if (!child.empty() && !parent.emplace(child, end_of(*joint, "parent")).second)
+      throw InputError({file, joint->GetLineNum()}, "link '" + child + "' is the child of two joints",
+                       "a robot is a tree: one parent a link");
+    std::string link = child;
+    for (std::size_t steps = 0; steps <= parent.size() && parent.count(link) > 0; ++steps) {
+      link = parent[link];
+      if (link == child)
+        throw InputError({file, joint->GetLineNum()}, "link '" + child + "' is its own ancestor",
+                         "a robot is a tree: closed chains cannot be described in a URDF");
+    }
+  }
+}
+
 }  // namespace
 
 UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(text), file_(file) {
@@ -69,6 +97,7 @@ UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(t
   for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint"))
     check_numbers(*e, file);
+  check_tree(*robot, file);
 }
 
 SourcePlace UrdfLines::find(const char* element, const std::string& name) const {

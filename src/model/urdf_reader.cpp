@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "posewright/model/placement.hpp"
 #include "posewright/support/file.hpp"
 #include "urdf_lines.hpp"
 
@@ -114,16 +115,6 @@ Eigen::Isometry3d isometry(const urdf::Pose& pose) {
   return X;
 }
 
-Eigen::Isometry3d placement(const Placement& p) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.translation() = p.position;
-  X.linear() = (AngleAxisd(p.rpy.z(), Vector3d::UnitZ()) * AngleAxisd(p.rpy.y(), Vector3d::UnitY()) *
-                AngleAxisd(p.rpy.x(), Vector3d::UnitX()))
-                   .toRotationMatrix();
-  return X;
-}
-
 Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   const bool prismatic = joint.type == urdf::Joint::PRISMATIC;
   Coordinate c{joint.name, prismatic ? "m" : "rad", -std::numbers::pi, std::numbers::pi};
@@ -141,7 +132,7 @@ Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
 class ChainBuilder {
  public:
   ChainBuilder(const SerialArmSpec& arm, const UrdfLines& lines) : arm_(arm), lines_(lines) {
-    chain_.X_MeasureBase = placement(arm.placement);
+    chain_.X_MeasureBase = isometry(arm.placement);
   }
 
   void add(const urdf::Joint& joint) {

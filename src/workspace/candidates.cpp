@@ -76,7 +76,8 @@ class Sampler {
     const std::size_t limit = wanted * options_.draws_per_candidate;
     std::vector<double> points(batch * d);
     std::vector<int> verdict(batch);
-    for (std::size_t first = 0; result_.count() < target && first < limit && !monitor.should_stop(); first += batch) {
+    for (std::size_t first = 0;
+         result_.count() < target && first < limit && (result_.drawn == 0 || !monitor.should_stop()); first += batch) {
       for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
       parallel_for(batch / 64, thread_count(options_.threads), [&](std::size_t chunk, int) {
         for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i)

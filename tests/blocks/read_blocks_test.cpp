@@ -25,7 +25,7 @@ std::string npy(const std::string& header, const std::vector<double>& values) {
   bytes += text;
   const std::size_t at = bytes.size();
   bytes.resize(at + 8 * values.size());
-  std::memcpy(bytes.data() + at, values.data(), 8 * values.size());
+  if (!values.empty()) std::memcpy(bytes.data() + at, values.data(), 8 * values.size());
   return bytes;
 }
 

@@ -39,6 +39,10 @@ struct Shape {
   int rows, columns, nuisance, repeats;
 };
 
+void PrintTo(const Shape& s, std::ostream* out) {
+  *out << "r = " << s.rows << ", m = " << s.columns << ", nuisance " << s.nuisance << ", repeats " << s.repeats;
+}
+
 class DeterminantSwaps : public testing::TestWithParam<Shape> {};
 
 TEST_P(DeterminantSwaps, GainEqualsRecomputationForEverySwapTaken) {

@@ -19,6 +19,8 @@ struct Robot {
   int revolute;
 };
 
+void PrintTo(const Robot& robot, std::ostream* out) { *out << robot.name; }
+
 class SharedRobots : public testing::TestWithParam<Robot> {};
 
 TEST_P(SharedRobots, AutomaticSubsetHas4RPlus6ParametersAndAPlanIsFound) {

@@ -52,6 +52,10 @@ TEST(ApproximateDesign, SensitivitiesAverageToTheNumberOfParameters) {
 struct Case {
   int rows, columns, nuisance, poses;
 };
+
+void PrintTo(const Case& s, std::ostream* out) {
+  *out << "r = " << s.rows << ", m = " << s.columns << ", nuisance " << s.nuisance << ", N = " << s.poses;
+}
 class Bounds : public testing::TestWithParam<Case> {};
 
 TEST_P(Bounds, NoRandomFeasibleWeightsExceedTheBoundAndCapsHold) {

@@ -1,7 +1,7 @@
 #include "exchange.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -133,10 +133,9 @@ Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& op
   const ReducedTask reduced(task);
   std::vector<Outcome> outcomes(std::size_t(options.restarts));
   std::mutex mutex;
-  Progress progress{"exchange", 0, double(options.restarts), {}, {}};
-  if (task.approximate != nullptr)
-    progress.bound =
-        task.approximate->log_det_bound_for(task.poses, task.candidates.blocks->columns() - task.candidates.nuisance);
+  const int interest = task.candidates.blocks->columns() - task.candidates.nuisance;
+  Progress progress{"exchange", 0, double(options.restarts), {}, {}, {}};
+  if (task.approximate != nullptr) progress.bound = task.approximate->log_det_bound_for(task.poses, interest);
   parallel_for(outcomes.size(), thread_count(options.threads), [&](std::size_t i, int) {
     // The first restart always runs: whoever interrupts still gets a plan.
     if (i > 0 && monitor.should_stop()) return;
@@ -145,6 +144,7 @@ Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& op
     const std::scoped_lock lock(mutex);
     progress.done += 1;
     progress.best = std::max(progress.best.value_or(outcomes[i].value), outcomes[i].value);
+    if (progress.bound) progress.efficiency = std::exp((*progress.best - *progress.bound) / interest);
     monitor.report(progress);
   });
   if (reduced.is_smaller()) finish(task, reduced, outcomes, thread_count(options.threads), monitor);

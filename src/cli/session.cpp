@@ -68,6 +68,8 @@ void Watch::show(const Progress& progress) {
   if (progress.total > 0) line += fmt::format(" {:.0f}/{:.0f}", progress.done, progress.total);
   if (progress.best) line += fmt::format("  best {:.4f}", *progress.best);
   if (progress.bound) line += fmt::format("  bound {:.4f}", *progress.bound);
+  if (progress.efficiency)
+    line += fmt::format("  at least {:.2f} % of the optimum", std::floor(1e4 * *progress.efficiency) / 100);
   const double elapsed = std::chrono::duration<double>(now - stage_begin_).count();
   if (progress.total > 0 && progress.done > 0 && progress.done < progress.total)
     line += fmt::format("  {:.0f} s left", std::ceil(elapsed * (progress.total - progress.done) / progress.done));

@@ -118,7 +118,8 @@ Eigen::Isometry3d isometry(const urdf::Pose& pose) {
 Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   const bool prismatic = joint.type == urdf::Joint::PRISMATIC;
   Coordinate c{joint.name, prismatic ? "m" : "rad", -std::numbers::pi, std::numbers::pi};
-  if (joint.type == urdf::Joint::CONTINUOUS) return c;
+  c.periodic = joint.type == urdf::Joint::CONTINUOUS;
+  if (c.periodic) return c;
   if (joint.limits == nullptr)
     throw InputError(place, "joint '" + joint.name + "' has no <limit>",
                      "lower and upper are needed, or type continuous");

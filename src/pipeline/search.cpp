@@ -51,7 +51,16 @@ SearchResult search(BlockArray blocks, const SearchRequest& request, const Monit
   task.approximate = &approximate;
 
   SearchResult result;
-  result.design = planner->plan(task, request.planner, monitor);
+  Monitor shifted;
+  shifted.interrupted = monitor.interrupted;
+  shifted.deadline = monitor.deadline;
+  // People see the log det that will be in the plan, not that of whitened coordinates.
+  shifted.on_progress = [&, offset = whitening.log_det_offset(request.nuisance)](Progress progress) {
+    if (progress.best) *progress.best += offset;
+    if (progress.bound) *progress.bound += offset;
+    monitor.report(progress);
+  };
+  result.design = planner->plan(task, request.planner, shifted);
   result.stopped = approximate.stopped || result.design.stopped;
   result.certificate =
       certificate_of(approximate, request, blocks.count(), interest, whitening.log_det_offset(request.nuisance));

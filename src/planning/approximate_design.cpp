@@ -130,7 +130,7 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisanc
     const double ratio = std::max(1.0, mean_of_largest(d, top) / interest);
     const double bound = with_margin(restricted.log_det() + interest * std::log(ratio));
     gap = ratio - 1;
-    monitor.report({"bound", double(round), 0, {}, bound});
+    monitor.report({"certificate", double(round), 0, {}, {}, std::exp(-(bound - restricted.log_det()) / interest)});
     if (bound <= result.log_det_bound) {
       result.log_det = restricted.log_det();
       result.max_sensitivity_ratio = ratio;

@@ -1,7 +1,9 @@
 #include "posewright/workspace/candidates.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <unordered_set>
 
 #include "low_discrepancy.hpp"
 #include "posewright/model/whitening.hpp"
@@ -15,14 +17,20 @@ namespace {
 constexpr std::size_t batch = 2048;
 // Halvings of the way from a feasible point to an infeasible one: 2⁻³⁰ of the way is finer than any controller's step.
 constexpr int bisections = 30;
+// Corners of a box of more dimensions are drawn, not enumerated.
+constexpr std::size_t max_enumerated = 10;
 constexpr std::uint64_t interior_stream = 1, boundary_stream = 2;
 
 /// Collects drawn configurations batch by batch; validity is judged in parallel, the order stays that of the draws.
 class Sampler {
  public:
   Sampler(const Workspace& workspace, const SamplingOptions& options)
-      : workspace_(workspace), options_(options), rejected_(workspace.reasons().size(), 0) {
+      : workspace_(workspace), options_(options), reasons_(workspace.reasons()) {
     result_.dimension = int(workspace.coordinates().size());
+    for (std::size_t k = 0; k < workspace.coordinates().size(); ++k)
+      if (!workspace.coordinates()[k].periodic) bounded_.push_back(k);
+    reasons_.push_back("drawn before");
+    rejected_.assign(reasons_.size(), 0);
   }
 
   void interior(std::size_t wanted, const Monitor& monitor) {
@@ -45,28 +53,37 @@ class Sampler {
 
   Configurations take() {
     for (std::size_t r = 0; r < rejected_.size(); ++r)
-      if (rejected_[r] > 0) result_.rejected.emplace_back(workspace_.reasons()[r], rejected_[r]);
+      if (rejected_[r] > 0) result_.rejected.emplace_back(reasons_[r], rejected_[r]);
     if (result_.count() == 0) fail();
     return std::move(result_);
   }
 
  private:
-  /// Moves unit coordinates to 0 or 1: all of them for the first 2^d draws (corners), then 1 … d in turn.
+  /// Moves unit coordinates to 0 or 1: all of them for the first draws (every corner once, if they are not too many),
+  /// then 1, 2, … of them in turn. Periodic coordinates have no ends.
   void pin(std::size_t i, std::span<double> q) const {
-    const auto d = q.size();
-    const std::size_t corners = d <= 10 ? std::size_t(1) << d : 0;
-    if (i < corners) {
-      for (std::size_t k = 0; k < d; ++k) q[k] = double((i >> k) & 1U);
+    const std::size_t ends = bounded_.size();
+    const bool all_corners = ends <= max_enumerated;
+    if (all_corners && i < (std::size_t(1) << ends)) {
+      for (std::size_t k = 0; k < ends; ++k) q[bounded_[k]] = double((i >> k) & 1U);
       return;
     }
     Random random(options_.seed, mix_bits(i + interior_stream));
-    std::size_t pinned = 1 + i % d;
-    for (std::size_t k = 0; k < d; ++k) {
+    const std::size_t most = all_corners && ends > 1 ? ends - 1 : ends;
+    std::size_t pinned = most == 0 ? 0 : 1 + i % most;
+    for (std::size_t k = 0; k < ends; ++k) {
       // Selection sampling: coordinate k is among those still to be pinned with the right probability.
-      if (random.uniform() * double(d - k) >= double(pinned)) continue;
-      q[k] = random.bits() >> 63 ? 1.0 : 0.0;
+      if (random.uniform() * double(ends - k) >= double(pinned)) continue;
+      q[bounded_[k]] = random.bits() >> 63 ? 1.0 : 0.0;
       --pinned;
     }
+  }
+
+  /// A configuration that is there already would be a repeat under another name.
+  bool is_new(std::span<const double> q) {
+    std::uint64_t hash = 0;
+    for (const double x : q) hash = mix_bits(hash ^ std::bit_cast<std::uint64_t>(x));
+    return seen_.insert(hash).second;
   }
 
   template <class Generate>
@@ -85,12 +102,14 @@ class Sampler {
       });
       for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
         ++result_.drawn;
+        const std::span<const double> q = std::span(points).subspan(i * d, d);
         if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
+        else if (!is_new(q)) ++rejected_.back();
         else
           result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
                                 points.begin() + std::ptrdiff_t((i + 1) * d));
       }
-      monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}});
+      monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
     }
   }
 
@@ -123,14 +142,17 @@ class Sampler {
     const auto most = std::max_element(rejected_.begin(), rejected_.end());
     const double share = result_.drawn > 0 ? 100.0 * double(*most) / double(result_.drawn) : 0.0;
     throw CannotDo("no feasible configuration among " + std::to_string(result_.drawn) + " drawn: '" +
-                   workspace_.reasons()[std::size_t(most - rejected_.begin())] + "' rejects " +
+                   reasons_[std::size_t(most - rejected_.begin())] + "' rejects " +
                    std::to_string(int(std::lround(share))) + " % of them");
   }
 
   const Workspace& workspace_;
   const SamplingOptions& options_;
   Configurations result_;
+  std::vector<std::string> reasons_;
   std::vector<long> rejected_;
+  std::vector<std::size_t> bounded_;        // coordinates with ends
+  std::unordered_set<std::uint64_t> seen_;  // hashes of accepted configurations
   std::size_t anchors_ = 0;
 };
 

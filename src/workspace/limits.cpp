@@ -38,6 +38,7 @@ void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits
   if (limits.lower < found->lower - slack || limits.upper > found->upper + slack)
     throw InputError(place, "limits of '" + limits.name.value + "' go beyond the robot's own",
                      "allowed: " + range_text(*found));
+  found->periodic = false;
   found->lower = std::max(found->lower, limits.lower);
   found->upper = std::min(found->upper, limits.upper);
 }
@@ -50,6 +51,7 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
   for (Coordinate& c : coordinates) {
     const double margin = c.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
     const Coordinate before = c;
+    if (c.periodic) continue;
     c.lower += margin;
     c.upper -= margin;
     if (!(c.lower < c.upper))

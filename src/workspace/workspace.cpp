@@ -112,6 +112,7 @@ double Workspace::share_of_coordinates_on_limits(std::span<const double> q) cons
   int at_limit = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const Coordinate& c = coordinates()[i];
+    if (c.periodic) continue;
     const double width = c.upper - c.lower;
     if (std::min(q[i] - c.lower, c.upper - q[i]) <= 1e-6 * width) ++at_limit;
   }

@@ -19,8 +19,9 @@ using testing::HasSubstr;
 /// Three coordinates in [−1, 1]; two actuators, x + y within ±travel and z within ±2; unreachable where x > reach.
 class Stage : public IdentificationModel {
  public:
-  explicit Stage(double travel, double reach = 2.0) : reach_(reach) {
-    for (const char* name : {"x", "y", "z"}) coordinates_.push_back({name, "m", -1.0, 1.0});
+  explicit Stage(double travel, double reach = 2.0, bool periodic_x = false) : reach_(reach) {
+    for (const char* name : {"x", "y", "z"}) coordinates_.push_back({name, "m", -1.0, 1.0, false});
+    coordinates_[0].periodic = periodic_x;
     actuators_ = {{"sum", "m", -travel, travel}, {"z", "m", -2, 2}};
     parameters_ = {{"p", "m", 0, 1, Role::interest}};
     rows_ = 1;
@@ -120,6 +121,27 @@ TEST(SampleConfigurations, HalfLieOnTheBoundaryAndCornersAreAmongThem) {
   }
   EXPECT_GE(on_boundary, 1000);
   EXPECT_EQ(corners.size(), 8U);
+}
+
+TEST(SampleConfigurations, NoConfigurationComesTwice) {
+  const Stage stage(10);
+  const Workspace workspace(stage, problem_with());
+  SamplingOptions options;
+  options.count = 5000;
+  const Configurations sample = sample_configurations(workspace, options, Monitor{});
+  std::set<std::vector<double>> distinct;
+  for (std::size_t i = 0; i < sample.count(); ++i) distinct.insert({sample[i].begin(), sample[i].end()});
+  EXPECT_EQ(distinct.size(), sample.count());
+}
+
+TEST(SampleConfigurations, PeriodicCoordinatesHaveNoEnds) {
+  const Stage stage(10, 2.0, true);
+  const Workspace workspace(stage, problem_with());
+  SamplingOptions options;
+  options.count = 2000;
+  const Configurations sample = sample_configurations(workspace, options, Monitor{});
+  for (std::size_t i = 0; i < sample.count(); ++i) EXPECT_LT(std::abs(sample[i][0]), 1);
+  EXPECT_FALSE(workspace.on_boundary(std::vector<double>{1, 0, 0}));
 }
 
 TEST(SampleConfigurations, WhereAConstraintCutsTheBoxItsEdgeIsSampled) {

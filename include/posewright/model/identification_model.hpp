@@ -16,6 +16,7 @@ struct Coordinate {
   std::string unit;  ///< "rad" or "m"
   double lower = 0.0;
   double upper = 0.0;
+  bool periodic = false;   ///< a full turn: both ends are the same pose and no boundary
 };
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.

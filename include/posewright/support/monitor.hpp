@@ -11,10 +11,11 @@ namespace posewright {
 
 /// What a long computation tells while it runs.
 struct Progress {
-  std::string stage;               ///< "candidates", "bound", "exchange", …
-  double done = 0.0, total = 0.0;  ///< in units of the stage (restarts, samples)
-  std::optional<double> best;      ///< criterion's log det so far, whitened coordinates
-  std::optional<double> bound;     ///< the same scale as `best`
+  std::string stage;                 ///< "candidates", "certificate", "exchange", …
+  double done = 0.0, total = 0.0;    ///< in units of the stage (restarts, samples); total 0 = unknown
+  std::optional<double> best;        ///< criterion's value so far; the pipeline puts it on the plan's scale
+  std::optional<double> bound;       ///< upper bound of it, same scale
+  std::optional<double> efficiency;  ///< lower bound of what `best` reaches of the optimum, in (0, 1]
 };
 
 /// The one channel between a long computation and its caller: progress out, stop in. Safe from several threads.

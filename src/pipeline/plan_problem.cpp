@@ -68,7 +68,7 @@ void fill_parameters(Plan& plan, const ResolvedColumns& resolved, const Evaluati
       if (columns.parameters[j].role == role)
         plan.parameters.push_back({columns.parameters[j], evaluation.sigma[Eigen::Index(j)], ""});
   for (std::size_t j = 0; j < resolved.dropped.size(); ++j)
-    plan.parameters.push_back({resolved.dropped_labels[j], std::nullopt, resolved.reasons[j]});
+    plan.parameters.push_back({resolved.dropped[j], std::nullopt, resolved.reasons[j]});
 }
 
 }  // namespace

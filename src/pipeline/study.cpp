@@ -75,8 +75,7 @@ ResolvedColumns resolve_columns(const Study& study, const Problem& problem, cons
   options.tiers = all.tiers;
   const Identifiability found = identifiability(sample, all.parameters, options);
   for (const Dependency& d : found.dependencies) {
-    resolved.dropped_labels.push_back(all.parameters[std::size_t(d.dropped)]);
-    resolved.dropped.push_back(all.parameters[std::size_t(d.dropped)].name);
+    resolved.dropped.push_back(all.parameters[std::size_t(d.dropped)]);
     resolved.reasons.push_back(describe(d, all.parameters));
   }
   resolved.columns = subset(all, found.kept);

@@ -28,8 +28,7 @@ Configurations thinned(const Configurations& configurations, std::size_t count);
 /// A variant's columns that can be identified, and what was dropped.
 struct ResolvedColumns {
   VariantColumns columns;
-  std::vector<std::string> dropped;  ///< names
-  std::vector<Parameter> dropped_labels;
+  std::vector<Parameter> dropped;
   std::vector<std::string> reasons;  ///< one equation per dropped parameter
 };
 

@@ -1,7 +1,6 @@
 #include "determinant_nuisance.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "posewright/criterion/leave_one_out.hpp"
 
@@ -22,21 +21,18 @@ class NuisanceState : public DesignState {
 
   Swap best_swap(int position, double min_gain) override {
     const int k = members()[std::size_t(position)];
-    const bool singular = !std::isfinite(rest_.value());
     rest_.leave(k);
-    Swap best{-1, singular ? -std::numeric_limits<double>::infinity() : min_gain};
+    Swap best{-1, min_gain};
     for (int j = 0; j < int(blocks().count()); ++j) {
-      if ((!singular && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) || blocked()[std::size_t(j)] != 0)
-        continue;
-      // While M is singular every gain is infinite: compare what the candidates add to the ridge instead.
+      if (d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain || blocked()[std::size_t(j)] != 0) continue;
       const double gain = rest_.gain(j);
       if (gain > best.gain) best = {j, gain};
     }
     if (best.enter < 0) return {};
+    if (!std::isfinite(rest_.value())) return best;
     // Where a member was indispensable the gain rests on a ridge; only the exact one counts.
-    const double exact = rest_.exact(k, best.enter);
-    if (singular) return {best.enter, min_gain + 1};
-    return exact - rest_.value() > min_gain ? Swap{best.enter, exact - rest_.value()} : Swap{};
+    const double gain = rest_.exact(k, best.enter) - rest_.value();
+    return gain > min_gain ? Swap{best.enter, gain} : Swap{};
   }
 
   bool refresh() override {

@@ -62,12 +62,8 @@ void LeaveOneOut::factorise() {
   Eigen::LLT<Eigen::MatrixXd> factor(information_);
   value_ = regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
   if (!std::isfinite(value_)) factor.compute(information_ + ridge * Eigen::MatrixXd::Identity(m, m));
+  reference_ = interest_log_det(factor, nuisance_);
   inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
-}
-
-double LeaveOneOut::sensitivity(int candidate) const {
-  const Eigen::Index interest = information_.cols() - nuisance_;
-  return (blocks_.block(std::size_t(candidate)) * inverse_factor_.transpose()).rightCols(interest).squaredNorm();
 }
 
 void LeaveOneOut::sensitivities(std::vector<double>& d) const {
@@ -79,7 +75,7 @@ void LeaveOneOut::leave(int k) {
   const auto out = blocks_.block(std::size_t(k));
   const Eigen::MatrixXd rest = information_ - out.transpose() * out;
   Eigen::LLT<Eigen::MatrixXd> factor(rest);
-  if (!regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
+  if (!std::isfinite(value_) || !regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
   without_ = interest_log_det(factor, nuisance_);
   tile(factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m)));
 }
@@ -95,7 +91,7 @@ double LeaveOneOut::gain(int j) {
   const double ratio =
       kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
                                   16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
-  return without_ + std::log(ratio) - value_;
+  return without_ + std::log(ratio) - reference_;
 }
 
 double LeaveOneOut::exact(int k, int j) const {

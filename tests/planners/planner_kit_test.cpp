@@ -154,6 +154,26 @@ TEST_P(PlannerKit, ContradictoryTasksAreRefused) {
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, criterion.get(), too_few, nullptr}, {}, Monitor{}), CannotDo);
 }
 
+TEST_P(PlannerKit, GainsOfSingularSetsAreFiniteAndComeToAnEnd) {
+  const BlockArray blocks = random_blocks(30, GetParam().rows, 12, 8);
+  for (const int nuisance : {0, 4}) {
+    const auto state = make_criterion(GetParam().criterion)->start({&blocks, nuisance, 1}, {0, 1, 2});
+    int swaps = 0;
+    for (bool gained = true; gained && swaps < 500;) {
+      gained = false;
+      for (int p = 0; p < 3; ++p) {
+        const Swap swap = state->best_swap(p, 1e-9);
+        EXPECT_TRUE(std::isfinite(swap.gain));
+        if (swap.enter < 0) continue;
+        state->apply(p, swap.enter);
+        gained = true;
+        ++swaps;
+      }
+    }
+    EXPECT_LT(swaps, 500);
+  }
+}
+
 TEST_P(PlannerKit, StopsWhenToldAndStillReturnsAPlan) {
   BlockArray blocks = random_blocks(500, GetParam().rows, 8, 77);
   whiten(blocks);

@@ -21,12 +21,11 @@ class LeaveOneOut {
   void exchange(int leave, int enter);
   /// ln det S(M) now; −∞ where singular.
   double value() const { return value_; }
-  /// d_k of the interest information for one candidate, from a fresh factor of M.
-  double sensitivity(int candidate) const;
-  /// The same for all candidates.
+  /// d of the interest information for every candidate, from a fresh factor of M.
   void sensitivities(std::vector<double>& d) const;
 
-  /// Prepares gains for a leaving member. Where M₋ is singular a small ridge is added: gains then only rank candidates.
+  /// Prepares gains for a leaving member. Where M or M₋ is singular a small ridge is added; while M is, it is in both
+  /// sides of a gain, so that accepted swaps still rise monotonically.
   void leave(int k);
   /// Φ(after) − Φ(now) for candidate j in the place of the member left out.
   double gain(int j);
@@ -41,7 +40,9 @@ class LeaveOneOut {
   const BlockArray& blocks_;
   int nuisance_, padded_nuisance_, tiles_;
   Eigen::MatrixXd information_, inverse_factor_;
-  double value_ = 0.0, without_ = 0.0;
+  double value_ = 0.0;
+  double reference_ = 0.0;  ///< value_, or that of M plus ridge where M is singular
+  double without_ = 0.0;
   std::vector<double> t_, scratch_;
   std::vector<int> tile_rows_;
 };

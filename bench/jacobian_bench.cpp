@@ -25,7 +25,7 @@ void whitened_blocks(benchmark::State& state, const char* name) {
   const auto model = make_model(problem);
   const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
   const int stride = (int(columns.selected.size()) + 7) / 8 * 8;
-  std::vector<double> out(std::size_t(model->rows() * stride)), q(model->coordinates().size());
+  std::vector<double> out(std::size_t(model->block_rows(columns.selected) * stride)), q(model->coordinates().size());
   Linearisation scratch;
   Random random(1, 0);
   for (auto _ : state) {

@@ -5,49 +5,133 @@
 
 namespace posewright {
 
+/// Configuration and corrections, each cut into the robot's and the instrument's.
+struct ExplicitModel::Parts {
+  std::span<const double> q, tip_correction, own_correction;
+  int station;
+};
+
 ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement)
     : tip_(std::move(tip)), measurement_(std::move(measurement)) {
   const auto is_tool = [](const Parameter& p) { return p.name.starts_with("tool."); };
   parameters_ = tip_->parameters();
-  if (!measurement_->parameters().empty()) std::erase_if(parameters_, is_tool);
+  if (measurement_->replaces_tool()) std::erase_if(parameters_, is_tool);
   tip_parameters_ = int(parameters_.size());
   for (const Preference& preference : tip_->geometric_parameters())
     if (preference.parameter < tip_parameters_) geometric_.push_back(preference);
-  for (const Parameter& p : measurement_->parameters()) {
-    geometric_.push_back({int(parameters_.size()), 1});
-    parameters_.push_back(p);
-  }
+  for (const Preference& preference : measurement_->preferences())
+    geometric_.push_back({tip_parameters_ + preference.parameter, preference.tier});
+  parameters_.insert(parameters_.end(), measurement_->parameters().begin(), measurement_->parameters().end());
   coordinates_ = tip_->coordinates();
+  actuators_ = tip_->actuators();
+  if (!measurement_->stations().empty()) coordinates_.push_back(make_choice("station", measurement_->stations()));
+  const Eigen::Isometry3d anywhere = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < int(parameters_.size()); ++i)
+    is_own_column_.push_back(i >= tip_parameters_ &&
+                             !measurement_->motion({anywhere, {}, 0}, i - tip_parameters_, nullptr));
+  unmeasurable_reason_ = measurement_->unseen_reason();
   rows_ = measurement_->rows();
-  encoder_noise_ =
-      std::any_of(tip_->encoder_noise().begin(), tip_->encoder_noise().end(), [](double s) { return s > 0; });
+  reading_noise_ =
+      std::any_of(tip_->reading_noise().begin(), tip_->reading_noise().end(), [](double s) { return s > 0; });
 }
 
-bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                 std::span<const int> selected, Linearisation& out) const {
-  const auto tip_correction = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
-  const auto own_correction = correction.empty() ? correction : correction.subspan(std::size_t(tip_parameters_));
-  // The instrument's columns get a zero twist here and their own values below.
-  const Eigen::Isometry3d X =
-      tip_->linearise(q, tip_correction, selected, out.twists, encoder_noise_ ? &out.joint_twists : nullptr);
-  out.G.resize(rows_, Eigen::Index(selected.size()));
-  measurement_->rows_of_twists(X, own_correction, out.twists, out.G);
-  for (std::size_t c = 0; c < selected.size(); ++c)
-    if (selected[c] >= tip_parameters_)
-      measurement_->own_column(X, own_correction, selected[c] - tip_parameters_, out.G.col(Eigen::Index(c)));
+ExplicitModel::Parts ExplicitModel::parts(std::span<const double> q, std::span<const double> correction) const {
+  const bool choice = q.size() > tip_->coordinates().size();
+  return {q.first(tip_->coordinates().size()),
+          correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)),
+          correction.empty() ? correction : correction.subspan(std::size_t(tip_parameters_)),
+          choice ? int(q.back()) : 0};
+}
+
+/// Twists of the selected parameters (zero for the instrument's own columns) and the covariance of the rows.
+bool ExplicitModel::twists_and_covariance(const Parts& p, std::span<const int> selected, Eigen::Isometry3d& X,
+                                          Linearisation& out) const {
+  if (!tip_->linearise(p.q, p.tip_correction, selected, X, out.twists, reading_noise_ ? &out.reading_twists : nullptr))
+    return false;
+  const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    // Without its tool the tip's catalogue ends earlier than the tip knows: what follows is the instrument's.
+    if (selected[c] < tip_parameters_) continue;
+    Twist twist = Twist::Zero();
+    measurement_->motion(sighting, selected[c] - tip_parameters_, &twist);
+    out.twists.col(Eigen::Index(c)) = twist;
+  }
   out.covariance.resize(rows_, rows_);
-  measurement_->covariance(X, own_correction, out.covariance);
-  if (!encoder_noise_) return true;
-  out.rows.resize(rows_, out.joint_twists.cols());
-  measurement_->rows_of_twists(X, own_correction, out.joint_twists, out.rows);
-  for (Eigen::Index j = 0; j < out.rows.cols(); ++j) out.rows.col(j) *= tip_->encoder_noise()[std::size_t(j)];
+  measurement_->covariance(sighting, out.covariance);
+  if (!reading_noise_) return true;
+  out.rows.resize(rows_, out.reading_twists.cols());
+  measurement_->rows_of_twists(sighting, out.reading_twists, out.rows);
+  for (Eigen::Index j = 0; j < out.rows.cols(); ++j) out.rows.col(j) *= tip_->reading_noise()[std::size_t(j)];
   out.covariance.noalias() += out.rows * out.rows.transpose();
   return true;
 }
 
-Eigen::Isometry3d ExplicitModel::do_tool_pose(std::span<const double> q) const {
-  Twists none(6, 0);
-  return tip_->linearise(q, {}, {}, none, nullptr);
+bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,
+                                 std::span<const int> selected, Linearisation& out) const {
+  const Parts p = parts(q, correction);
+  Eigen::Isometry3d X;
+  if (!twists_and_covariance(p, selected, X, out)) return false;
+  const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  out.G.resize(rows_, Eigen::Index(selected.size()));
+  measurement_->rows_of_twists(sighting, out.twists, out.G);
+  for (std::size_t c = 0; c < selected.size(); ++c)
+    if (is_own_column_[std::size_t(selected[c])] != 0)
+      measurement_->own_column(sighting, selected[c] - tip_parameters_, out.G.col(Eigen::Index(c)));
+  return true;
+}
+
+int ExplicitModel::do_block_rows(std::span<const int> selected) const {
+  const auto own =
+      std::count_if(selected.begin(), selected.end(), [&](int i) { return is_own_column_[std::size_t(i)] != 0; });
+  return std::min(rows_, 6 + int(own));
+}
+
+bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<const double> correction,
+                                          std::span<const int> selected, Linearisation& out) const {
+  const Parts p = parts(q, correction);
+  Eigen::Isometry3d X;
+  if (!twists_and_covariance(p, selected, X, out)) return false;
+  const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  const int width = do_block_rows(selected);
+  // Unit twists about the tip's origin: about the origin of M they would be ill-scaled far away.
+  Eigen::Matrix<double, 6, 6> about_tip = Eigen::Matrix<double, 6, 6>::Identity();
+  for (int k = 0; k < 3; ++k) about_tip.block<3, 1>(0, 3 + k) = X.translation().cross(Eigen::Vector3d::Unit(k));
+  out.basis.resize(rows_, width);
+  measurement_->rows_of_twists(sighting, about_tip, out.basis.leftCols<6>());
+  out.coefficients.setZero(width, Eigen::Index(selected.size()));
+  out.coefficients.topRows<6>() = out.twists;
+  for (Eigen::Index c = 0; c < out.twists.cols(); ++c)
+    out.coefficients.col(c).head<3>() -= X.translation().cross(Eigen::Vector3d(out.twists.col(c).tail<3>()));
+  Eigen::Index next = 6;
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    if (is_own_column_[std::size_t(selected[c])] == 0) continue;
+    measurement_->own_column(sighting, selected[c] - tip_parameters_, out.basis.col(next));
+    out.coefficients(next++, Eigen::Index(c)) = 1.0;
+  }
+  return true;
+}
+
+bool ExplicitModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+  if (unmeasurable_reason_.empty()) return true;
+  const Parts p = parts(q, correction);
+  Twists none;
+  Eigen::Isometry3d X;
+  return tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr) &&
+         measurement_->sees({X, p.own_correction, p.station});
+}
+
+bool ExplicitModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                                       std::span<double> values) const {
+  const Parts p = parts(q, correction);
+  return tip_->actuator_values(p.q, p.tip_correction, values);
+}
+
+Eigen::Isometry3d ExplicitModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
+  const Parts p = parts(q, correction);
+  Twists none;
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr);
+  return X;
 }
 
 }  // namespace posewright

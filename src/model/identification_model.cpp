@@ -13,24 +13,69 @@ void require_size(std::size_t given, std::size_t expected, const char* what) {
 
 }  // namespace
 
+Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels) {
+  Coordinate c{name, "", 0.0, double(labels.size()) - 1, false, {}, labels};
+  for (std::size_t i = 0; i < labels.size(); ++i) c.values.push_back(double(i));
+  return c;
+}
+
+void IdentificationModel::set_nominal(int index, double value) {
+  if (shift_.empty()) shift_.assign(parameters_.size(), 0.0);
+  Parameter& p = parameters_.at(std::size_t(index));
+  shift_[std::size_t(index)] += value - p.nominal;
+  p.nominal = value;
+}
+
+std::span<const double> IdentificationModel::total(std::span<const double> correction,
+                                                   std::vector<double>& scratch) const {
+  if (!correction.empty()) require_size(correction.size(), parameters_.size(), "corrections");
+  if (shift_.empty()) return correction;
+  if (correction.empty()) return shift_;
+  scratch.resize(shift_.size());
+  for (std::size_t i = 0; i < shift_.size(); ++i) scratch[i] = shift_[i] + correction[i];
+  return scratch;
+}
+
 bool IdentificationModel::linearise(std::span<const double> q, std::span<const double> correction,
                                     std::span<const int> selected, Linearisation& out) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  if (!correction.empty()) require_size(correction.size(), parameters_.size(), "corrections");
-  return do_linearise(q, correction, selected, out);
+  return do_linearise(q, total(correction, out.correction), selected, out);
+}
+
+bool IdentificationModel::linearise_factored(std::span<const double> q, std::span<const double> correction,
+                                             std::span<const int> selected, Linearisation& out) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  return do_linearise_factored(q, total(correction, out.correction), selected, out);
+}
+
+bool IdentificationModel::measurable(std::span<const double> q) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  return do_measurable(q, shift_);
 }
 
 bool IdentificationModel::actuator_values(std::span<const double> q, std::span<double> values) const {
   require_size(q.size(), coordinates_.size(), "configuration");
   require_size(values.size(), actuators_.size(), "actuators");
-  return do_actuator_values(q, values);
+  return do_actuator_values(q, shift_, values);
 }
 
 Eigen::Isometry3d IdentificationModel::tool_pose(std::span<const double> q) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_tool_pose(q);
+  return do_tool_pose(q, shift_);
 }
 
-bool IdentificationModel::do_actuator_values(std::span<const double>, std::span<double>) const { return true; }
+int IdentificationModel::do_block_rows(std::span<const int>) const { return rows_; }
+
+bool IdentificationModel::do_linearise_factored(std::span<const double>, std::span<const double>, std::span<const int>,
+                                                Linearisation&) const {
+  throw std::logic_error("this model does not factor its rows");
+}
+
+bool IdentificationModel::do_measurable(std::span<const double>, std::span<const double>) const { return true; }
+
+bool IdentificationModel::do_actuator_values(std::span<const double>, std::span<const double>,
+                                             std::span<double>) const {
+  return true;
+}
 
 }  // namespace posewright

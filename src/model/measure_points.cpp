@@ -1,4 +1,6 @@
-#include "posewright/model/measure_points.hpp"
+#include "measure_points.hpp"
+
+#include "point_noise.hpp"
 
 namespace posewright {
 namespace {
@@ -8,46 +10,92 @@ constexpr double default_target_tolerance = 1e-3;  // m
 }  // namespace
 
 PointsModel::PointsModel(const MeasurementSpec& spec)
-    : spec_(std::get<PointsMeasurement>(spec.instrument)), repeats_(spec.repeats), repeatability_(spec.repeatability) {
+    : spec_(std::get<PointsMeasurement>(spec.instrument)),
+      places_(spec_.stations),
+      repeats_(spec.repeats),
+      repeatability_(spec.repeatability) {
   rows_ = int(spec_.targets.size() * spec_.components.size());
+  stations_ = places_.names();
+  replaces_tool_ = true;
   for (const TargetSpec& target : spec_.targets)
     for (int k = 0; k < 3; ++k)
       parameters_.push_back({"target." + target.name + "." + "xyz"[k], "m", target.position[k],
                              default_target_tolerance, Role::interest});
+  const int targets = int(parameters_.size());
+  places_.append(parameters_);
+  for (int i = 0; i < targets; ++i) preferences_.push_back({i, 1});
+  // base.* says where the robot stands before the first station; further stations have a place of their own.
+  for (int i = targets + 6; i < int(parameters_.size()); ++i) preferences_.push_back({i, 0});
 }
 
-void PointsModel::rows_of_twists(const Eigen::Isometry3d& X, std::span<const double> correction,
-                                 const Eigen::Ref<const Twists>& twists, Eigen::Ref<Eigen::MatrixXd> rows) const {
-  Eigen::Index row = 0;
+std::span<const double> PointsModel::station_part(std::span<const double> correction) const {
+  return correction.empty() ? correction : correction.subspan(3 * spec_.targets.size());
+}
+
+Eigen::Vector3d PointsModel::target(const Sighting& sighting, std::size_t index) const {
+  Eigen::Vector3d p_TipTarget = spec_.targets[index].position;
+  if (!sighting.correction.empty())
+    p_TipTarget += Eigen::Map<const Eigen::Vector3d>(sighting.correction.data() + 3 * index);
+  return sighting.X_MeasureTip * p_TipTarget;
+}
+
+void PointsModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                                 Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const auto width = Eigen::Index(spec_.components.size());
+  if (places_.empty()) {
+    Eigen::Index row = 0;
+    for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
+      const Eigen::Vector3d p = target(sighting, t);
+      for (const int c : spec_.components) {
+        // Component c of v + ω × p.
+        const int a = (c + 1) % 3, b = (c + 2) % 3;
+        for (Eigen::Index j = 0; j < twists.cols(); ++j)
+          rows(row, j) = twists(c, j) + twists(3 + a, j) * p[b] - twists(3 + b, j) * p[a];
+        ++row;
+      }
+    }
+    return;
+  }
+  const Eigen::Matrix3d R = places_.pose(sighting.station, station_part(sighting.correction)).linear().transpose();
   for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
-    Eigen::Vector3d p_TipTarget = spec_.targets[t].position;
-    if (!correction.empty()) p_TipTarget += Eigen::Map<const Eigen::Vector3d>(correction.data() + 3 * t);
-    const Eigen::Vector3d p = X * p_TipTarget;
-    for (const int c : spec_.components) {
-      // Component c of v + ω × p.
-      const int a = (c + 1) % 3, b = (c + 2) % 3;
-      for (Eigen::Index j = 0; j < twists.cols(); ++j)
-        rows(row, j) = twists(c, j) + twists(3 + a, j) * p[b] - twists(3 + b, j) * p[a];
-      ++row;
+    const Eigen::Vector3d p = target(sighting, t);
+    for (Eigen::Index j = 0; j < twists.cols(); ++j) {
+      const Eigen::Vector3d moved = R * (twists.col(j).head<3>() + Eigen::Vector3d(twists.col(j).tail<3>()).cross(p));
+      for (Eigen::Index c = 0; c < width; ++c)
+        rows(Eigen::Index(t) * width + c, j) = moved[spec_.components[std::size_t(c)]];
     }
   }
 }
 
-void PointsModel::own_column(const Eigen::Isometry3d& X, std::span<const double>, int index,
-                             Eigen::Ref<Eigen::VectorXd> column) const {
-  column.setZero();
-  const auto width = Eigen::Index(spec_.components.size());
-  for (Eigen::Index c = 0; c < width; ++c)
-    column[index / 3 * width + c] = X.linear()(spec_.components[std::size_t(c)], index % 3);
+bool PointsModel::motion(const Sighting& sighting, int index, Twist* twist) const {
+  const int station_parameter = index - 3 * int(spec_.targets.size());
+  if (station_parameter < 0) return false;
+  if (twist != nullptr)
+    *twist = places_.apparent_motion(sighting.station, station_part(sighting.correction), station_parameter);
+  return true;
 }
 
-void PointsModel::covariance(const Eigen::Isometry3d&, std::span<const double>,
-                             Eigen::Ref<Eigen::MatrixXd> covariance) const {
+void PointsModel::own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const {
+  column.setZero();
+  const auto width = Eigen::Index(spec_.components.size());
+  Eigen::Vector3d moved = sighting.X_MeasureTip.linear().col(index % 3);
+  if (!places_.empty())
+    moved = places_.pose(sighting.station, station_part(sighting.correction)).linear().transpose() * moved;
+  for (Eigen::Index c = 0; c < width; ++c) column[index / 3 * width + c] = moved[spec_.components[std::size_t(c)]];
+}
+
+void PointsModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   covariance.setZero();
   const auto width = Eigen::Index(spec_.components.size());
-  for (Eigen::Index i = 0; i < rows_; ++i) {
-    const double sigma = spec_.sigma[spec_.components[std::size_t(i % width)]];
-    covariance(i, i) = sigma * sigma / repeats_ + repeatability_ * repeatability_;
+  const Eigen::Isometry3d X_MeasureStation = places_.pose(sighting.station, station_part(sighting.correction));
+  for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
+    const Eigen::Vector3d from = target(sighting, t) - X_MeasureStation.translation();
+    Eigen::Matrix3d point = point_covariance(spec_.noise, X_MeasureStation.linear().transpose() * from) / repeats_;
+    point.diagonal().array() += repeatability_ * repeatability_;
+    const Eigen::Index first = Eigen::Index(t) * width;
+    for (Eigen::Index i = 0; i < width; ++i)
+      for (Eigen::Index j = 0; j < width; ++j)
+        covariance(first + i, first + j) = point(spec_.components[std::size_t(i)], spec_.components[std::size_t(j)]);
   }
 }
 

@@ -1,31 +1,87 @@
 #include "posewright/model/model_factory.hpp"
 
+#include "compensator_geometry.hpp"
+#include "distance_pair_model.hpp"
+#include "joint_sensor_model.hpp"
+#include "load_difference.hpp"
+#include "posewright/model/delta.hpp"
+#include "posewright/model/dh_chain.hpp"
+#include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/explicit_model.hpp"
+#include "posewright/model/five_bar.hpp"
 #include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
-#include "posewright/model/six_pus.hpp"
+#include "posewright/model/six_legs.hpp"
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/model/variant.hpp"
 
 namespace posewright {
 namespace {
 
 /// One overload a robot: a new robot is one file and one row here.
-struct Make {
+struct MakeTip {
   const Problem& problem;
+  const VariantSpec& variant;
 
-  std::unique_ptr<IdentificationModel> operator()(const SerialArmSpec& arm) const {
-    auto chain = std::make_unique<SerialChain>(read_urdf_chain(arm, problem.at(arm.line)));
-    return std::make_unique<ExplicitModel>(std::move(chain), make_measurement(problem.measurement));
+  std::unique_ptr<TipModel> operator()(const SerialArmSpec& arm) const {
+    using Convention = VariantSpec::Convention;
+    ChainDescription chain = read_urdf_chain(arm, problem.at(arm.line));
+    if (variant.convention != Convention::frames) {
+      if (arm.elastostatic)
+        throw CannotDo("variant '" + variant.name +
+                       "': parameters dh and mdh are geometric; name the frames' parameters beside elastostatic ones");
+      const bool distal = variant.convention == Convention::dh;
+      return std::make_unique<DhChain>(
+          denavit_hartenberg(chain, distal ? DhConvention::distal : DhConvention::proximal));
+    }
+    if (arm.elastostatic)
+      return std::make_unique<ElasticChain>(std::move(chain), *arm.elastostatic, problem.at(arm.elastostatic->line));
+    return std::make_unique<SerialChain>(std::move(chain));
   }
-  std::unique_ptr<IdentificationModel> operator()(const SixPusSpec& spec) const {
-    return std::make_unique<SixPus>(spec, problem.workspace.limits, make_measurement(problem.measurement));
+  std::unique_ptr<TipModel> operator()(const SixLegsSpec& spec) const {
+    return std::make_unique<SixLegs>(spec, problem.workspace.limits);
   }
+  std::unique_ptr<TipModel> operator()(const FiveBarSpec& spec) const { return std::make_unique<FiveBar>(spec); }
+  std::unique_ptr<TipModel> operator()(const DeltaSpec& spec) const { return std::make_unique<Delta>(spec); }
+  std::unique_ptr<TipModel> operator()(const CompensatorGeometrySpec&) const { return nullptr; }
 };
+
+/// An instrument that looks at one tip, or one of the two that do not.
+std::unique_ptr<IdentificationModel> observed(const Problem& problem, const VariantSpec& variant) {
+  const MeasurementSpec& measurement = problem.measurement;
+  if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
+    return std::make_unique<CompensatorGeometry>(*compensator, measurement);
+  auto tip = std::visit(MakeTip{problem, variant}, problem.robot);
+  if (std::holds_alternative<JointsMeasurement>(measurement.instrument))
+    return std::make_unique<JointSensorModel>(std::move(tip), problem);
+  const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument);
+  if (distance != nullptr && distance->anchors.empty())
+    return std::make_unique<DistancePairModel>(std::move(tip), measurement);
+  return std::make_unique<ExplicitModel>(std::move(tip), make_measurement(measurement));
+}
+
+/// The problem without what cancels in a difference of two readings at one pose.
+Problem without_pose_errors(Problem problem) {
+  problem.measurement.repeatability = 0.0;
+  if (auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) arm->encoder_noise = 0.0;
+  return problem;
+}
 
 }  // namespace
 
+std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant) {
+  if (variant.convention != VariantSpec::Convention::frames && !std::holds_alternative<SerialArmSpec>(problem.robot))
+    throw CannotDo("variant '" + variant.name + "': parameters dh and mdh are those of a serial arm");
+  std::unique_ptr<IdentificationModel> model;
+  if (problem.measurement.loaded_minus_unloaded)
+    model = std::make_unique<LoadDifference>(observed(without_pose_errors(problem), variant));
+  else model = observed(problem, variant);
+  apply_nominal(*model, problem, variant);
+  return model;
+}
+
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem) {
-  return std::visit(Make{problem}, problem.robot);
+  return make_model(problem, problem.variants.front());
 }
 
 }  // namespace posewright

@@ -1,52 +1,17 @@
 #include "posewright/model/serial_chain.hpp"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <stdexcept>
+
+#include "displacement.hpp"
 
 namespace posewright {
 namespace {
 
 constexpr std::size_t max_joints = 64;
 constexpr double degree = std::numbers::pi / 180;
-constexpr std::array<const char*, 6> displacement_names = {"x", "y", "z", "rx", "ry", "rz"};
-
-using Twist = Eigen::Matrix<double, 6, 1>;
-
-/// The six axes of a displacement D = T Rz Ry Rx and where they act: translations and rz along the undisplaced axes, ry
-/// and rx along partially rotated ones, all through the displaced origin.
-struct DisplacementAxes {
-  Eigen::Matrix3d translation, rotation;  ///< columns x, y, z
-  Eigen::Vector3d origin;
-};
-
-Twist revolute(const Eigen::Vector3d& axis, const Eigen::Vector3d& origin) {
-  Twist twist;
-  twist << origin.cross(axis), axis;
-  return twist;
-}
-
-Twist prismatic(const Eigen::Vector3d& axis) {
-  Twist twist;
-  twist << axis, Eigen::Vector3d::Zero();
-  return twist;
-}
-
-DisplacementAxes displace(Frame<double>& frame, const double* d) {
-  DisplacementAxes axes;
-  axes.translation = frame.R;
-  axes.rotation = frame.R;
-  if (d != nullptr) {
-    frame.then_translate({d[0], d[1], d[2]});
-    frame.then_rotate(Eigen::Vector3d::UnitZ(), d[5]);
-    axes.rotation.col(1) = frame.R.col(1);
-    frame.then_rotate(Eigen::Vector3d::UnitY(), d[4]);
-    axes.rotation.col(0) = frame.R.col(0);
-    frame.then_rotate(Eigen::Vector3d::UnitX(), d[3]);
-  }
-  axes.origin = frame.p;
-  return axes;
-}
 
 /// Everything of one configuration that columns are made of: displacement axes of base, joints and tool, joint axes.
 struct ChainState {
@@ -55,7 +20,7 @@ struct ChainState {
 };
 
 Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout, const double* q,
-                        const double* correction, ChainState& state) {
+                        const double* deflection, const double* correction, ChainState& state) {
   const auto part = [&](int index) { return correction == nullptr ? nullptr : correction + index; };
   Frame<double> frame;
   frame.then(chain.X_MeasureBase);
@@ -65,7 +30,8 @@ Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout
     frame.then(joint.X_ParentJoint);
     state.displacement[k + 1] = displace(frame, part(layout.displacement[k]));
     const double* own = part(layout.offset[std::size_t(joint.coordinate)]);
-    const double reading = own == nullptr ? q[joint.coordinate] : (1 + own[1]) * q[joint.coordinate] + own[0];
+    double reading = own == nullptr ? q[joint.coordinate] : (1 + own[1]) * q[joint.coordinate] + own[0];
+    if (deflection != nullptr) reading += deflection[joint.coordinate];
     const double value = joint.multiplier * reading + joint.offset;
     const Eigen::Vector3d axis = frame.R * joint.axis;
     state.motion[k] = joint.prismatic ? prismatic(axis) : revolute(axis, frame.p);
@@ -97,18 +63,16 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
     throw std::invalid_argument("serial chain: " + std::to_string(chain_.joints.size()) +
                                 " joints; 1 to 64 are allowed");
   coordinates_ = chain_.coordinates;
-  encoder_noise_ = chain_.encoder_noise;
+  reading_noise_ = chain_.encoder_noise;
   joints_of_coordinate_.resize(coordinates_.size());
 
   const auto add_displacement = [&](const std::string& name, int joint, int tier, const Eigen::Isometry3d& X,
                                     double length, double angle) {
-    const Eigen::Vector3d nominal = X.linear().transpose() * X.translation();
     for (int k = 0; k < 6; ++k) {
-      geometric_.push_back({int(parameters_.size()), tier});
+      geometric_.push_back({int(parameters_.size()) + k, tier});
       columns_.push_back({joint, k});
-      parameters_.push_back({name + "." + displacement_names[std::size_t(k)], k < 3 ? "m" : "rad",
-                             k < 3 ? nominal[k] : 0.0, k < 3 ? length : angle, Role::interest});
     }
+    append_displacement(parameters_, name, X, length, angle);
   };
   add_displacement("base", -1, 0, chain_.X_MeasureBase, 10e-3, 1 * degree);
   for (std::size_t k = 0; k < chain_.joints.size(); ++k) {
@@ -126,18 +90,27 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
   add_displacement("tool", int(chain_.joints.size()), 1, chain_.X_LastTip, 5e-3, 1 * degree);
 }
 
-Eigen::Isometry3d SerialChain::linearise(std::span<const double> q, std::span<const double> correction,
-                                         std::span<const int> selected, Twists& twists, Twists* joint_twists) const {
+bool SerialChain::linearise(std::span<const double> q, std::span<const double> correction,
+                            std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+                            Twists* reading_twists) const {
+  linearise_deflected(q, {}, correction, selected, X, twists, reading_twists);
+  return true;
+}
+
+void SerialChain::linearise_deflected(std::span<const double> q, std::span<const double> deflection,
+                                      std::span<const double> correction, std::span<const int> selected,
+                                      Eigen::Isometry3d& X, Twists& twists, Twists* reading_twists) const {
   // Corrections may leave out the tool's (an instrument with targets has none): pad them.
   std::array<double, 8 * max_joints + 12> padded;
   const double* all = nullptr;
   if (!correction.empty()) {
     padded.fill(0.0);
-    std::copy(correction.begin(), correction.end(), padded.begin());
+    std::copy_n(correction.begin(), std::min(correction.size(), std::size_t(layout_.count)), padded.begin());
     all = padded.data();
   }
   ChainState state;
-  const Frame<double> tip = run_chain(chain_, layout_, q.data(), all, state);
+  const Frame<double> tip =
+      run_chain(chain_, layout_, q.data(), deflection.empty() ? nullptr : deflection.data(), all, state);
   const auto motion_of = [&](int coordinate) {
     Twist sum = Twist::Zero();
     for (const int k : joints_of_coordinate_[std::size_t(coordinate)])
@@ -159,20 +132,16 @@ Eigen::Isometry3d SerialChain::linearise(std::span<const double> q, std::span<co
       continue;
     }
     const DisplacementAxes& axes = state.displacement[std::size_t(column.joint + 1)];
-    out = column.kind < 3 ? prismatic(axes.translation.col(column.kind))
-                          : revolute(axes.rotation.col(column.kind - 3), axes.origin);
+    out = axes.twist(column.kind);
   }
-  if (joint_twists != nullptr) {
-    joint_twists->resize(6, Eigen::Index(coordinates_.size()));
+  if (reading_twists != nullptr) {
+    reading_twists->resize(6, Eigen::Index(coordinates_.size()));
     for (std::size_t i = 0; i < coordinates_.size(); ++i) {
       const double gear = all == nullptr ? 0.0 : all[layout_.offset[i] + 1];
-      joint_twists->col(Eigen::Index(i)) = (1 + gear) * motion_of(int(i));
+      reading_twists->col(Eigen::Index(i)) = (1 + gear) * motion_of(int(i));
     }
   }
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.linear() = tip.R;
-  X.translation() = tip.p;
-  return X;
+  X = isometry_of(tip);
 }
 
 }  // namespace posewright

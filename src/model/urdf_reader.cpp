@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <mutex>
 #include <numbers>
+#include <set>
 
 #include "posewright/model/placement.hpp"
 #include "posewright/support/file.hpp"
@@ -132,11 +133,26 @@ Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
 
 class ChainBuilder {
  public:
-  ChainBuilder(const SerialArmSpec& arm, const UrdfLines& lines) : arm_(arm), lines_(lines) {
+  ChainBuilder(const SerialArmSpec& arm, const UrdfLines& lines, const urdf::ModelInterface& model,
+               const std::vector<urdf::JointConstSharedPtr>& path)
+      : arm_(arm), lines_(lines), model_(model) {
     chain_.X_MeasureBase = isometry(arm.placement);
+    for (const auto& joint : path) path_.insert(joint->name);
   }
 
   void add(const urdf::Joint& joint) {
+    move(joint);
+    if (!chain_.joints.empty()) carry(*model_.getLink(joint.child_link_name), pending_);
+  }
+
+  ChainDescription finish() {
+    chain_.X_LastTip = pending_;
+    resolve_mimics();
+    return std::move(chain_);
+  }
+
+ private:
+  void move(const urdf::Joint& joint) {
     const SourcePlace place = lines_.joint(joint.name);
     pending_ = pending_ * isometry(joint.parent_to_joint_origin_transform);
     if (joint.type == urdf::Joint::FIXED) return;
@@ -166,8 +182,22 @@ class ChainBuilder {
     chain_.joints.push_back(std::move(result));
   }
 
-  ChainDescription finish() {
-    chain_.X_LastTip = pending_;
+  /// Mass of a link and of the branches on it that are not part of the chain, as they hang at zero position.
+  void carry(const urdf::Link& link, const Eigen::Isometry3d& X_JointLink) {
+    ChainJoint& joint = chain_.joints.back();
+    if (link.inertial != nullptr && link.inertial->mass > 0) {
+      const Eigen::Vector3d centre = X_JointLink * isometry(link.inertial->origin).translation();
+      const double total = joint.mass + link.inertial->mass;
+      joint.centre_of_mass = (joint.mass * joint.centre_of_mass + link.inertial->mass * centre) / total;
+      joint.mass = total;
+    }
+    for (const auto& branch : link.child_joints)
+      if (path_.count(branch->name) == 0)
+        carry(*model_.getLink(branch->child_link_name),
+              X_JointLink * isometry(branch->parent_to_joint_origin_transform));
+  }
+
+  void resolve_mimics() {
     for (const auto& [index, master] : masters_) {
       const auto found = std::find_if(chain_.joints.begin(), chain_.joints.end(),
                                       [&, name = master](const ChainJoint& j) { return j.name == name && !j.mimic; });
@@ -177,12 +207,12 @@ class ChainBuilder {
                          "choose a tip whose chain has both");
       chain_.joints[index].coordinate = found->coordinate;
     }
-    return std::move(chain_);
   }
 
- private:
   const SerialArmSpec& arm_;
   const UrdfLines& lines_;
+  const urdf::ModelInterface& model_;
+  std::set<std::string> path_;  // names of the chain's joints
   ChainDescription chain_;
   Eigen::Isometry3d pending_ = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::size_t, std::string>> masters_;
@@ -196,8 +226,9 @@ ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& pl
   const UrdfLines lines(text, file);
   const urdf::ModelInterfaceSharedPtr model = parse(text, file);
   const std::string base = base_of(*model, arm, place), tip = tip_of(*model, arm, place);
-  ChainBuilder builder(arm, lines);
-  for (const auto& joint : path(*model, base, tip, place)) builder.add(*joint);
+  const std::vector<urdf::JointConstSharedPtr> joints = path(*model, base, tip, place);
+  ChainBuilder builder(arm, lines, *model, joints);
+  for (const auto& joint : joints) builder.add(*joint);
   ChainDescription chain = builder.finish();
   if (chain.coordinates.empty())
     throw InputError(place, "no joint moves between '" + base + "' and '" + tip + "'",

@@ -34,6 +34,8 @@ class Names {
     for (const Parameter& p : model.parameters()) shown_.push_back(p.name);
     const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
     if (arm == nullptr) return;
+    // Names given to joint frames' parameters say nothing where a variant has another convention.
+    if (std::none_of(shown_.begin(), shown_.end(), [](const std::string& n) { return n.ends_with(".gear"); })) return;
     for (const auto& [mine, theirs] : arm->parameter_names) {
       const int index = index_of(theirs);
       shown_[std::size_t(index)] = mine;
@@ -73,23 +75,26 @@ class Names {
 bool fits(VariantSpec::Tolerance::Quantity quantity, const std::string& unit) {
   using Quantity = VariantSpec::Tolerance::Quantity;
   if (quantity == Quantity::number) return true;
+  if (quantity == Quantity::compliance) return unit == "rad/(N·m)";
   return unit == (quantity == Quantity::length ? "m" : "rad");
 }
 
-void apply_tolerances(const Names& names, const Problem& problem, const VariantSpec& variant,
-                      std::vector<Parameter>& all) {
-  for (const VariantSpec::Tolerance& tolerance : variant.tolerance) {
+/// Calls use(index, value) for every parameter that a written value is meant for; later entries come later.
+template <class Use>
+void for_each_value(const Names& names, const Problem& problem, const std::vector<VariantSpec::Tolerance>& values,
+                    const std::vector<Parameter>& parameters, const char* what, const Use& use) {
+  for (const VariantSpec::Tolerance& value : values) {
     bool used = false;
-    for (const int i : names.find(tolerance.pattern)) {
-      if (!fits(tolerance.quantity, all[std::size_t(i)].unit)) continue;
-      all[std::size_t(i)].tolerance = tolerance.value;
+    for (const int i : names.find(value.pattern)) {
+      if (!fits(value.quantity, parameters[std::size_t(i)].unit)) continue;
+      use(i, value.value);
       used = true;
     }
     if (!used)
       throw InputError(
-          problem.at(tolerance.pattern.line),
-          "the tolerance of '" + tolerance.pattern.value + "' is in a unit that none of these parameters has",
-          "lengths in m, mm, um; angles in rad, mrad, urad, deg");
+          problem.at(value.pattern.line),
+          std::string(what) + " of '" + value.pattern.value + "' is in a unit that none of these parameters has",
+          "lengths in m, mm, um; angles in rad, mrad, urad, deg; compliances in rad/Nm, urad/Nm");
   }
 }
 
@@ -108,10 +113,18 @@ std::vector<int> interest_candidates(const IdentificationModel& model, const Nam
 
 }  // namespace
 
+void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
+  if (variant.nominal.empty()) return;
+  const Names names(model, problem);
+  for_each_value(names, problem, variant.nominal, model.parameters(), "the nominal value",
+                 [&](int i, double value) { model.set_nominal(i, value); });
+}
+
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
   const Names names(model, problem);
   std::vector<Parameter> all = model.parameters();
-  apply_tolerances(names, problem, variant, all);
+  for_each_value(names, problem, variant.tolerance, all, "the tolerance",
+                 [&](int i, double value) { all[std::size_t(i)].tolerance = value; });
   std::vector<bool> is_nuisance(all.size(), false), is_fixed(all.size(), false);
   for (const auto& pattern : variant.nuisance)
     for (const int i : names.find(pattern)) is_nuisance[std::size_t(i)] = true;

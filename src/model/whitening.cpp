@@ -4,14 +4,32 @@
 #include "posewright/support/error.hpp"
 
 namespace posewright {
+namespace {
 
-bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
-                    std::span<const int> selected, Linearisation& scratch, double* out, int stride) {
-  if (!model.linearise(q, correction, selected, scratch)) return false;
+void factorise_covariance(Linearisation& scratch) {
   scratch.factor.compute(scratch.covariance);
   if (scratch.factor.info() != Eigen::Success)
     throw CannotDo("measurement: the noise covariance is not positive definite");
-  BlockArray::Map block(out, scratch.G.rows(), scratch.G.cols(), Eigen::OuterStride<>(stride));
+}
+
+}  // namespace
+
+bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
+                    std::span<const int> selected, Linearisation& scratch, double* out, int stride) {
+  const Eigen::Index rows = model.block_rows(selected);
+  BlockArray::Map block(out, rows, Eigen::Index(selected.size()), Eigen::OuterStride<>(stride));
+  if (rows < model.rows()) {
+    // G = B C: L⁻¹ B = Q R, and Q turns rows only.
+    if (!model.linearise_factored(q, correction, selected, scratch)) return false;
+    factorise_covariance(scratch);
+    scratch.factor.matrixL().solveInPlace(scratch.basis);
+    scratch.compression.compute(scratch.basis);
+    block.noalias() =
+        scratch.compression.matrixQR().topRows(rows).triangularView<Eigen::Upper>() * scratch.coefficients;
+    return true;
+  }
+  if (!model.linearise(q, correction, selected, scratch)) return false;
+  factorise_covariance(scratch);
   // Forward substitution by rows: the block is row-major and G may be overwritten row by row.
   const auto& l = scratch.factor.matrixLLT();
   for (Eigen::Index i = 0; i < block.rows(); ++i) {

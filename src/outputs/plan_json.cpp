@@ -60,8 +60,8 @@ Json pose_json(const PlannedPose& pose) {
     json["configuration"] = values;
     json["names"] = names;
     json["units"] = units;
-    json["load_case"] = nullptr;
-    json["station"] = nullptr;
+    json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
+    json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
   }
   if (!pose.actuators.empty()) {
     Json actuators = Json::object();

@@ -40,7 +40,12 @@ std::string Table::text() const {
 std::string shown_value(double value, const std::string& unit) {
   if (unit == "m") return fmt::format("{:.4g} mm", value * 1e3);
   if (unit == "rad") return fmt::format("{:.4g} deg", value * 180 / std::numbers::pi);
-  return fmt::format("{:.4g}", value);
+  if (unit == "rad/(N·m)") return fmt::format("{:.4g} µrad/(N·m)", value * 1e6);
+  if (unit == "m/N") return fmt::format("{:.4g} µm/N", value * 1e6);
+  if (unit == "N/m") return fmt::format("{:.4g} N/mm", value * 1e-3);
+  if (unit == "N·m/rad") return fmt::format("{:.4g} kN·m/rad", value * 1e-3);
+  if (unit == "1") return fmt::format("{:.4g}", value);
+  return fmt::format("{:.4g} {}", value, unit);
 }
 
 }  // namespace posewright

@@ -35,11 +35,11 @@ std::vector<Observation> observe_problem(const Problem& problem, const ObserveOp
   sampling.seed = options.seed;
   sampling.threads = options.threads;
   if (!options.variant.empty()) find_variant(problem, options.variant);
-  const Study study = make_study(problem, sampling, monitor);
   std::vector<Observation> observations;
   for (const VariantSpec& variant : problem.variants)
     if (options.variant.empty() || variant.name == options.variant)
-      observations.push_back(observe(study, problem, variant, options.threads));
+      observations.push_back(
+          observe(make_study(problem, variant, sampling, monitor), problem, variant, options.threads));
   return observations;
 }
 

@@ -1,5 +1,6 @@
 #include "posewright/pipeline/plan_problem.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "posewright/planning/evaluate.hpp"
@@ -37,8 +38,19 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
 std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::span<const double> values) {
   std::vector<NamedValue> result;
   for (std::size_t i = 0; i < coordinates.size(); ++i)
-    result.push_back({coordinates[i].name, coordinates[i].unit, values[i]});
+    if (!coordinates[i].choice()) result.push_back({coordinates[i].name, coordinates[i].unit, values[i]});
   return result;
+}
+
+/// What a choice among named things says at q, e.g. the load case; empty where there is no such coordinate.
+std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Coordinate& c = coordinates[i];
+    if (c.name != name) continue;
+    const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
+    return c.labels[std::size_t(at)];
+  }
+  return {};
 }
 
 void fill_poses(Plan& plan, const Study& study, const Design& design, const Evaluation& evaluation) {
@@ -49,6 +61,8 @@ void fill_poses(Plan& plan, const Study& study, const Design& design, const Eval
     pose.id = int(i) + 1;
     pose.candidate = design.members[i];
     pose.configuration = named(study.model->coordinates(), q);
+    pose.load_case = chosen_label(study.model->coordinates(), q, "load_case");
+    pose.station = chosen_label(study.model->coordinates(), q, "station");
     std::vector<double> actuators(study.model->actuators().size());
     if (study.model->actuator_values(q, actuators)) pose.actuators = named(study.model->actuators(), actuators);
     pose.tool_pose = study.model->tool_pose(q);
@@ -81,7 +95,7 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   sampling.count = std::size_t(settings.candidates);
   sampling.seed = options.seed;
   sampling.threads = options.threads;
-  const Study study = make_study(problem, sampling, monitor);
+  const Study study = make_study(problem, variant, sampling, monitor);
   const ResolvedColumns resolved = resolve_columns(study, problem, variant, options.threads);
   const VariantColumns& columns = resolved.columns;
   require_enough_poses(study, columns, settings.poses, options.threads);

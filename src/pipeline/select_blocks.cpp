@@ -56,8 +56,13 @@ Plan select_blocks(const std::filesystem::path& path, const SelectOptions& optio
   certify(plan.certificate, plan.log_det, int(parameters.size()) - options.nuisance);
   for (std::size_t j = 0; j < parameters.size(); ++j)
     plan.parameters.push_back({parameters[j], evaluation.sigma[Eigen::Index(j)], ""});
-  for (std::size_t i = 0; i < found.design.members.size(); ++i)
-    plan.poses.push_back({int(i) + 1, found.design.members[i], {}, {}, {}, evaluation.contribution[Eigen::Index(i)]});
+  for (std::size_t i = 0; i < found.design.members.size(); ++i) {
+    PlannedPose pose;
+    pose.id = int(i) + 1;
+    pose.candidate = found.design.members[i];
+    pose.contribution = evaluation.contribution[Eigen::Index(i)];
+    plan.poses.push_back(std::move(pose));
+  }
   plan.interrupted = found.stopped;
   plan.statistics.exchanges = found.design.exchanges;
   plan.statistics.restarts = found.design.restarts;

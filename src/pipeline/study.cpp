@@ -40,9 +40,10 @@ std::string dropped_names(const Identifiability& found, const std::vector<Parame
 
 }  // namespace
 
-Study make_study(const Problem& problem, const SamplingOptions& options, const Monitor& monitor) {
+Study make_study(const Problem& problem, const VariantSpec& variant, const SamplingOptions& options,
+                 const Monitor& monitor) {
   Study study;
-  study.model = make_model(problem);
+  study.model = make_model(problem, variant);
   study.workspace = std::make_unique<Workspace>(*study.model, problem);
   study.configurations = sample_configurations(*study.workspace, options, monitor);
   return study;

@@ -20,7 +20,9 @@ struct Study {
   Configurations configurations;
 };
 
-Study make_study(const Problem& problem, const SamplingOptions& options, const Monitor& monitor);
+/// The robot as one variant sees it.
+Study make_study(const Problem& problem, const VariantSpec& variant, const SamplingOptions& options,
+                 const Monitor& monitor);
 
 /// At most `count` of the configurations, evenly through the list.
 Configurations thinned(const Configurations& configurations, std::size_t count);

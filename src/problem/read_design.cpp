@@ -28,7 +28,7 @@ Located<int> read_count(const Value& value, int upper) { return {value.integer(1
 
 DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& variants) {
   const Section section(value);
-  section.allow({"variant", "criterion", "method", "poses", "candidates", "restarts", "repeats"});
+  section.allow({"variant", "criterion", "method", "poses", "candidates", "restarts", "repeats", "prior"});
   DesignSpec design;
   design.line = value.line();
   if (const Value* variant = section.find("variant")) design.variant = read_variant_name(*variant, variants);
@@ -39,6 +39,7 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
   if (const Value* restarts = section.find("restarts")) design.restarts = read_count(*restarts, 1'000'000);
   if (const Value* repeats = section.find("repeats"))
     design.repeats = repeats->choice({"forbid", "allow"}) == "allow" ? Repeats::allow : Repeats::forbid;
+  if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
   return design;
 }
 

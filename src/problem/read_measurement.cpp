@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -32,18 +34,136 @@ Components read_components(const Value& value, std::span<const std::string_view>
   return components;
 }
 
-/// The device's key `noise`, after its type has been judged.
-Value read_device(const Value& value) {
-  const Section device(value);
-  // Other devices have other keys, so the type is judged before the keys.
-  device.at("type").choice({"isotropic"});
-  device.allow({"type", "noise"});
-  return device.at("noise");
-}
-
 TargetSpec read_target(std::string name, const Value& value) {
   return {std::move(name), value.vector(Quantity::length), value.line()};
 }
+
+/// n × n, SI, symmetric and positive definite.
+Eigen::MatrixXd read_covariance(const Value& value, Eigen::Index n) {
+  const std::string expected = fmt::format("{} rows of {} numbers in SI are expected", n, n);
+  const std::vector<Value> rows = value.items(std::size_t(n), expected);
+  Eigen::MatrixXd matrix(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::vector<Value> numbers = rows[std::size_t(i)].items(std::size_t(n), expected);
+    for (Eigen::Index j = 0; j < n; ++j) matrix(i, j) = numbers[std::size_t(j)].number(Quantity::number);
+  }
+  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > 1e-9 * matrix.cwiseAbs().maxCoeff())
+    value.fail("is not symmetric", "a covariance matrix is needed");
+  // Positive definite in units of its own standard deviations, so that mm and rad may stand side by side.
+  const Eigen::VectorXd sigma = matrix.diagonal().cwiseMax(0.0).cwiseSqrt();
+  if (!(sigma.minCoeff() > 0)) value.fail("is not positive definite", "every variance must be > 0");
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * matrix * sigma.cwiseInverse().asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
+  if (factor.info() != Eigen::Success || factor.matrixLLT().diagonal().minCoeff() < 1e-6)
+    value.fail("is not positive definite", "a covariance matrix is needed");
+  return matrix;
+}
+
+/// Sigmas of three axes: one for all or a list of three.
+GaussianNoise read_axes(const Value& noise) {
+  const Eigen::Vector3d sigma = noise.is_list()
+                                    ? noise.vector(Quantity::length, Sign::positive)
+                                    : Eigen::Vector3d::Constant(noise.number(Quantity::length, Sign::positive));
+  return {sigma.cwiseAbs2().asDiagonal()};
+}
+
+TrackerNoise read_tracker(const Value* value) {
+  TrackerNoise noise;
+  if (value == nullptr) return noise;
+  const Section section(*value);
+  section.allow({"range", "range_per_m", "transverse", "angle"});
+  // What is left out is zero once something is written: a data sheet's line is taken as it stands.
+  noise = {0, 0, 0, 0};
+  const auto read = [&](const char* key, std::initializer_list<Quantity> quantity, double& into) {
+    if (const Value* found = section.find(key)) into = found->measured(quantity, Sign::not_negative).value;
+  };
+  read("range", {Quantity::length}, noise.range);
+  read("range_per_m", {Quantity::length}, noise.range_per_m);
+  read("transverse", {Quantity::length}, noise.transverse);
+  read("angle", {Quantity::angle}, noise.angle);
+  if (!(noise.range + noise.range_per_m > 0)) value->fail("has no noise along the beam", "range or range_per_m > 0");
+  if (!(noise.transverse + noise.angle > 0)) value->fail("has no noise across the beam", "transverse or angle > 0");
+  return noise;
+}
+
+std::vector<StationSpec> read_stations(const Value& value) {
+  std::vector<StationSpec> stations;
+  for (const yaml::Entry& entry : Section(value).entries()) {
+    StationSpec station{entry.key.value, {}};
+    if (entry.value.is_mapping()) station.placement = read_placement(Section(entry.value));
+    else station.placement.position = entry.value.vector(Quantity::length);
+    stations.push_back(std::move(station));
+  }
+  if (stations.empty()) value.fail("is empty", "at least one station is needed");
+  return stations;
+}
+
+/// A device that measures points: its noise and where it stands.
+void read_point_device(const Value& value, PointNoise& noise, std::vector<StationSpec>& stations) {
+  const Section device(value);
+  // Devices have different keys, so the type is judged before the keys.
+  const std::string type =
+      device.at("type").choice({"isotropic", "diagonal", "covariance", "laser_tracker", "photogrammetry"});
+  if (type == "covariance") {
+    device.allow({"type", "matrix", "stations"});
+    noise = GaussianNoise{read_covariance(device.at("matrix"), 3)};
+  } else {
+    device.allow({"type", "noise", "stations"});
+    if (type == "laser_tracker") noise = read_tracker(device.find("noise"));
+    else noise = read_axes(device.at("noise"));
+  }
+  if (const Value* found = device.find("stations")) stations = read_stations(*found);
+}
+
+PoseMeasurement read_pose(const Section& section) {
+  section.allow({"type", "components", "device", "repeats", "repeatability", "load"});
+  PoseMeasurement pose;
+  const Section device(section.at("device"));
+  const std::string type = device.at("type").choice({"isotropic", "covariance", "photogrammetry"});
+  if (type == "isotropic") {
+    device.allow({"type", "noise"});
+    const Section noise(device.at("noise"));
+    noise.allow({"position", "rotation"});
+    const double position = noise.at("position").number(Quantity::length, Sign::positive);
+    const double rotation = noise.at("rotation").number(Quantity::angle, Sign::positive);
+    pose.covariance.diagonal() << Eigen::Vector3d::Constant(position * position),
+        Eigen::Vector3d::Constant(rotation * rotation);
+  } else if (type == "covariance") {
+    device.allow({"type", "matrix"});
+    pose.covariance = read_covariance(device.at("matrix"), 6);
+  } else {
+    device.allow({"type", "noise", "points"});
+    pose.point_sigma = device.at("noise").number(Quantity::length, Sign::positive);
+    pose.photogrammetry = read_targets(device.at("points"));
+    if (pose.photogrammetry.size() < 3) device.at("points").fail("has too few points", "at least 3 not in line");
+    Eigen::Matrix3Xd points(3, Eigen::Index(pose.photogrammetry.size()));
+    for (std::size_t i = 0; i < pose.photogrammetry.size(); ++i)
+      points.col(Eigen::Index(i)) = pose.photogrammetry[i].position;
+    const Eigen::Matrix3Xd spread = points.colwise() - points.rowwise().mean();
+    const Eigen::Vector3d extent = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread * spread.transpose())
+                                       .eigenvalues()
+                                       .cwiseMax(0.0)
+                                       .cwiseSqrt();
+    if (!(extent[1] > 1e-6 * extent[2])) device.at("points").fail("lie in line", "three points not in line fix a pose");
+  }
+  if (const Value* components = section.find("components"))
+    pose.components = read_components(*components, pose_components);
+  return pose;
+}
+
+PointsMeasurement read_points(const Section& section, bool single) {
+  const std::string_view key = single ? "target" : "targets";
+  section.allow({"type", key, "components", "device", "repeats", "repeatability", "load"});
+  PointsMeasurement points;
+  if (single) points.targets.push_back(read_target("target", section.at(key)));
+  else points.targets = read_targets(section.at(key));
+  read_point_device(section.at("device"), points.noise, points.stations);
+  if (const Value* components = section.find("components"))
+    points.components = read_components(*components, std::span(pose_components).first(3));
+  return points;
+}
+
+}  // namespace
 
 std::vector<TargetSpec> read_targets(const Value& value) {
   std::vector<TargetSpec> targets;
@@ -56,45 +176,22 @@ std::vector<TargetSpec> read_targets(const Value& value) {
   return targets;
 }
 
-PoseMeasurement read_pose(const Section& section) {
-  section.allow({"type", "components", "device", "repeats", "repeatability"});
-  PoseMeasurement pose;
-  const Section noise(read_device(section.at("device")));
-  noise.allow({"position", "rotation"});
-  pose.position_sigma = noise.at("position").number(Quantity::length, Sign::positive);
-  pose.rotation_sigma = noise.at("rotation").number(Quantity::angle, Sign::positive);
-  if (const Value* components = section.find("components"))
-    pose.components = read_components(*components, pose_components);
-  return pose;
-}
-
-PointsMeasurement read_points(const Section& section, bool single) {
-  const std::string_view key = single ? "target" : "targets";
-  section.allow({"type", key, "components", "device", "repeats", "repeatability"});
-  PointsMeasurement points;
-  if (single) points.targets.push_back(read_target("target", section.at(key)));
-  else points.targets = read_targets(section.at(key));
-  const Value noise = read_device(section.at("device"));
-  if (noise.is_list()) points.sigma = noise.vector(Quantity::length, Sign::positive);
-  else points.sigma.setConstant(noise.number(Quantity::length, Sign::positive));
-  if (const Value* components = section.find("components"))
-    points.components = read_components(*components, std::span(pose_components).first(3));
-  return points;
-}
-
-}  // namespace
-
 MeasurementSpec read_measurement(const Value& value) {
   const Section section(value);
   MeasurementSpec measurement;
   measurement.line = value.line();
-  const std::string type = section.at("type").choice({"pose", "points", "position"});
+  const std::string type = section.at("type").choice({"pose", "points", "position", "distance", "camera", "joints"});
   if (type == "pose") measurement.instrument = read_pose(section);
+  else if (type == "distance") measurement.instrument = read_distance(section);
+  else if (type == "camera") measurement.instrument = read_camera(section);
+  else if (type == "joints") measurement.instrument = read_joint_sensors(section);
   else measurement.instrument = read_points(section, type == "position");
   if (const Value* repeats = section.find("repeats"))
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))
     measurement.repeatability = repeatability->number(Quantity::length, Sign::not_negative);
+  if (const Value* load = section.find("load"))
+    measurement.loaded_minus_unloaded = load->choice({"absolute", "loaded_minus_unloaded"}) != "absolute";
   return measurement;
 }
 

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <array>
 #include <map>
 
 #include "sections.hpp"
@@ -28,7 +28,7 @@ std::vector<std::pair<std::string, Located<std::string>>> read_parameter_names(c
 }
 
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& folder) {
-  robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names"});
+  robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
   arm.urdf = folder / urdf.text("a file name is expected");
@@ -39,54 +39,30 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
   if (const Value* noise = robot.find("encoder_noise"))
     arm.encoder_noise = noise->measured({Quantity::angle, Quantity::length}, Sign::not_negative).value;
   if (const Value* names = robot.find("parameter_names")) arm.parameter_names = read_parameter_names(*names);
+  if (const Value* elastostatic = robot.find("elastostatic")) arm.elastostatic = read_elastostatic(*elastostatic);
   return arm;
 }
 
-/// [x, y, z] or {radius, angle, z} about the frame's z axis.
-Eigen::Vector3d read_joint_centre(const Value& value) {
-  if (!value.is_mapping()) return value.vector(Quantity::length);
-  const Section polar(value);
-  polar.allow({"radius", "angle", "z"});
-  const double radius = polar.at("radius").number(Quantity::length, Sign::positive);
-  const double angle = polar.at("angle").number(Quantity::angle);
-  const Value* z = polar.find("z");
-  return {radius * std::cos(angle), radius * std::sin(angle), z == nullptr ? 0.0 : z->number(Quantity::length)};
-}
+/// Robots by the word under `model`; a new one is one row.
+struct ModelReader {
+  std::string_view name;
+  RobotSpec (*read)(const Section& robot);
+};
+constexpr std::array<ModelReader, 5> models = {{
+    {"six_pus", [](const Section& robot) -> RobotSpec { return read_six_legs(robot, LegActuation::slide); }},
+    {"gough", [](const Section& robot) -> RobotSpec { return read_six_legs(robot, LegActuation::extend); }},
+    {"five_bar", [](const Section& robot) -> RobotSpec { return read_five_bar(robot); }},
+    {"delta", [](const Section& robot) -> RobotSpec { return read_delta(robot); }},
+    {"compensator", [](const Section& robot) -> RobotSpec { return read_compensator_geometry(robot); }},
+}};
 
-LegSpec read_leg(const Value& value) {
-  const Section section(value);
-  section.allow({"a", "b", "u", "l"});
-  LegSpec leg;
-  leg.line = value.line();
-  leg.a = read_joint_centre(section.at("a"));
-  leg.b = read_joint_centre(section.at("b"));
-  if (const Value* u = section.find("u")) {
-    // stableNormalized: the length of a direction written with huge or tiny numbers neither overflows nor vanishes.
-    leg.u = u->vector(Quantity::number).stableNormalized();
-    if (!(leg.u.norm() > 0.5)) u->fail("has length zero", "a direction is needed");
-  }
-  leg.l = section.at("l").number(Quantity::length, Sign::positive);
-  return leg;
-}
-
-SixPusSpec read_six_pus(const Section& robot) {
-  robot.allow({"model", "reference", "actuators", "legs"});
-  SixPusSpec spec;
-  spec.line = robot.value().line();
-  const Section reference(robot.at("reference"));
-  reference.at("position");
-  spec.reference = read_placement(reference);
-
-  const Section actuators(robot.at("actuators"));
-  actuators.allow({"travel", "noise"});
-  const yaml::Range travel = read_range(actuators.at("travel"), {Quantity::length});
-  spec.travel_lower = travel.lower;
-  spec.travel_upper = travel.upper;
-  if (const Value* noise = actuators.find("noise"))
-    spec.actuator_noise = noise->number(Quantity::length, Sign::not_negative);
-
-  for (const Value& leg : robot.at("legs").items(6, "exactly 6 legs are expected")) spec.legs.push_back(read_leg(leg));
-  return spec;
+RobotSpec read_model(const Value& model, const Section& robot) {
+  std::string names;
+  for (const ModelReader& reader : models) names += (names.empty() ? "allowed: " : ", ") + std::string(reader.name);
+  const std::string wanted = model.text(names);
+  for (const ModelReader& reader : models)
+    if (reader.name == wanted) return reader.read(robot);
+  model.fail("is " + in_quotes(wanted), names);
 }
 
 }  // namespace
@@ -103,13 +79,9 @@ RobotSpec read_robot(const Value& value, const std::filesystem::path& folder) {
   const Section robot(value);
   const Value* model = robot.find("model");
   if (model != nullptr && robot.has("urdf")) model->fail("stands beside robot.urdf", "one of urdf, model is allowed");
-  if (model != nullptr) {
-    model->choice({"six_pus"});
-    return read_six_pus(robot);
-  }
+  if (model != nullptr) return read_model(*model, robot);
   if (!robot.has("urdf")) {
-    robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "model", "reference",
-                 "actuators", "legs"});
+    robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model"});
     value.fail("has neither urdf nor model", "one of both is required");
   }
   return read_serial_arm(robot, folder);

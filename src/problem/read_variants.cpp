@@ -10,35 +10,51 @@ using yaml::Value;
 VariantSpec::Tolerance::Quantity tolerance_quantity(Quantity quantity) {
   using Kind = VariantSpec::Tolerance::Quantity;
   if (quantity == Quantity::length) return Kind::length;
+  if (quantity == Quantity::compliance) return Kind::compliance;
   return quantity == Quantity::angle ? Kind::angle : Kind::number;
 }
 
 void read_parameters(const Value& value, VariantSpec& variant) {
-  const std::string expected = "a list of names or the word auto is expected";
-  if (value.is_scalar()) {
-    if (value.text(expected) != "auto") value.fail("is a single name", expected);
+  using Convention = VariantSpec::Convention;
+  const std::string expected = "a list of names or one of the words auto, dh, mdh is expected";
+  const auto is_set = [&](const std::string& word) {
+    if (word != "auto" && word != "dh" && word != "mdh") return false;
     variant.automatic = true;
+    variant.convention = word == "dh" ? Convention::dh : word == "mdh" ? Convention::mdh : Convention::frames;
+    return true;
+  };
+  if (value.is_scalar()) {
+    if (!is_set(value.text(expected))) value.fail("is a single name", expected);
     return;
   }
   if (!value.is_list()) value.fail("is no list", expected);
-  variant.parameters = value.texts();
-  if (variant.parameters.empty()) value.fail("is empty", expected);
+  const std::vector<Located<std::string>> names = value.texts();
+  for (const Located<std::string>& name : names) {
+    if (variant.automatic || !is_set(name.value)) variant.parameters.push_back(name);
+  }
+  if (names.empty()) value.fail("is empty", expected);
+}
+
+std::vector<VariantSpec::Tolerance> read_values(const Value& value, Sign sign) {
+  std::vector<VariantSpec::Tolerance> values;
+  for (const yaml::Entry& entry : Section(value).entries()) {
+    const Measured measured = entry.value.measured({Quantity::length, Quantity::angle, Quantity::compliance}, sign);
+    values.push_back({entry.key, measured.value, tolerance_quantity(measured.quantity)});
+  }
+  return values;
 }
 
 VariantSpec read_variant(const Located<std::string>& name, const Value& value) {
   const Section section(value);
-  section.allow({"parameters", "nuisance", "fixed", "tolerance"});
+  section.allow({"parameters", "nuisance", "fixed", "tolerance", "nominal"});
   VariantSpec variant;
   variant.name = name.value;
   variant.line = name.line;
   read_parameters(section.at("parameters"), variant);
   if (const Value* nuisance = section.find("nuisance")) variant.nuisance = nuisance->texts();
   if (const Value* fixed = section.find("fixed")) variant.fixed = fixed->texts();
-  if (const Value* tolerance = section.find("tolerance"))
-    for (const yaml::Entry& entry : Section(*tolerance).entries()) {
-      const Measured measured = entry.value.measured({Quantity::length, Quantity::angle}, Sign::positive);
-      variant.tolerance.push_back({entry.key, measured.value, tolerance_quantity(measured.quantity)});
-    }
+  if (const Value* tolerance = section.find("tolerance")) variant.tolerance = read_values(*tolerance, Sign::positive);
+  if (const Value* nominal = section.find("nominal")) variant.nominal = read_values(*nominal, Sign::any);
   return variant;
 }
 

@@ -38,7 +38,7 @@ WorkspaceSpec read_pose(const Section& pose) {
 
 WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot) {
   const Section section(value);
-  if (std::holds_alternative<SixPusSpec>(robot)) {
+  if (std::holds_alternative<SixLegsSpec>(robot)) {
     section.allow({"pose"});
     const Value* pose = section.find("pose");
     return pose == nullptr ? WorkspaceSpec{} : read_pose(Section(*pose));

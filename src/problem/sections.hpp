@@ -15,6 +15,21 @@ namespace posewright {
 RobotSpec read_robot(const yaml::Value& value, const std::filesystem::path& folder);
 
 MeasurementSpec read_measurement(const yaml::Value& value);
+DistanceMeasurement read_distance(const yaml::Section& section);
+CameraMeasurement read_camera(const yaml::Section& section);
+JointsMeasurement read_joint_sensors(const yaml::Section& section);
+
+/// {NAME: [x, y, z]}, at least one.
+std::vector<TargetSpec> read_targets(const yaml::Value& value);
+
+/// Key `elastostatic` of a serial arm.
+ElastostaticSpec read_elastostatic(const yaml::Value& value);
+
+/// Robots other than serial arms, by the key `model`.
+SixLegsSpec read_six_legs(const yaml::Section& robot, LegActuation actuation);
+FiveBarSpec read_five_bar(const yaml::Section& robot);
+DeltaSpec read_delta(const yaml::Section& robot);
+CompensatorGeometrySpec read_compensator_geometry(const yaml::Section& robot);
 
 std::vector<VariantSpec> read_variants(const yaml::Value& value);
 

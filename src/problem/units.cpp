@@ -20,7 +20,7 @@ struct Unit {
   double times, over;
 };
 
-constexpr std::array<Unit, 10> units{{
+constexpr std::array<Unit, 15> units{{
     {"m", Quantity::length, 1, 1},
     {"mm", Quantity::length, 1, 1e3},
     {"um", Quantity::length, 1, 1e6},
@@ -31,6 +31,11 @@ constexpr std::array<Unit, 10> units{{
     {"deg", Quantity::angle, std::numbers::pi, 180},
     {"N", Quantity::force, 1, 1},
     {"kN", Quantity::force, 1e3, 1},
+    {"rad/Nm", Quantity::compliance, 1, 1},
+    {"urad/Nm", Quantity::compliance, 1, 1e6},
+    {"N/m", Quantity::stiffness, 1, 1},
+    {"N/mm", Quantity::stiffness, 1e3, 1},
+    {"N/um", Quantity::stiffness, 1e6, 1},
 }};
 
 [[noreturn]] void fail(std::string_view text, const std::string& what, const std::string& allowed) {

@@ -28,7 +28,7 @@ class Sampler {
       : workspace_(workspace), options_(options), reasons_(workspace.reasons()) {
     result_.dimension = int(workspace.coordinates().size());
     for (std::size_t k = 0; k < workspace.coordinates().size(); ++k)
-      if (!workspace.coordinates()[k].periodic) bounded_.push_back(k);
+      if (const Coordinate& c = workspace.coordinates()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
     reasons_.push_back("drawn before");
     rejected_.assign(reasons_.size(), 0);
   }
@@ -117,7 +117,8 @@ class Sampler {
   int judge(std::size_t index, std::span<double> q, bool to_boundary) const {
     for (std::size_t k = 0; k < q.size(); ++k) {
       const Coordinate& c = workspace_.coordinates()[k];
-      q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
+      if (c.discrete()) q[k] = c.values[std::min(std::size_t(q[k] * double(c.values.size())), c.values.size() - 1)];
+      else q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
     }
     const int verdict = workspace_.violation(q);
     if (verdict < 0 || !to_boundary || anchors_ == 0) return verdict;
@@ -125,7 +126,8 @@ class Sampler {
     const std::span<const double> inside = result_[std::size_t(random.index(int(anchors_)))];
     std::vector<double> trial(q.size());
     const auto along = [&](double t) {
-      for (std::size_t k = 0; k < q.size(); ++k) trial[k] = inside[k] + t * (q[k] - inside[k]);
+      for (std::size_t k = 0; k < q.size(); ++k)
+        trial[k] = workspace_.coordinates()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
     };
     double feasible = 0.0, infeasible = 1.0;
     for (int i = 0; i < bisections; ++i) {
@@ -169,7 +171,7 @@ Configurations sample_configurations(const Workspace& workspace, const SamplingO
 BlockArray build_blocks(const IdentificationModel& model, std::span<const int> selected,
                         const Configurations& configurations, int threads) {
   const std::size_t n = configurations.count();
-  BlockArray blocks(n, model.rows(), int(selected.size()));
+  BlockArray blocks(n, model.block_rows(selected), int(selected.size()));
   const int workers = thread_count(threads);
   std::vector<Linearisation> scratch(static_cast<std::size_t>(workers));
   constexpr std::size_t chunk = 256;

@@ -24,23 +24,37 @@ std::string names(const std::vector<Coordinate>& coordinates) {
   return text;
 }
 
-void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits, const Problem& problem) {
-  const SourcePlace place = problem.at(limits.name.line);
-  const auto found = std::find_if(coordinates.begin(), coordinates.end(),
-                                  [&](const Coordinate& c) { return c.name == limits.name.value; });
-  if (found == coordinates.end())
-    throw InputError(place, "'" + limits.name.value + "' is no coordinate of this robot",
-                     "allowed: " + names(coordinates));
-  if (limits.quantity != Quantity::number &&
-      limits.quantity != (found->unit == "rad" ? Quantity::angle : Quantity::length))
+void narrow(Coordinate& c, const CoordinateLimits& limits, const SourcePlace& place) {
+  const Quantity own = c.unit == "rad" ? Quantity::angle : Quantity::length;
+  if (limits.quantity != Quantity::number && limits.quantity != own)
     throw InputError(place, "limits of '" + limits.name.value + "' have the wrong unit",
-                     "allowed: " + allowed_units({found->unit == "rad" ? Quantity::angle : Quantity::length}));
-  if (limits.lower < found->lower - slack || limits.upper > found->upper + slack)
+                     "allowed: " + allowed_units({own}));
+  if (limits.lower < c.lower - slack || limits.upper > c.upper + slack)
     throw InputError(place, "limits of '" + limits.name.value + "' go beyond the robot's own",
-                     "allowed: " + range_text(*found));
-  found->periodic = false;
-  found->lower = std::max(found->lower, limits.lower);
-  found->upper = std::min(found->upper, limits.upper);
+                     "allowed: " + range_text(c));
+  c.periodic = false;
+  c.lower = std::max(c.lower, limits.lower);
+  c.upper = std::min(c.upper, limits.upper);
+  if (!c.discrete()) return;
+  std::erase_if(c.values, [&](double value) { return value < c.lower || value > c.upper; });
+  if (c.values.empty())
+    throw InputError(place, "limits of '" + limits.name.value + "' leave none of its listed positions",
+                     "positions are listed in robot: elastostatic");
+  c.lower = c.values.front();
+  c.upper = c.values.back();
+}
+
+void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits, const Problem& problem) {
+  bool found = false;
+  for (Coordinate& c : coordinates) {
+    // A pair of configurations has every coordinate twice; one line narrows both.
+    if (c.choice() || (c.name != limits.name.value && c.name != limits.name.value + ".second")) continue;
+    found = true;
+    narrow(c, limits, problem.at(limits.name.line));
+  }
+  if (!found)
+    throw InputError(problem.at(limits.name.line), "'" + limits.name.value + "' is no coordinate of this robot",
+                     "allowed: " + names(coordinates));
 }
 
 }  // namespace
@@ -51,7 +65,7 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
   for (Coordinate& c : coordinates) {
     const double margin = c.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
     const Coordinate before = c;
-    if (c.periodic) continue;
+    if (c.periodic || c.discrete()) continue;
     c.lower += margin;
     c.upper -= margin;
     if (!(c.lower < c.upper))

@@ -5,6 +5,7 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/util/Console.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,8 +25,11 @@ class LimitsCheck : public ValidityCheck {
   explicit LimitsCheck(const std::vector<Coordinate>& coordinates) : coordinates_(coordinates) {}
   std::string reason() const override { return "limits"; }
   bool holds(std::span<const double> q) const override {
-    for (std::size_t i = 0; i < q.size(); ++i)
-      if (!(q[i] >= coordinates_[i].lower && q[i] <= coordinates_[i].upper)) return false;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const Coordinate& c = coordinates_[i];
+      if (!(q[i] >= c.lower && q[i] <= c.upper)) return false;
+      if (c.discrete() && !std::binary_search(c.values.begin(), c.values.end(), q[i])) return false;
+    }
     return true;
   }
 
@@ -33,11 +37,23 @@ class LimitsCheck : public ValidityCheck {
   std::vector<Coordinate> coordinates_;
 };
 
+/// What the instrument cannot see cannot be measured.
+class MeasurableCheck : public ValidityCheck {
+ public:
+  explicit MeasurableCheck(const IdentificationModel& model) : model_(model) {}
+  std::string reason() const override { return model_.unmeasurable_reason(); }
+  bool holds(std::span<const double> q) const override { return model_.measurable(q); }
+
+ private:
+  const IdentificationModel& model_;
+};
+
 /// All checks, in the order of cost; a new constraint is one row here.
 Checks make_checks(const IdentificationModel& model, const std::vector<Coordinate>& coordinates) {
   Checks checks;
   checks.push_back(std::make_unique<LimitsCheck>(coordinates));
   for (auto& check : actuator_checks(model)) checks.push_back(std::move(check));
+  if (!model.unmeasurable_reason().empty()) checks.push_back(std::make_unique<MeasurableCheck>(model));
   return checks;
 }
 
@@ -78,8 +94,10 @@ class Workspace::Implementation {
     const auto state_space = std::make_shared<Space>(unsigned(coordinates.size()));
     ob::RealVectorBounds bounds(unsigned(coordinates.size()));
     for (unsigned i = 0; i < coordinates.size(); ++i) {
-      bounds.setLow(i, coordinates[i].lower);
-      bounds.setHigh(i, coordinates[i].upper);
+      // A coordinate with one value only is no interval; OMPL wants one.
+      const double room = coordinates[i].lower < coordinates[i].upper ? 0.0 : 0.5;
+      bounds.setLow(i, coordinates[i].lower - room);
+      bounds.setHigh(i, coordinates[i].upper + room);
       state_space->setDimensionName(i, coordinates[i].name);
     }
     state_space->setBounds(bounds);
@@ -109,14 +127,16 @@ const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_informatio
 }
 
 double Workspace::share_of_coordinates_on_limits(std::span<const double> q) const {
-  int at_limit = 0;
+  int at_limit = 0, continuous = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const Coordinate& c = coordinates()[i];
+    if (c.discrete()) continue;
+    ++continuous;
     if (c.periodic) continue;
     const double width = c.upper - c.lower;
     if (std::min(q[i] - c.lower, c.upper - q[i]) <= 1e-6 * width) ++at_limit;
   }
-  return double(at_limit) / double(q.size());
+  return continuous == 0 ? 0.0 : double(at_limit) / double(continuous);
 }
 
 bool Workspace::on_boundary(std::span<const double> q, double actuator_share) const {

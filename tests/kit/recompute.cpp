@@ -11,8 +11,9 @@ namespace posewright {
 
 double recomputed_log_det(const Problem& problem, const std::string& variant,
                           const std::vector<std::vector<double>>& poses) {
-  const auto model = make_model(problem);
-  const VariantColumns columns = select_columns(*model, problem, find_variant(problem, variant));
+  const VariantSpec& spec = find_variant(problem, variant);
+  const auto model = make_model(problem, spec);
+  const VariantColumns columns = select_columns(*model, problem, spec);
   const auto m = Eigen::Index(columns.selected.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(m, m);
   Linearisation scratch;

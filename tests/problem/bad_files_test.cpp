@@ -69,7 +69,7 @@ const BadFile root[] = {
 
 const BadFile serial_robot[] = {
     {"RobotKeyUnknown", arm, "base: base_link", "bse: base_link", 4,
-     "unknown key 'bse'; allowed: urdf, base, tip, placement, encoder_noise, parameter_names"},
+     "unknown key 'bse'; allowed: urdf, base, tip, placement, encoder_noise, parameter_names, elastostatic"},
     {"RobotKeyTwice", arm, "tip: flange", "base: flange", 5, "duplicate key 'base'; first given on line 4"},
     {"RobotIsText", arm, arm.c_str(), "posewright: 1\nrobot: six_pus\n", 2, "robot is 'six_pus'; a mapping"},
     {"NeitherUrdfNorModel", arm, "  urdf: kr270.urdf\n", "", 2, "has neither urdf nor model; one of both is required"},
@@ -92,9 +92,10 @@ const BadFile serial_robot[] = {
 };
 
 const BadFile parallel_robot[] = {
-    {"ModelUnknown", platform, "six_pus", "hexapod", 3, "robot.model is 'hexapod'; allowed: six_pus"},
-    {"ReferenceMissing", platform, "  reference:", "  placement:", 4,
-     "unknown key 'placement'; allowed: model, reference, actuators, legs"},
+    {"ModelUnknown", platform, "six_pus", "hexapod", 3,
+     "robot.model is 'hexapod'; allowed: six_pus, gough, five_bar, delta, compensator"},
+    {"ReferenceMissing", platform, "  reference:", "  urdf_placement:", 4,
+     "unknown key 'urdf_placement'; allowed: model, placement, reference, actuators, legs"},
     {"ReferenceWithoutPosition", platform, "position: [0, 0, \"483.7 mm\"], ", "", 4,
      "robot.reference has no key 'position'"},
     {"TravelReversed", platform, "[\"-1.3 mm\", \"1.3 mm\"]", "[1, -1]", 5,
@@ -115,11 +116,11 @@ const BadFile parallel_robot[] = {
 };
 
 const BadFile measurement[] = {
-    {"MeasurementKindUnknown", arm, "type: points", "type: distance", 10,
-     "measurement.type is 'distance'; allowed: pose, points, position"},
+    {"MeasurementKindUnknown", arm, "type: points", "type: theodolite", 10,
+     "measurement.type is 'theodolite'; allowed: pose, points, position, distance, camera, joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
-     "unknown key 'targets'; allowed: type, components, device, repeats, repeatability"},
+     "unknown key 'targets'; allowed: type, components, device, repeats, repeatability, load"},
     {"TargetsForPosition", arm, "type: points", "type: position", 11, "unknown key 'targets'; allowed: type, target,"},
     {"TargetTwice", arm, "    P2:", "    P1:", 13, "duplicate key 'P1'; first given on line 12"},
     {"TargetTooShort", arm, "[0.27649, -0.04825, 0.09405]", "[1, 2]", 13, "P2 has 2 entries; expected 3 numbers"},
@@ -127,7 +128,8 @@ const BadFile measurement[] = {
     {"ComponentUnknown", arm, "[z, x]", "[z, rx]", 14, "is 'rx'; allowed: x, y, z"},
     {"ComponentTwice", arm, "[z, x]", "[z, z]", 14, "measurement.components[2] is 'z'; it is already in the list"},
     {"ComponentsEmpty", arm, "[z, x]", "[]", 14, "measurement.components is empty; allowed: x, y, z"},
-    {"DeviceUnknown", arm, "isotropic", "laser_tracker", 15, "is 'laser_tracker'; allowed: isotropic"},
+    {"DeviceUnknown", arm, "isotropic", "theodolite", 15,
+     "is 'theodolite'; allowed: isotropic, diagonal, covariance, laser_tracker, photogrammetry"},
     {"DeviceNoiseZero", arm, "\"0.1 mm\"", "0", 15, "measurement.device.noise is '0'; a value > 0 is expected"},
     {"DeviceNoiseMissing", arm, ", noise: \"0.1 mm\"", "", 15, "measurement.device has no key 'noise'"},
     {"PoseNoiseIsALength", platform, "{position: \"0.1 mm\", rotation: \"0.1 mrad\"}", "\"1 mm\"", 16,
@@ -140,15 +142,17 @@ const BadFile measurement[] = {
 
 const BadFile rest[] = {
     {"VariantKeyUnknown", arm, "    fixed:", "    fix:", 22,
-     "unknown key 'fix'; allowed: parameters, nuisance, fixed, tolerance"},
+     "unknown key 'fix'; allowed: parameters, nuisance, fixed, tolerance, nominal"},
     {"VariantIsNull", arm, "    parameters: auto", "", 24, "variants.everything is empty; a mapping"},
     {"ParametersMissing", arm, "    parameters: auto", "    fixed: []", 24, "has no key 'parameters'"},
-    {"ParametersEmpty", arm, "[px1, \"joint_2.*\"]", "[]", 20, "is empty; a list of names or the word auto"},
-    {"ParametersSingle", arm, "auto", "px1", 25, "is a single name; a list of names or the word auto is expected"},
+    {"ParametersEmpty", arm, "[px1, \"joint_2.*\"]", "[]", 20, "is empty; a list of names or one of the words auto"},
+    {"ParametersSingle", arm, "auto", "px1", 25,
+     "is a single name; a list of names or one of the words auto, dh, mdh is expected"},
     {"ParametersNested", arm, "[px1,", "[[px1],", 20, "variants.geometric.parameters[1] is a list"},
     {"NuisanceIsText", arm, "[\"base.*\"]", "base", 21, "variants.geometric.nuisance is 'base'; a list of names"},
     {"ToleranceZero", arm, "0.001}", "0}", 23, "variants.geometric.tolerance.*.gear is '0'; a value > 0"},
-    {"ToleranceForce", arm, "0.5 mm", "0.5 N", 23, "wrong unit 'N'; allowed: m, mm, um, nm, rad, mrad, urad, deg"},
+    {"ToleranceForce", arm, "0.5 mm", "0.5 N", 23,
+     "wrong unit 'N'; allowed: m, mm, um, nm, rad, mrad, urad, deg, rad/Nm, urad/Nm"},
     {"TolerancePatternTwice", arm, "\"*.gear\"", "\"*.x\"", 23, "duplicate key '*.x'"},
     {"JointsOfPlatform", platform, "  pose: {", "  joints: {", 21, "unknown key 'joints'; allowed: pose"},
     {"PoseOfArm", arm, "  joints:", "  pose:", 27, "unknown key 'pose'; allowed: joints"},
@@ -185,7 +189,7 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "bad.yaml:36: unknown key 'candidate'; allowed: variant, criterion, method, poses, candidates, "
-                 "restarts, repeats");
+                 "restarts, repeats, prior");
   }
 }
 

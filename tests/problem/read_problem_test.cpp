@@ -73,7 +73,7 @@ TEST(ReadProblem, PointsMeasurementIsReadFieldByField) {
   EXPECT_TRUE(points.targets[0].position.isApprox(Vector3d(0.27723, -0.04653, -0.09387)));
   EXPECT_EQ(points.targets[1].name, "P2");
   EXPECT_TRUE(points.targets[1].position.isApprox(Vector3d(0.27649, -0.04825, 0.09405)));
-  EXPECT_TRUE(points.sigma.isApprox(Vector3d::Constant(1e-4)));
+  EXPECT_TRUE(std::get<GaussianNoise>(points.noise).covariance.isApprox(1e-8 * Eigen::Matrix3d::Identity()));
   EXPECT_THAT(points.components, ElementsAre(0, 2));
 }
 
@@ -135,7 +135,7 @@ TEST(ReadProblem, DesignIsReadFieldByField) {
 
 TEST(ReadProblem, SixPusIsReadFieldByField) {
   const Problem problem = parse(example::six_pus);
-  const auto& robot = std::get<SixPusSpec>(problem.robot);
+  const auto& robot = std::get<SixLegsSpec>(problem.robot);
   EXPECT_EQ(robot.line, 2);
   EXPECT_TRUE(robot.reference.position.isApprox(Vector3d(0, 0, 0.4837)));
   EXPECT_TRUE(robot.reference.rpy.isApprox(Vector3d(0, 0, 0.01)));
@@ -154,8 +154,8 @@ TEST(ReadProblem, SixPusIsReadFieldByField) {
   EXPECT_TRUE(robot.legs[1].u.isApprox(Vector3d::UnitZ()));
 
   const auto& pose = std::get<PoseMeasurement>(problem.measurement.instrument);
-  EXPECT_DOUBLE_EQ(pose.position_sigma, 1e-4);
-  EXPECT_DOUBLE_EQ(pose.rotation_sigma, 1e-4);
+  EXPECT_DOUBLE_EQ(pose.covariance(0, 0), 1e-8);
+  EXPECT_DOUBLE_EQ(pose.covariance(5, 5), 1e-8);
   EXPECT_THAT(pose.components, ElementsAre(0, 5));
 }
 
@@ -186,7 +186,7 @@ variants: {all: {parameters: auto}}
   ASSERT_EQ(points.targets.size(), 1U);
   EXPECT_EQ(points.targets[0].name, "target");
   EXPECT_TRUE(points.targets[0].position.isApprox(Vector3d(0, 0, 1e-3)));
-  EXPECT_TRUE(points.sigma.isApprox(Vector3d(1e-4, 2e-4, 3e-4)));
+  EXPECT_TRUE(std::get<GaussianNoise>(points.noise).covariance.diagonal().isApprox(Vector3d(1e-8, 4e-8, 9e-8)));
   EXPECT_THAT(points.components, ElementsAre(0, 1, 2));
   EXPECT_EQ(problem.measurement.repeats, 1);
   EXPECT_TRUE(problem.workspace.limits.empty());
@@ -199,7 +199,7 @@ variants: {all: {parameters: auto}}
 TEST(ReadProblem, AnchorsWindowsLineEndsAndByteOrderMarkAreAccepted) {
   const std::string shared = replaced(replaced(example::six_pus, "- {a: [0, 0.1, 0]", "- &leg {a: [0, 0.1, 0]"),
                                       "    - {a: [0, 0.1, 0], b: [0, 0.05, 0], l: 0.5}\n", "    - *leg\n");
-  EXPECT_EQ(std::get<SixPusSpec>(parse(shared).robot).legs[3].a.y(), 0.1);
+  EXPECT_EQ(std::get<SixLegsSpec>(parse(shared).robot).legs[3].a.y(), 0.1);
   std::string windows = "\xEF\xBB\xBF";
   for (const char c : example::serial) windows += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(parse(windows).design.poses->line, 35);
@@ -207,9 +207,9 @@ TEST(ReadProblem, AnchorsWindowsLineEndsAndByteOrderMarkAreAccepted) {
 
 TEST(ReadProblem, NumbersOfTheDirectionMayBeHugeOrTiny) {
   const Problem problem = parse(replaced(example::six_pus, "u: [0, 0, 2]", "u: [0, 1e300, 1e-300]"));
-  EXPECT_TRUE(std::get<SixPusSpec>(problem.robot).legs[0].u.isApprox(Vector3d::UnitY()));
+  EXPECT_TRUE(std::get<SixLegsSpec>(problem.robot).legs[0].u.isApprox(Vector3d::UnitY()));
   const Problem tiny = parse(replaced(example::six_pus, "u: [0, 0, 2]", "u: [1e-300, 0, 0]"));
-  EXPECT_TRUE(std::get<SixPusSpec>(tiny.robot).legs[0].u.isApprox(Vector3d::UnitX()));
+  EXPECT_TRUE(std::get<SixLegsSpec>(tiny.robot).legs[0].u.isApprox(Vector3d::UnitX()));
 }
 
 class ReadProblemFile : public testing::Test {

@@ -34,12 +34,14 @@ class Stage : public IdentificationModel {
     out.covariance = Eigen::MatrixXd::Constant(1, 1, 4.0);
     return true;
   }
-  bool do_actuator_values(std::span<const double> q, std::span<double> values) const override {
+  bool do_actuator_values(std::span<const double> q, std::span<const double>, std::span<double> values) const override {
     values[0] = q[0] + q[1];
     values[1] = q[2];
     return q[0] <= reach_;
   }
-  Eigen::Isometry3d do_tool_pose(std::span<const double>) const override { return Eigen::Isometry3d::Identity(); }
+  Eigen::Isometry3d do_tool_pose(std::span<const double>, std::span<const double>) const override {
+    return Eigen::Isometry3d::Identity();
+  }
   double reach_;
 };
 

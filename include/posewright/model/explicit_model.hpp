@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/measurement_model.hpp"
@@ -10,21 +9,39 @@
 namespace posewright {
 
 /// A robot that carries a tip, seen by an instrument: g = y − h(ρ, ξ). Parameters: the robot's, then the instrument's.
-/// Targets replace the tool: where the instrument has parameters of its own, tool.* are left out.
-/// Residual covariance: the instrument's, plus the joint readings' noise through ∂h/∂ρ.
+/// Where the instrument's targets stand for the tool, tool.* are left out. Configuration: the robot's, then the station
+/// where there is a choice. Residual covariance: the instrument's, plus the joint readings' noise through ∂h/∂ρ.
+///
+/// Everything but targets and lenses acts on the readings through a motion of the tip, so G = [Y | O] · C with Y (r ×
+/// 6) the rows along unit twists and O the own columns: where r is larger than that, blocks are written with 6 + |O|
+/// rows.
 class ExplicitModel : public IdentificationModel {
  public:
   ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement);
 
+  const TipModel& tip() const { return *tip_; }
+
  private:
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q) const override;
+  int do_block_rows(std::span<const int> selected) const override;
+  bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
+                             std::span<const int> selected, Linearisation& out) const override;
+  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                          std::span<double> values) const override;
+  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  struct Parts;
+  Parts parts(std::span<const double> q, std::span<const double> correction) const;
+  bool twists_and_covariance(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
+                             Linearisation& out) const;
 
   std::unique_ptr<TipModel> tip_;
   std::unique_ptr<MeasurementModel> measurement_;
-  int tip_parameters_ = 0;  ///< how many of the tip's parameters are in use (tool.* are its last)
-  bool encoder_noise_ = false;
+  int tip_parameters_ = 0;           ///< how many of the tip's parameters are in use (tool.* are its last)
+  std::vector<char> is_own_column_;  ///< per parameter: the instrument's, and no motion of the tip
+  bool reading_noise_ = false;
 };
 
 }  // namespace posewright

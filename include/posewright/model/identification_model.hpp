@@ -13,20 +13,32 @@ namespace posewright {
 /// One entry of a configuration (or one actuator that follows from it).
 struct Coordinate {
   std::string name;
-  std::string unit;  ///< "rad" or "m"
+  std::string unit;  ///< "rad" or "m"; empty for a choice
   double lower = 0.0;
   double upper = 0.0;
-  bool periodic = false;   ///< a full turn: both ends are the same pose and no boundary
+  bool periodic = false;              ///< a full turn: both ends are the same pose and no boundary
+  std::vector<double> values{};       ///< the only values allowed, ascending; empty: all between the limits
+  std::vector<std::string> labels{};  ///< of a choice (load case, station): what the values 0, 1, … stand for
+
+  bool discrete() const { return !values.empty(); }
+  bool choice() const { return !labels.empty(); }
 };
+
+/// A choice among named things as a coordinate: values 0, 1, … with these labels.
+Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels);
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
-  Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
-  Eigen::MatrixXd covariance;  ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
-  Eigen::Matrix<double, 6, Eigen::Dynamic> twists;        ///< scratch: tip twist per selected parameter
-  Eigen::Matrix<double, 6, Eigen::Dynamic> joint_twists;  ///< scratch: tip twist per configuration coordinate
-  Eigen::MatrixXd rows;                                   ///< scratch
-  Eigen::LLT<Eigen::MatrixXd> factor;                     ///< scratch of the whitening
+  Eigen::MatrixXd G;             ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
+  Eigen::MatrixXd covariance;    ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
+  Eigen::MatrixXd basis;         ///< r × c, c < r, where the model offers G = basis · coefficients
+  Eigen::MatrixXd coefficients;  ///< c × selected
+  Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter
+  Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
+  Eigen::MatrixXd rows;                                     ///< scratch
+  std::vector<double> correction;                           ///< scratch
+  Eigen::LLT<Eigen::MatrixXd> factor;                       ///< scratch of the whitening
+  Eigen::HouseholderQR<Eigen::MatrixXd> compression;        ///< scratch of the whitening
 };
 
 /// Robot and instrument together: everything that planning needs to know of them.
@@ -42,15 +54,28 @@ class IdentificationModel {
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   /// Coordinates that follow from the configuration and have limits of their own (actuators of a parallel robot).
   const std::vector<Coordinate>& actuators() const { return actuators_; }
-  /// Rows r of one block.
+  /// Rows r of one configuration: what the instrument reads.
   int rows() const { return rows_; }
+  /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
+  int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
+
+  /// Takes `value` as the nominal one of parameter `index`: from now on all that follows is linearised there.
+  void set_nominal(int index, double value);
 
   /// Fills out.G (columns in the order of `selected`, indices into parameters()) and out.covariance.
   /// @param q           configuration, size coordinates()
   /// @param correction  ξ − nominal for every parameter, or empty for all zero
-  /// @return false where q has no solution (unreachable); `out` is then unspecified
+  /// @return false where q has no solution (unreachable) or cannot be measured; `out` is then unspecified
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Linearisation& out) const;
+  /// The same with G factored into out.basis and out.coefficients; only where block_rows() < rows().
+  bool linearise_factored(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                          Linearisation& out) const;
+
+  /// False where the instrument cannot see q; why, in words for the table of rejections.
+  bool measurable(std::span<const double> q) const;
+  /// Empty where every reachable configuration can be measured.
+  const std::string& unmeasurable_reason() const { return unmeasurable_reason_; }
 
   /// Actuator coordinates at q (size actuators()); false where q is unreachable.
   bool actuator_values(std::span<const double> q, std::span<double> values) const;
@@ -70,13 +95,23 @@ class IdentificationModel {
   std::vector<Coordinate> coordinates_;
   std::vector<Coordinate> actuators_;
   std::vector<Preference> geometric_;
+  std::string unmeasurable_reason_;
   int rows_ = 0;
 
  private:
   virtual bool do_linearise(std::span<const double> q, std::span<const double> correction,
                             std::span<const int> selected, Linearisation& out) const = 0;
-  virtual bool do_actuator_values(std::span<const double> q, std::span<double> values) const;
-  virtual Eigen::Isometry3d do_tool_pose(std::span<const double> q) const = 0;
+  virtual int do_block_rows(std::span<const int> selected) const;
+  virtual bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
+                                     std::span<const int> selected, Linearisation& out) const;
+  virtual bool do_measurable(std::span<const double> q, std::span<const double> correction) const;
+  virtual bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                                  std::span<double> values) const;
+  virtual Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const = 0;
+
+  std::span<const double> total(std::span<const double> correction, std::vector<double>& scratch) const;
+
+  std::vector<double> shift_;  // nominal in force − nominal the model was built with; empty: all zero
 };
 
 }  // namespace posewright

@@ -7,7 +7,8 @@
 
 namespace posewright {
 
-/// The instrument of a problem file.
+/// The instrument of a problem file that looks at a tip. Throws std::invalid_argument for one that does not (joint
+/// sensors, distances between configurations).
 std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec);
 
 }  // namespace posewright

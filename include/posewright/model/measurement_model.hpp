@@ -2,37 +2,65 @@
 
 #include <Eigen/Dense>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "posewright/model/tip_model.hpp"
 
 namespace posewright {
 
-/// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets).
+/// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
+/// stations, lens). Members are const and may run in several threads at once.
 class MeasurementModel {
  public:
   virtual ~MeasurementModel() = default;
 
+  /// One measurement: where the tip is, corrections of the own parameters (or empty for zero), which station looks.
+  struct Sighting {
+    const Eigen::Isometry3d& X_MeasureTip;
+    std::span<const double> correction;
+    int station = 0;
+  };
+
   const std::vector<Parameter>& parameters() const { return parameters_; }
+  /// Parameters that `auto` may choose, in tiers (IdentificationModel::Preference; indices into parameters()).
+  const std::vector<IdentificationModel::Preference>& preferences() const { return preferences_; }
   int rows() const { return rows_; }
+  /// Names of the stations that a measurement can be taken from; empty where there is nothing to choose.
+  const std::vector<std::string>& stations() const { return stations_; }
+  /// True where targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
+  bool replaces_tool() const { return replaces_tool_; }
 
   /// Measured values' derivative along each tip twist: rows × twists.cols().
-  /// @param X_MeasureTip  pose of the tip in the measurement frame
-  /// @param correction    of the instrument's own parameters, or empty for zero
-  virtual void rows_of_twists(const Eigen::Isometry3d& X_MeasureTip, std::span<const double> correction,
-                              const Eigen::Ref<const Twists>& twists, Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
+  virtual void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                              Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
-  /// Column (size rows) of the instrument's own parameter `index`.
-  virtual void own_column(const Eigen::Isometry3d& X_MeasureTip, std::span<const double> correction, int index,
-                          Eigen::Ref<Eigen::VectorXd> column) const = 0;
+  /// Own parameters that act like a motion of the tip (a station moves one way, the tip seems to move the other):
+  /// true, and the twist where `twist` is not null.
+  virtual bool motion(const Sighting& sighting, int index, Twist* twist) const;
+
+  /// Column (size rows) of an own parameter that is no motion. Throws std::logic_error for others.
+  virtual void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const;
 
   /// Covariance of the rows (rows × rows): reading noise over repeats, plus what stays at a pose.
-  virtual void covariance(const Eigen::Isometry3d& X_MeasureTip, std::span<const double> correction,
-                          Eigen::Ref<Eigen::MatrixXd> covariance) const = 0;
+  virtual void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const = 0;
+
+  /// False where the instrument cannot read the tip there; unseen_reason() says why, empty where it always can.
+  virtual bool sees(const Sighting& sighting) const;
+  const std::string& unseen_reason() const { return unseen_reason_; }
 
  protected:
   std::vector<Parameter> parameters_;
+  std::vector<IdentificationModel::Preference> preferences_;
+  std::vector<std::string> stations_;
+  std::string unseen_reason_;
+  bool replaces_tool_ = false;
   int rows_ = 0;
 };
+
+/// Covariance (6 × 6) of the pose in spatial twists about the tip's origin, by the linear fit of the pose to an
+/// instrument's readings: Σ_X = (Yᵀ Σ_y⁻¹ Y)⁻¹, Y = derivative of the readings along those twists.
+/// Throws CannotDo where the readings do not fix all six degrees of freedom.
+Eigen::Matrix<double, 6, 6> fitted_pose_covariance(const MeasurementModel& measurement, const Eigen::Isometry3d& X);
 
 }  // namespace posewright

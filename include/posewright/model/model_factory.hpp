@@ -7,8 +7,11 @@
 
 namespace posewright {
 
-/// Robot and instrument of a problem file. Throws InputError (URDF, limits) or CannotDo (instrument and robot do not
-/// fit).
+/// Robot and instrument of a problem file as one variant sees them: its convention of parameters, its nominal values.
+/// Throws InputError (URDF, limits, names) or CannotDo (instrument, robot and variant do not fit).
+std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant);
+
+/// The same for the problem's first variant.
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
 
 }  // namespace posewright

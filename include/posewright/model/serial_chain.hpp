@@ -15,8 +15,13 @@ class SerialChain : public TipModel {
 
   /// Columns are spatial twists (design §3.1): rotation about axis ω through o gives (o × ω, ω), translation (axis, 0).
   /// Selected indices beyond the chain's own parameters give zero columns.
-  Eigen::Isometry3d linearise(std::span<const double> q, std::span<const double> correction,
-                              std::span<const int> selected, Twists& twists, Twists* joint_twists) const override;
+  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
+
+  /// The same with every joint turned further than it reads by `deflection` (rad or m per coordinate; empty: zero).
+  void linearise_deflected(std::span<const double> q, std::span<const double> deflection,
+                           std::span<const double> correction, std::span<const int> selected,
+                           Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const;
 
   const ChainDescription& description() const { return chain_; }
   const ChainLayout& layout() const { return layout_; }

@@ -18,6 +18,8 @@ struct ChainJoint {
   int coordinate = 0;                               ///< index into the configuration
   double multiplier = 1.0, offset = 0.0;            ///< of a mimic joint
   bool mimic = false;
+  double mass = 0.0;  ///< kg, of all links that this joint carries up to the next one
+  Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< m, frame of the moved joint
 };
 
 /// A serial chain from base to tip.

@@ -8,32 +8,51 @@
 
 namespace posewright {
 
+using Twist = Eigen::Matrix<double, 6, 1>;
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// A robot whose joints carry one tip frame: where the tip is and how each parameter moves it.
+/// A robot that carries one tip frame: where the tip is and how each parameter moves it.
 ///
 /// Twists are spatial and in the measurement frame M: rows 0–2 the velocity of the tip-fixed point that
 /// passes the origin of M, rows 3–5 the angular velocity; a tip-fixed point at p moves with v + ω × p.
+/// Parameters tool.* come last. Corrections may end before them (an instrument with targets has no tool).
 class TipModel {
  public:
   virtual ~TipModel() = default;
 
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+  /// Coordinates that follow from the configuration (actuators of a parallel robot).
+  const std::vector<Coordinate>& actuators() const { return actuators_; }
   const std::vector<IdentificationModel::Preference>& geometric_parameters() const { return geometric_; }
-  /// 1σ of each coordinate's reading (rad or m), size coordinates().
-  const std::vector<double>& encoder_noise() const { return encoder_noise_; }
+  /// 1σ of each reading that enters the model as if exact (rad or m): a joint's of a serial arm, an actuator's of a
+  /// parallel robot.
+  const std::vector<double>& reading_noise() const { return reading_noise_; }
+  /// Redundant joint sensors: coordinates that the robot measures beyond those it needs.
+  const std::vector<Coordinate>& sensors() const { return sensors_; }
 
   /// Pose of the tip in M, at configuration q and corrections (all parameters, or empty for zero).
-  /// Fills twists (6 × selected) and, unless null, joint_twists (6 × coordinates); both are resized if needed.
-  virtual Eigen::Isometry3d linearise(std::span<const double> q, std::span<const double> correction,
-                                      std::span<const int> selected, Twists& twists, Twists* joint_twists) const = 0;
+  /// Fills twists (6 × selected; zero for indices beyond the own parameters) and, unless null, reading_twists
+  /// (6 × readings); both are resized if needed. False where q is unreachable or singular.
+  virtual bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                         Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const = 0;
+
+  /// Actuators at q; false where q is unreachable.
+  virtual bool actuator_values(std::span<const double> q, std::span<const double> correction,
+                               std::span<double> values) const;
+
+  /// Derivatives of what the redundant sensors read: along the selected parameters (sensors × selected) and along the
+  /// readings (sensors × readings). False where q is unreachable. Throws std::logic_error where there are no sensors.
+  virtual bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                           Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const;
 
  protected:
   std::vector<Parameter> parameters_;
   std::vector<Coordinate> coordinates_;
+  std::vector<Coordinate> actuators_;
+  std::vector<Coordinate> sensors_;
   std::vector<IdentificationModel::Preference> geometric_;
-  std::vector<double> encoder_noise_;
+  std::vector<double> reading_noise_;
 };
 
 }  // namespace posewright

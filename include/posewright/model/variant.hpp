@@ -25,6 +25,9 @@ struct VariantColumns {
 /// (naming some that exist) and for a tolerance in a unit that none of the matched parameters has.
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
 
+/// Sets the nominal values that the variant names. Throws InputError as select_columns() does.
+void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+
 /// The columns that `kept` (ascending indices into columns) names.
 VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept);
 

@@ -24,6 +24,7 @@ struct PlannedPose {
   int candidate = 0;                           ///< zero-based index in the candidate set
   std::vector<NamedValue> configuration;       ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;           ///< of a parallel robot
+  std::string load_case, station;              ///< empty where the problem has none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   double contribution = 0.0;                   ///< share of all information, sums to 1 over the plan
 };

@@ -6,8 +6,8 @@
 
 namespace posewright {
 
-/// What a value measures. SI inside: m, rad, N.
-enum class Quantity { number, length, angle, force };
+/// What a value measures. SI inside: m, rad, N, rad/(N·m), N/m.
+enum class Quantity { number, length, angle, force, compliance, stiffness };
 
 /// A value in SI together with the quantity its unit names; `number` where no unit was written.
 struct Measured {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -24,6 +25,11 @@ class Random {
   double uniform(double lower, double upper) { return lower + (upper - lower) * uniform(); }
   /// Uniform in {0, …, bound − 1}; the bias is below bound/2⁵³.
   int index(int bound) { return static_cast<int>(uniform() * bound); }
+  /// Standard normal; Box & Muller (1958), one of the pair.
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(6.283185307179586 * uniform());
+  }
 
  private:
   std::mt19937_64 engine_;

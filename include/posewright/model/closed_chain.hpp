@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+
+#include "posewright/model/tip_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Closed-chain robots: loop equations f(x, ρ, ξ) = 0 tie the platform's coordinates x (the configuration) to the
+/// actuators ρ; as many equations as coordinates. A robot gives f's derivatives; everything else is done here:
+///   twist of the platform along a parameter = −B F_x⁻¹ F_ξ,  along an actuator reading = −B F_x⁻¹ F_ρ,
+/// F_x = ∂f/∂x, B = twists along the coordinates (6 × d). So every instrument works with every closed chain, also one
+/// that sees only a part of the pose. Where it sees all six values this gives the same information as the residual f
+/// itself, weighted by (F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ)⁻¹ (design §3.4): both differ by the regular factor F_x.
+///
+/// Parameters: base.{x,…,rz} (displacement of the base in M), the robot's own, tool.{x,…,rz} (of the platform).
+class ClosedChain : public TipModel {
+ public:
+  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const final;
+  bool actuator_values(std::span<const double> q, std::span<const double> correction,
+                       std::span<double> values) const final;
+
+  bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                   Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const final;
+
+  /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty where it
+  /// does not converge in 50 steps or meets a singularity.
+  /// @param correction  of all parameters, or empty for zero
+  std::optional<std::vector<double>> forward_kinematics(std::span<const double> actuators,
+                                                        std::span<const double> start,
+                                                        std::span<const double> correction = {}) const;
+
+  /// Pose of the platform in the base frame, nominal.
+  Eigen::Isometry3d platform(std::span<const double> q) const;
+
+  /// Derivatives of the d loop equations at one configuration, in the base frame.
+  struct Loops {
+    Eigen::VectorXd value;      ///< f, d
+    Eigen::MatrixXd parameter;  ///< d × selected: ∂f/∂ξ
+    Eigen::MatrixXd platform;   ///< d × 6: along spatial twists of the platform
+    Eigen::MatrixXd actuator;   ///< d × actuators: ∂f/∂ρ
+  };
+  /// @param own       corrections of the robot's own parameters, or empty for zero
+  /// @param selected  indices into the robot's own parameters; others (< 0 or beyond) give zero columns
+  void loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+             std::span<const int> selected, Loops& out) const;
+
+ protected:
+  explicit ClosedChain(const Placement& placement);
+
+  /// Called once by the robot's constructor when its own parameters, coordinates and actuators are there.
+  void finish(const std::vector<Parameter>& own, double actuator_noise);
+  int first_own() const { return 6; }
+  /// Corrections of the own parameters: empty, or as many as there are.
+  std::span<const double> own_part(std::span<const double> correction) const;
+  void own_selection(std::span<const int> selected, std::vector<int>& own) const;
+
+ private:
+  /// Pose of the platform in the base frame, and the twists (6 × d, spatial, base frame) along its coordinates.
+  virtual Eigen::Isometry3d do_platform(std::span<const double> q, Twists& freedoms) const = 0;
+  /// False where q is out of reach.
+  virtual bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
+                                     std::span<double> actuators) const = 0;
+  /// `out` has the right sizes and is all zero.
+  virtual void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                        std::span<const int> selected, Loops& out) const = 0;
+  /// The same derivatives of what the redundant sensors read, for robots that have some.
+  virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                          std::span<const int> selected, Loops& out) const;
+
+  Eigen::Isometry3d X_MeasureBase_;
+  int own_count_ = 0;
+};
+
+}  // namespace posewright

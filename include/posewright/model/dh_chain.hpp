@@ -1,0 +1,71 @@
+#pragma once
+
+#include "posewright/model/serial_chain_kinematics.hpp"
+#include "posewright/model/tip_model.hpp"
+
+namespace posewright {
+
+/// One factor of a chain written as elementary motions: a rotation about or a translation along x, y or z.
+struct ElementaryMotion {
+  bool rotation = false;
+  int axis = 0;          ///< 0 x, 1 y, 2 z
+  double nominal = 0.0;  ///< rad or m
+  int coordinate = -1;   ///< added to it, with the sign +1; −1: none
+  std::string name;      ///< of its parameter; empty: fixed
+};
+
+/// A serial chain in Denavit–Hartenberg parameters: X_MeasureTip = base · Π motions · tool.
+struct DhDescription {
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();  ///< X_MeasureBase, its z along the first joint's axis
+  std::vector<ElementaryMotion> motions;
+  Eigen::Isometry3d tool = Eigen::Isometry3d::Identity();
+  std::vector<Coordinate> coordinates;
+  std::vector<double> encoder_noise;
+};
+
+enum class DhConvention { distal, proximal };
+
+/// Denavit–Hartenberg parameters of a chain from where its axes are at zero position. Joint by joint
+///   distal (Denavit & Hartenberg 1955):  Rz(θ) Tz(d) Tx(a) Rx(α) with the joint first,
+///   proximal ("modified", Craig):        Rx(α) Tx(a) Rz(θ) Tz(d) with the joint last;
+/// the product is the same, what differs is which joint a and α are named after. Where an axis is parallel to the next,
+/// d is replaced by a rotation β about y (Hayati 1983): Rz(θ) Tx(a) Rx(α) Ry(β), else d would be undetermined and small
+/// misalignments would make it jump. Throws CannotDo for a chain with mimic joints.
+DhDescription denavit_hartenberg(const ChainDescription& chain, DhConvention convention);
+
+/// Pose of the tip in a scalar of its own, for differentiation; corrections: base (6), motions with a name, tool (6).
+template <class T>
+Frame<T> dh_tip_pose(const DhDescription& chain, const double* q, const T* correction) {
+  Frame<T> frame;
+  frame.then(chain.base);
+  frame.then_displace(correction);
+  const T* next = correction + 6;
+  for (const ElementaryMotion& motion : chain.motions) {
+    T value = T(motion.nominal);
+    if (motion.coordinate >= 0) value += T(q[motion.coordinate]);
+    if (!motion.name.empty()) value += *next++;
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(motion.axis);
+    if (motion.rotation) frame.then_rotate(axis, value);
+    else frame.then_translate(axis.cast<T>() * value);
+  }
+  frame.then(chain.tool);
+  frame.then_displace(next);
+  return frame;
+}
+
+/// Parameters: base.{x,…,rz}; JOINT.{theta, d, a, alpha, beta} as there are; tool.{x,…,rz}.
+class DhChain : public TipModel {
+ public:
+  explicit DhChain(DhDescription chain);
+
+  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
+
+  const DhDescription& description() const { return chain_; }
+
+ private:
+  DhDescription chain_;
+  int tool_ = 0;  ///< index of tool.x
+};
+
+}  // namespace posewright

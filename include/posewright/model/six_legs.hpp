@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cmath>
+
+#include "posewright/model/closed_chain.hpp"
+
+namespace posewright {
+
+/// One leg's parameters in the scalar type T: base joint a, platform joint b, actuator direction u, length l.
+template <class T>
+struct LegParameters {
+  T a[3], b[3], u[2], l;  ///< u without its third component, which is √(1 − ux² − uy²) with the nominal sign
+};
+
+/// Loop equation of one leg, g = l + extension − ‖p + R (b + lift·z) − a − slide·u‖ (design §3.4). A leg with a
+/// prismatic base joint slides, a leg of variable length extends; `lift` is the platform's deformation at b.
+/// @param p, R    platform pose in the base frame (m; row-major rotation)
+/// @param u_sign  sign of the third component of u
+template <class T>
+T leg_residual(const T* p, const T* R, const T& slide, const T& extension, const T& lift, const LegParameters<T>& leg,
+               double u_sign) {
+  using std::sqrt;
+  const T u[3] = {leg.u[0], leg.u[1], u_sign * sqrt(T(1.0) - leg.u[0] * leg.u[0] - leg.u[1] * leg.u[1])};
+  T squared(0.0);
+  for (int i = 0; i < 3; ++i) {
+    const T h = p[i] + R[3 * i] * leg.b[0] + R[3 * i + 1] * leg.b[1] + R[3 * i + 2] * (leg.b[2] + lift) - leg.a[i] -
+                slide * u[i];
+    squared += h * h;
+  }
+  return leg.l + extension - sqrt(squared);
+}
+
+/// Six-legged parallel robot: with prismatic base actuators (6-PUS, e.g. a telescope's secondary mirror) or legs of
+/// variable length (Gough/Stewart platform).
+///
+/// Configuration: x, y, z (m) added to the reference position, rx, ry, rz (rad): R = Rz Ry Rx R_reference. Own
+/// parameters: leg_i.{ax, ay, az, bx, by, bz, ux, uy, l}, i = 1 … 6 (no ux, uy for a Gough platform); a in the base
+/// frame, b in the platform's. A 6-PUS adds the deformation of the platform by the actuators' positions (design §3.4),
+///   Δb_i = (kappa ρ_i + Σ_j K_ij ρ_j) z,
+/// all zero unless a variant's nominal values say otherwise. Actuators leg_i.rho by inverse kinematics, of the two
+/// solutions the lower.
+class SixLegs : public ClosedChain {
+ public:
+  SixLegs(const SixLegsSpec& spec, const std::vector<CoordinateLimits>& pose_limits);
+
+ private:
+  Eigen::Isometry3d do_platform(std::span<const double> q, Twists& freedoms) const override;
+  bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
+                             std::span<double> actuators) const override;
+  void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                std::span<const int> selected, Loops& out) const override;
+
+  Eigen::Isometry3d platform_pose(std::span<const double> q) const;
+
+  SixLegsSpec spec_;
+  Eigen::Isometry3d X_BaseReference_;
+  int per_leg_ = 9;
+};
+
+}  // namespace posewright

@@ -1,0 +1,176 @@
+#include "posewright/model/closed_chain.hpp"
+
+#include <numbers>
+#include <stdexcept>
+
+#include "displacement.hpp"
+#include "posewright/model/placement.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr int newton_steps = 50;
+// Newton's method ends after a step this small (m, rad): it squares the error, so what is left is rounding.
+constexpr double newton_tolerance = 1e-12;
+// Smallest pivot of F_x, relative to its largest, that is not a singularity.
+constexpr double singular_pivot = 1e-10;
+
+using Factor = Eigen::FullPivLU<Eigen::MatrixXd>;
+
+bool is_singular(const Factor& factor) {
+  const auto pivots = factor.matrixLU().diagonal().cwiseAbs();
+  return !(pivots.minCoeff() > singular_pivot * pivots.maxCoeff());
+}
+
+/// Work space of one thread, so that a loop over configurations does not allocate.
+struct Scratch {
+  ClosedChain::Loops loops, sensors;
+  std::vector<int> own;
+  std::vector<double> actuators;
+  Twists freedoms;
+  Eigen::MatrixXd along_coordinates, solved;
+  Factor factor;
+};
+
+Scratch& scratch_of_this_thread() {
+  static thread_local Scratch scratch;
+  return scratch;
+}
+
+}  // namespace
+
+ClosedChain::ClosedChain(const Placement& placement) : X_MeasureBase_(isometry(placement)) {
+  append_displacement(parameters_, "base", X_MeasureBase_, 10e-3, 1 * degree);
+}
+
+void ClosedChain::finish(const std::vector<Parameter>& own, double actuator_noise) {
+  own_count_ = int(own.size());
+  parameters_.insert(parameters_.end(), own.begin(), own.end());
+  append_displacement(parameters_, "tool", Eigen::Isometry3d::Identity(), 5e-3, 1 * degree);
+  const int count = int(parameters_.size());
+  for (int i = 0; i < count; ++i) geometric_.push_back({i, i < 6 ? 0 : i >= count - 6 ? 1 : 2});
+  reading_noise_.assign(actuators_.size(), actuator_noise);
+}
+
+std::span<const double> ClosedChain::own_part(std::span<const double> correction) const {
+  return correction.empty() ? correction : correction.subspan(std::size_t(first_own()), std::size_t(own_count_));
+}
+
+void ClosedChain::own_selection(std::span<const int> selected, std::vector<int>& own) const {
+  own.clear();
+  for (const int index : selected) {
+    const int i = index - first_own();
+    own.push_back(i >= 0 && i < own_count_ ? i : -1);
+  }
+}
+
+bool ClosedChain::actuator_values(std::span<const double> q, std::span<const double> correction,
+                                  std::span<double> values) const {
+  return do_inverse_kinematics(q, own_part(correction), values);
+}
+
+Eigen::Isometry3d ClosedChain::platform(std::span<const double> q) const {
+  Twists freedoms;
+  return do_platform(q, freedoms);
+}
+
+void ClosedChain::loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                        std::span<const int> selected, Loops& out) const {
+  const auto d = Eigen::Index(coordinates_.size());
+  out.value.setZero(d);
+  out.parameter.setZero(d, Eigen::Index(selected.size()));
+  out.platform.setZero(d, 6);
+  out.actuator.setZero(d, Eigen::Index(actuators.size()));
+  do_loops(q, actuators, own, selected, out);
+}
+
+bool ClosedChain::linearise(std::span<const double> q, std::span<const double> correction,
+                            std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                            Twists* reading_twists) const {
+  Scratch& s = scratch_of_this_thread();
+  const auto own = own_part(correction);
+  s.actuators.resize(actuators_.size());
+  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
+  own_selection(selected, s.own);
+  const Eigen::Isometry3d X_BasePlatform = do_platform(q, s.freedoms);
+  loops(q, s.actuators, own, s.own, s.loops);
+  s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
+  s.factor.compute(s.along_coordinates);
+  if (is_singular(s.factor)) return false;
+
+  Frame<double> frame = frame_of(X_MeasureBase_);
+  const DisplacementAxes base = displace(frame, correction.empty() ? nullptr : correction.data());
+  const Eigen::Isometry3d X_MeasureBase = isometry_of(frame);
+  frame.then(X_BasePlatform);
+  const std::size_t first_tool = std::size_t(first_own() + own_count_);
+  const DisplacementAxes tool =
+      displace(frame, correction.size() > first_tool ? correction.data() + first_tool : nullptr);
+  X_MeasureTip = isometry_of(frame);
+
+  s.solved = s.factor.solve(s.loops.parameter);
+  twists.resize(6, Eigen::Index(selected.size()));
+  twists.noalias() = -s.freedoms * s.solved;
+  change_frame(X_MeasureBase, twists);
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    const int index = selected[c];
+    if (index < 6) twists.col(Eigen::Index(c)) = base.twist(index);
+    else if (index >= int(first_tool) && index < int(first_tool) + 6)
+      twists.col(Eigen::Index(c)) = tool.twist(index - int(first_tool));
+  }
+  if (reading_twists != nullptr) {
+    s.solved = s.factor.solve(s.loops.actuator);
+    reading_twists->resize(6, s.solved.cols());
+    reading_twists->noalias() = -s.freedoms * s.solved;
+    change_frame(X_MeasureBase, *reading_twists);
+  }
+  return true;
+}
+
+bool ClosedChain::sensor_rows(std::span<const double> q, std::span<const double> correction,
+                              std::span<const int> selected, Eigen::MatrixXd& rows,
+                              Eigen::MatrixXd& reading_rows) const {
+  Scratch& s = scratch_of_this_thread();
+  const auto own = own_part(correction);
+  s.actuators.resize(actuators_.size());
+  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
+  own_selection(selected, s.own);
+  do_platform(q, s.freedoms);
+  loops(q, s.actuators, own, s.own, s.loops);
+  s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
+  s.factor.compute(s.along_coordinates);
+  if (is_singular(s.factor)) return false;
+  const auto count = Eigen::Index(sensors_.size());
+  s.sensors.parameter.setZero(count, Eigen::Index(selected.size()));
+  s.sensors.platform.setZero(count, 6);
+  s.sensors.actuator.setZero(count, Eigen::Index(actuators_.size()));
+  do_sensors(q, s.actuators, own, s.own, s.sensors);
+  rows = s.sensors.parameter - s.sensors.platform * s.freedoms * s.factor.solve(s.loops.parameter);
+  reading_rows = s.sensors.actuator - s.sensors.platform * s.freedoms * s.factor.solve(s.loops.actuator);
+  return true;
+}
+
+void ClosedChain::do_sensors(std::span<const double>, std::span<const double>, std::span<const double>,
+                             std::span<const int>, Loops&) const {
+  throw std::logic_error("this robot has no redundant joint sensors");
+}
+
+std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<const double> actuators,
+                                                                   std::span<const double> start,
+                                                                   std::span<const double> correction) const {
+  Scratch& s = scratch_of_this_thread();
+  std::vector<double> q(start.begin(), start.end());
+  for (int step = 0; step < newton_steps; ++step) {
+    do_platform(q, s.freedoms);
+    loops(q, actuators, own_part(correction), {}, s.loops);
+    s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
+    s.factor.compute(s.along_coordinates);
+    if (!s.loops.value.allFinite() || is_singular(s.factor)) return std::nullopt;
+    const Eigen::VectorXd change = s.factor.solve(s.loops.value);
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] -= change[Eigen::Index(i)];
+    if (change.cwiseAbs().maxCoeff() < newton_tolerance) return q;
+  }
+  return std::nullopt;
+}
+
+}  // namespace posewright

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Where the pins of a gravity compensator are: markers on the fixed pin P0 and on the link's pin P1 are measured over
+/// the joint's range. In a frame with the joint's axis as z through its origin P2 (design §3.3, α = atan2(ax, ay)):
+///   P0 = −(ax, ay, 0),  P1 = L (sin(q2 + offset), cos(q2 + offset), 0).
+/// Configuration: q2 (rad). Rows: P0 and P1 in the measurement frame. Parameters: L, ax, ay (m), q2.offset (rad),
+/// base.{x,…,rz} (the axis in the measurement frame).
+class CompensatorGeometry : public IdentificationModel {
+ public:
+  /// Throws CannotDo unless the instrument measures two points called P0 and P1 from one place.
+  CompensatorGeometry(const CompensatorGeometrySpec& spec, const MeasurementSpec& measurement);
+
+ private:
+  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                    Linearisation& out) const override;
+  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  CompensatorGeometrySpec spec_;
+  PointNoise noise_;
+  double repeats_, repeatability_;
+};
+
+}  // namespace posewright

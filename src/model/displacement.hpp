@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+
+#include "posewright/model/serial_chain_kinematics.hpp"
+#include "posewright/model/tip_model.hpp"
+
+/// Six small displacements of a frame, D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), and the twists along them.
+namespace posewright {
+
+inline constexpr std::array<const char*, 6> displacement_names = {"x", "y", "z", "rx", "ry", "rz"};
+
+/// The six axes of a displacement and where they act: translations and rz along the undisplaced axes, ry and rx along
+/// partially rotated ones, all through the displaced origin.
+struct DisplacementAxes {
+  Eigen::Matrix3d translation, rotation;  ///< columns x, y, z
+  Eigen::Vector3d origin;
+
+  /// Spatial twist along x, y, z, rx, ry, rz (0 … 5).
+  Twist twist(int component) const;
+};
+
+/// Displaces the frame by d (six values; null: zero) and returns the axes.
+DisplacementAxes displace(Frame<double>& frame, const double* d);
+
+/// Rotation about an axis through a point; translation along an axis.
+Twist revolute(const Eigen::Vector3d& axis, const Eigen::Vector3d& origin);
+Twist prismatic(const Eigen::Vector3d& axis);
+
+Frame<double> frame_of(const Eigen::Isometry3d& X);
+Eigen::Isometry3d isometry_of(const Frame<double>& frame);
+
+/// Spatial twists expressed in A, given in B: adjoint of X_AB.
+void change_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> twists);
+
+/// Parameters NAME.{x,y,z,rx,ry,rz} of a frame at X.
+void append_displacement(std::vector<Parameter>& parameters, const std::string& name, const Eigen::Isometry3d& X,
+                         double length_tolerance, double angle_tolerance);
+
+}  // namespace posewright

@@ -1,0 +1,122 @@
+#include "distance_pair_model.hpp"
+
+#include "measure_distance.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double default_target_tolerance = 1e-3;  // m
+
+}  // namespace
+
+struct DistancePairModel::End {
+  Eigen::Isometry3d X;
+  Twists twists, reading_twists;
+};
+
+DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& spec)
+    : tip_(std::move(tip)),
+      spec_(std::get<DistanceMeasurement>(spec.instrument)),
+      repeats_(spec.repeats),
+      repeatability_(spec.repeatability) {
+  parameters_ = tip_->parameters();
+  std::erase_if(parameters_, [](const Parameter& p) { return p.name.starts_with("tool."); });
+  tip_parameters_ = int(parameters_.size());
+  for (const Preference& preference : tip_->geometric_parameters())
+    if (preference.parameter < tip_parameters_) geometric_.push_back(preference);
+  for (const TargetSpec& t : spec_.targets)
+    for (int k = 0; k < 3; ++k) {
+      geometric_.push_back({int(parameters_.size()), 1});
+      parameters_.push_back(
+          {"target." + t.name + "." + "xyz"[k], "m", t.position[k], default_target_tolerance, Role::interest});
+    }
+  const auto twice = [](std::vector<Coordinate>& to, const std::vector<Coordinate>& from) {
+    to = from;
+    for (Coordinate c : from) {
+      c.name += ".second";
+      to.push_back(c);
+    }
+  };
+  twice(coordinates_, tip_->coordinates());
+  twice(actuators_, tip_->actuators());
+  rows_ = int(spec_.targets.size());
+  unmeasurable_reason_ = "distance out of range";
+}
+
+Eigen::Vector3d DistancePairModel::target(const Eigen::Isometry3d& X, std::span<const double> correction,
+                                          std::size_t t) const {
+  Eigen::Vector3d p = spec_.targets[t].position;
+  if (!correction.empty())
+    p += Eigen::Map<const Eigen::Vector3d>(correction.data() + std::size_t(tip_parameters_) + 3 * t);
+  return X * p;
+}
+
+bool DistancePairModel::end(std::span<const double> q, std::span<const double> correction,
+                            std::span<const int> selected, End& result) const {
+  return tip_->linearise(q, correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)), selected,
+                         result.X, result.twists, &result.reading_twists);
+}
+
+bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const double> correction,
+                                     std::span<const int> selected, Linearisation& out) const {
+  static thread_local End ends[2];
+  const std::size_t half = q.size() / 2;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!end(q.subspan(i * half, half), correction, selected, ends[i])) return false;
+  out.G.resize(rows_, Eigen::Index(selected.size()));
+  out.covariance.setZero(rows_, rows_);
+  out.rows.resize(rows_, 2 * Eigen::Index(tip_->reading_noise().size()));
+  for (int t = 0; t < rows_; ++t) {
+    const Eigen::Vector3d from = target(ends[0].X, correction, std::size_t(t)),
+                          to = target(ends[1].X, correction, std::size_t(t));
+    const double d = (to - from).norm();
+    if (!spans(spec_, d)) return false;
+    const Eigen::Vector3d e = (to - from) / d;
+    Twist along[2];
+    along[0] << -e, -from.cross(e);
+    along[1] << e, to.cross(e);
+    out.G.row(t) = along[0].transpose() * ends[0].twists + along[1].transpose() * ends[1].twists;
+    for (std::size_t c = 0; c < selected.size(); ++c) {
+      if (selected[c] < tip_parameters_) continue;
+      const int own = selected[c] - tip_parameters_;
+      out.G(t, Eigen::Index(c)) =
+          own / 3 == t ? e.dot(ends[1].X.linear().col(own % 3) - ends[0].X.linear().col(own % 3)) : 0.0;
+    }
+    // Both ends carry the robot's repeatability.
+    out.covariance(t, t) = distance_variance(spec_, d, repeats_, std::sqrt(2.0) * repeatability_);
+    const auto readings = Eigen::Index(tip_->reading_noise().size());
+    for (Eigen::Index i = 0; i < 2; ++i)
+      for (Eigen::Index j = 0; j < readings; ++j)
+        out.rows(t, i * readings + j) =
+            along[i].dot(ends[i].reading_twists.col(j)) * tip_->reading_noise()[std::size_t(j)];
+  }
+  out.covariance.noalias() += out.rows * out.rows.transpose();
+  return true;
+}
+
+bool DistancePairModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+  const std::size_t half = q.size() / 2;
+  End ends[2];
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!end(q.subspan(i * half, half), correction, {}, ends[i])) return false;
+  for (std::size_t t = 0; t < spec_.targets.size(); ++t)
+    if (!spans(spec_, (target(ends[1].X, correction, t) - target(ends[0].X, correction, t)).norm())) return false;
+  return true;
+}
+
+bool DistancePairModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                                           std::span<double> values) const {
+  const std::size_t half = q.size() / 2, actuators = values.size() / 2;
+  const auto tip = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
+  return tip_->actuator_values(q.first(half), tip, values.first(actuators)) &&
+         tip_->actuator_values(q.last(half), tip, values.last(actuators));
+}
+
+Eigen::Isometry3d DistancePairModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
+  End second;
+  second.X.setIdentity();
+  end(q.last(q.size() / 2), correction, {}, second);
+  return second.X;
+}
+
+}  // namespace posewright

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/tip_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// How far a sphere on the tip travels from one configuration to another, e.g. by a ball bar's two ends or a cable
+/// sensor read twice: d = ‖p(q') − p(q)‖ for each target. Configuration: q, then q' (coordinates NAME.second).
+/// Parameters: the robot's without tool.*, target.NAME.{x,y,z}. Where the base stands has no effect.
+class DistancePairModel : public IdentificationModel {
+ public:
+  DistancePairModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& spec);
+
+ private:
+  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                    Linearisation& out) const override;
+  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                          std::span<double> values) const override;
+  /// That of the second configuration.
+  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  struct End;
+  bool end(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+           End& result) const;
+  Eigen::Vector3d target(const Eigen::Isometry3d& X, std::span<const double> correction, std::size_t t) const;
+
+  std::unique_ptr<TipModel> tip_;
+  DistanceMeasurement spec_;
+  double repeats_, repeatability_;
+  int tip_parameters_ = 0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,196 @@
+#include "posewright/model/elastic_chain.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "displacement.hpp"
+#include "posewright/model/gravity_compensator.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::size_t max_joints = 64;
+// 1σ before calibration: a joint's compliance is known from similar arms to about a third, at the least to this much.
+constexpr double relative_tolerance = 0.3;
+constexpr double compliance_tolerance = 0.3e-6;  // rad/(N·m); m/N for prismatic joints
+
+using Wrench = Eigen::Matrix<double, 6, 1>;  // force, moment about the origin of M
+
+Wrench force_at(const Eigen::Vector3d& force, const Eigen::Vector3d& point) {
+  Wrench w;
+  w << force, point.cross(force);
+  return w;
+}
+
+std::string joint_names(const std::vector<Coordinate>& coordinates) {
+  std::string names;
+  for (const Coordinate& c : coordinates) names += (names.empty() ? "joints: " : ", ") + c.name;
+  return names;
+}
+
+int coordinate_named(const std::vector<Coordinate>& coordinates, const Located<std::string>& name,
+                     const SourcePlace& place) {
+  for (int i = 0; i < int(coordinates.size()); ++i)
+    if (coordinates[std::size_t(i)].name == name.value) return i;
+  throw InputError({place.file, name.line}, "'" + name.value + "' is no joint of this arm that moves by itself",
+                   joint_names(coordinates));
+}
+
+void limit_to(Coordinate& c, const std::vector<double>& values, const SourcePlace& place) {
+  for (const double value : values)
+    if (value < c.lower || value > c.upper)
+      throw InputError(
+          place, "a listed position of '" + c.name + "' is outside its limits",
+          "positions between " + std::to_string(c.lower) + " and " + std::to_string(c.upper) + " " + c.unit);
+  c.values = values;
+  c.lower = values.front();
+  c.upper = values.back();
+  c.periodic = false;
+}
+
+}  // namespace
+
+ElasticChain::ElasticChain(ChainDescription chain, const ElastostaticSpec& spec, const SourcePlace& place)
+    : chain_(std::move(chain)), spec_(spec) {
+  coordinates_ = chain_.coordinates();
+  reading_noise_ = chain_.reading_noise();
+  const int tool = chain_.layout().tool;
+  parameters_.assign(chain_.parameters().begin(), chain_.parameters().begin() + tool);
+  first_ = tool;
+  add_springs(place);
+  parameters_.insert(parameters_.end(), chain_.parameters().begin() + tool, chain_.parameters().end());
+  for (const auto& preference : chain_.geometric_parameters())
+    geometric_.push_back(
+        {preference.parameter < tool ? preference.parameter : preference.parameter + int(springs_.size()),
+         preference.tier});
+  std::vector<std::string> loads;
+  for (const LoadCaseSpec& load : spec_.loads) loads.push_back(load.name);
+  coordinates_.push_back(make_choice("load_case", loads));
+}
+
+void ElasticChain::add_springs(const SourcePlace& place) {
+  const std::vector<Coordinate>& joints = chain_.coordinates();
+  std::vector<double> nominal(joints.size(), 0.0);
+  for (const auto& [name, value] : spec_.compliance)
+    nominal[std::size_t(coordinate_named(joints, name, place))] = value;
+  const int compensated = spec_.compensator ? coordinate_named(joints, spec_.compensator->joint, place) : -1;
+  const int listed = spec_.listed ? coordinate_named(joints, spec_.listed->joint, place) : -1;
+  if (listed >= 0)
+    limit_to(coordinates_[std::size_t(listed)], spec_.listed->at, {place.file, spec_.listed->joint.line});
+  const auto add = [&](const std::string& name, const std::string& unit, double value, double least, Spring spring) {
+    parameters_.push_back({name, unit, value, std::max(least, relative_tolerance * std::abs(value)), Role::interest});
+    springs_.push_back(spring);
+  };
+  for (int c = 0; c < int(joints.size()); ++c) {
+    const std::string& name = joints[std::size_t(c)].name;
+    const std::string unit = joints[std::size_t(c)].unit == "m" ? "m/N" : "rad/(N·m)";
+    if (c == compensated) {
+      const CompensatorSpec& spring = *spec_.compensator;
+      add(name + ".stiffness", "N·m/rad", spring.joint_stiffness, 0, {Spring::Kind::joint_stiffness, c});
+      add("compensator.stiffness", "N/m", spring.stiffness, 0, {Spring::Kind::spring_stiffness, c});
+      add("compensator.preload", "N", spring.free_length * spring.stiffness, 0, {Spring::Kind::preload, c});
+    } else if (c == listed) {
+      for (int i = 0; i < int(spec_.listed->at.size()); ++i)
+        add(name + ".compliance_" + std::to_string(i + 1), unit, nominal[std::size_t(c)], compliance_tolerance,
+            {Spring::Kind::listed, c, i});
+    } else {
+      add(name + ".compliance", unit, nominal[std::size_t(c)], compliance_tolerance, {Spring::Kind::compliance, c});
+    }
+  }
+}
+
+void ElasticChain::torques(std::span<const double> q, int load, std::span<double> out) const {
+  const ChainDescription& chain = chain_.description();
+  const LoadCaseSpec& w = spec_.loads[std::size_t(load)];
+  std::array<Twist, max_joints> motion;
+  std::array<Wrench, max_joints> weight;
+  Frame<double> frame;
+  frame.then(chain.X_MeasureBase);
+  for (std::size_t k = 0; k < chain.joints.size(); ++k) {
+    const ChainJoint& joint = chain.joints[k];
+    frame.then(joint.X_ParentJoint);
+    const double value = joint.multiplier * q[std::size_t(joint.coordinate)] + joint.offset;
+    const Eigen::Vector3d axis = frame.R * joint.axis;
+    motion[k] = joint.prismatic ? prismatic(axis) : revolute(axis, frame.p);
+    if (joint.prismatic) frame.p += axis * value;
+    else frame.then_rotate(joint.axis, value);
+    weight[k] = spec_.link_gravity ? force_at(joint.mass * spec_.gravity, frame.R * joint.centre_of_mass + frame.p)
+                                   : Wrench(Wrench::Zero());
+  }
+  frame.then(chain.X_LastTip);
+  Wrench beyond = force_at(w.force, frame.R * w.point + frame.p) +
+                  force_at(w.mass * spec_.gravity, frame.R * w.centre_of_mass + frame.p);
+  beyond.tail<3>() += w.moment;
+  std::fill(out.begin(), out.end(), 0.0);
+  for (std::size_t k = chain.joints.size(); k-- > 0;) {
+    beyond += weight[k];
+    out[std::size_t(chain.joints[k].coordinate)] += chain.joints[k].multiplier * motion[k].dot(beyond);
+  }
+}
+
+void ElasticChain::deflect(std::span<const double> q, std::span<const double> elastic, std::span<double> deflection,
+                           std::span<double> derivative) const {
+  std::array<double, max_joints> torque{};
+  const std::size_t joints = chain_.coordinates().size();
+  torques(q, int(q[joints]), std::span(torque).first(joints));
+  const auto value = [&](std::size_t i) {
+    return parameters_[std::size_t(first_) + i].nominal + (elastic.empty() ? 0.0 : elastic[i]);
+  };
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const Spring& spring = springs_[i];
+    const auto c = std::size_t(spring.coordinate);
+    derivative[i] = 0.0;
+    if (spring.kind == Spring::Kind::listed && q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
+    if (spring.kind == Spring::Kind::compliance || spring.kind == Spring::Kind::listed) {
+      deflection[c] = value(i) * torque[c];
+      derivative[i] = torque[c];
+    }
+    if (spring.kind != Spring::Kind::joint_stiffness) continue;
+    // Three parameters in a row share one deflection, δ = (τ − M) / K.
+    const CompensatorLinkage<double> linkage(*spec_.compensator, q[c]);
+    const double stiffness = value(i) + linkage.added_stiffness(value(i + 1), value(i + 2));
+    deflection[c] = (torque[c] - linkage.torque(value(i + 1), value(i + 2))) / stiffness;
+    derivative[i] = -deflection[c] / stiffness;
+    derivative[i + 1] = -(linkage.torque(1, 0) + deflection[c] * linkage.added_stiffness(1, 0)) / stiffness;
+    derivative[i + 2] = -(linkage.torque(0, 1) + deflection[c] * linkage.added_stiffness(0, 1)) / stiffness;
+    i += 2;
+  }
+}
+
+bool ElasticChain::linearise(std::span<const double> q, std::span<const double> correction,
+                             std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+                             Twists* reading_twists) const {
+  static thread_local std::vector<int> geometric;
+  static thread_local std::vector<double> rigid;
+  static thread_local Twists own_readings;
+  const std::size_t joints = chain_.coordinates().size(), count = springs_.size(), first = std::size_t(first_);
+  std::array<double, max_joints> deflection{};
+  std::array<double, 2 * max_joints> derivative{};
+  const auto elastic = correction.empty() ? correction : correction.subspan(first, count);
+  deflect(q, elastic, std::span(deflection).first(joints), derivative);
+
+  rigid.clear();
+  if (!correction.empty()) {
+    rigid.assign(correction.begin(), correction.begin() + std::ptrdiff_t(first));
+    rigid.insert(rigid.end(), correction.begin() + std::ptrdiff_t(first + count), correction.end());
+  }
+  geometric.clear();
+  for (const int index : selected) {
+    if (index < first_) geometric.push_back(index);
+    else geometric.push_back(index < first_ + int(count) ? chain_.layout().count : index - int(count));
+  }
+  Twists* readings = reading_twists != nullptr ? reading_twists : &own_readings;
+  chain_.linearise_deflected(q.first(joints), std::span(deflection).first(joints), rigid, geometric, X, twists,
+                             readings);
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    const int i = selected[c] - first_;
+    if (i < 0 || i >= int(count)) continue;
+    const int joint = springs_[std::size_t(i)].coordinate;
+    // A reading's twist has the gear correction in it; a deflection does not go through the gear's scale.
+    const double gear = rigid.empty() ? 0.0 : rigid[std::size_t(chain_.layout().offset[std::size_t(joint)]) + 1];
+    twists.col(Eigen::Index(c)) = readings->col(joint) * (derivative[std::size_t(i)] / (1 + gear));
+  }
+  return true;
+}
+
+}  // namespace posewright

@@ -1,0 +1,109 @@
+#include "posewright/model/five_bar.hpp"
+
+#include <array>
+#include <numbers>
+
+namespace posewright {
+namespace {
+
+constexpr int per_leg = 6;
+constexpr double length_tolerance = 0.5e-3, angle_tolerance = 1e-3;  // m, rad
+constexpr std::array<const char*, per_leg> names = {"ax", "ay", "proximal", "distal", "offset", "sensor_offset"};
+
+/// One leg at one configuration, corrections applied.
+struct Leg {
+  Eigen::Vector2d base, along, across;  ///< base joint; unit vectors of the proximal link
+  Eigen::Vector2d e;                    ///< unit vector of the distal link
+  double proximal, distal, reach;       ///< reach: distance from elbow to point
+};
+
+double part(std::span<const double> own, int leg, int k) {
+  return own.empty() ? 0.0 : own[std::size_t(per_leg * leg + k)];
+}
+
+Leg leg_at(const FiveBarSpec& spec, int i, std::span<const double> q, double rho, std::span<const double> own) {
+  const FiveBarSpec::Leg& nominal = spec.legs[std::size_t(i)];
+  Leg leg;
+  leg.base = nominal.base + Eigen::Vector2d(part(own, i, 0), part(own, i, 1));
+  leg.proximal = nominal.proximal + part(own, i, 2);
+  leg.distal = nominal.distal + part(own, i, 3);
+  const double angle = rho + part(own, i, 4);
+  leg.along = {std::cos(angle), std::sin(angle)};
+  leg.across = {-leg.along.y(), leg.along.x()};
+  const Eigen::Vector2d d = Eigen::Vector2d(q[0], q[1]) - leg.base - leg.proximal * leg.along;
+  leg.reach = d.norm();
+  leg.e = d / leg.reach;
+  return leg;
+}
+
+}  // namespace
+
+FiveBar::FiveBar(const FiveBarSpec& spec) : ClosedChain(spec.placement), spec_(spec) {
+  std::vector<Parameter> own;
+  for (int i = 0; i < 2; ++i) {
+    const FiveBarSpec::Leg& leg = spec.legs[std::size_t(i)];
+    const std::string prefix = "leg_" + std::to_string(i + 1) + ".";
+    const std::array<double, per_leg> nominal = {leg.base.x(), leg.base.y(), leg.proximal, leg.distal, 0, 0};
+    for (int k = 0; k < per_leg; ++k)
+      own.push_back({prefix + names[std::size_t(k)], k < 4 ? "m" : "rad", nominal[std::size_t(k)],
+                     k < 4 ? length_tolerance : angle_tolerance, Role::interest});
+    actuators_.push_back({prefix + "rho", "rad", -std::numbers::pi, std::numbers::pi});
+    sensors_.push_back({prefix + "elbow", "rad", -std::numbers::pi, std::numbers::pi});
+  }
+  coordinates_ = {{"x", "m", spec.x_lower, spec.x_upper}, {"y", "m", spec.y_lower, spec.y_upper}};
+  finish(own, spec.encoder_noise);
+}
+
+Eigen::Isometry3d FiveBar::do_platform(std::span<const double> q, Twists& freedoms) const {
+  freedoms = Twists::Identity(6, 2);
+  return Eigen::Isometry3d(Eigen::Translation3d(q[0], q[1], 0));
+}
+
+bool FiveBar::do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
+                                    std::span<double> rho) const {
+  for (int i = 0; i < 2; ++i) {
+    const FiveBarSpec::Leg& nominal = spec_.legs[std::size_t(i)];
+    const Eigen::Vector2d to_point =
+        Eigen::Vector2d(q[0], q[1]) - nominal.base - Eigen::Vector2d(part(own, i, 0), part(own, i, 1));
+    const double proximal = nominal.proximal + part(own, i, 2), distal = nominal.distal + part(own, i, 3);
+    const double d = to_point.norm();
+    const double cosine = (d * d + proximal * proximal - distal * distal) / (2 * d * proximal);
+    if (!(std::abs(cosine) < 1)) return false;
+    const double angle = std::atan2(to_point.y(), to_point.x()) + nominal.elbow * std::acos(cosine);
+    rho[std::size_t(i)] = std::remainder(angle - part(own, i, 4), 2 * std::numbers::pi);
+  }
+  return true;
+}
+
+void FiveBar::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                       std::span<const int> selected, Loops& out) const {
+  for (int i = 0; i < 2; ++i) {
+    const Leg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
+    out.value[i] = leg.distal - leg.reach;
+    const double swing = leg.proximal * leg.e.dot(leg.across);
+    const std::array<double, per_leg> columns = {leg.e.x(), leg.e.y(), leg.e.dot(leg.along), 1.0, swing, 0.0};
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      if (selected[c] >= 0 && selected[c] / per_leg == i)
+        out.parameter(i, Eigen::Index(c)) = columns[std::size_t(selected[c] % per_leg)];
+    out.platform.row(i).head<2>() = -leg.e.transpose();
+    out.actuator(i, i) = swing;
+  }
+}
+
+void FiveBar::do_sensors(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                         std::span<const int> selected, Loops& out) const {
+  for (int i = 0; i < 2; ++i) {
+    const Leg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
+    // The distal link's direction turns by n·δ/reach when its ends move by δ apart.
+    const Eigen::Vector2d n = Eigen::Vector2d(-leg.e.y(), leg.e.x()) / leg.reach;
+    const double swing = -leg.proximal * n.dot(leg.across) - 1.0;
+    const std::array<double, per_leg> columns = {-n.x(), -n.y(), -n.dot(leg.along), 0.0, swing, -1.0};
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      if (selected[c] >= 0 && selected[c] / per_leg == i)
+        out.parameter(i, Eigen::Index(c)) = columns[std::size_t(selected[c] % per_leg)];
+    out.platform.row(i).head<2>() = n.transpose();
+    out.actuator(i, i) = swing;
+  }
+}
+
+}  // namespace posewright

@@ -1,0 +1,62 @@
+#include "joint_sensor_model.hpp"
+
+#include <algorithm>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem& problem) : tip_(std::move(tip)) {
+  const auto& spec = std::get<JointsMeasurement>(problem.measurement.instrument);
+  const std::vector<Coordinate>& all = tip_->sensors();
+  if (all.empty()) throw CannotDo("measurement: this robot has no redundant joint sensors; a five_bar has");
+  std::string names;
+  for (const Coordinate& c : all) names += (names.empty() ? "sensors: " : ", ") + c.name;
+  for (const Located<std::string>& name : spec.sensors) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name.value; });
+    if (found == all.end())
+      throw InputError(problem.at(name.line), "'" + name.value + "' is no redundant sensor of this robot", names);
+    sensors_.push_back(int(found - all.begin()));
+  }
+  if (sensors_.empty())
+    for (int i = 0; i < int(all.size()); ++i) sensors_.push_back(i);
+  variance_ = spec.sigma * spec.sigma / problem.measurement.repeats;
+  parameters_ = tip_->parameters();
+  coordinates_ = tip_->coordinates();
+  actuators_ = tip_->actuators();
+  for (const Preference& p : tip_->geometric_parameters()) {
+    const std::string& name = parameters_[std::size_t(p.parameter)].name;
+    if (!name.starts_with("base.") && !name.starts_with("tool.")) geometric_.push_back(p);
+  }
+  rows_ = int(sensors_.size());
+}
+
+bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const double> correction,
+                                    std::span<const int> selected, Linearisation& out) const {
+  static thread_local Eigen::MatrixXd rows, reading_rows;
+  if (!tip_->sensor_rows(q, correction, selected, rows, reading_rows)) return false;
+  out.G.resize(rows_, rows.cols());
+  out.rows.resize(rows_, reading_rows.cols());
+  for (Eigen::Index i = 0; i < rows_; ++i) {
+    out.G.row(i) = rows.row(sensors_[std::size_t(i)]);
+    out.rows.row(i) = reading_rows.row(sensors_[std::size_t(i)]);
+  }
+  for (Eigen::Index j = 0; j < out.rows.cols(); ++j) out.rows.col(j) *= tip_->reading_noise()[std::size_t(j)];
+  out.covariance = out.rows * out.rows.transpose();
+  out.covariance.diagonal().array() += variance_;
+  return true;
+}
+
+bool JointSensorModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                                          std::span<double> values) const {
+  return tip_->actuator_values(q, correction, values);
+}
+
+Eigen::Isometry3d JointSensorModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
+  Twists none;
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  tip_->linearise(q, correction, {}, X, none, nullptr);
+  return X;
+}
+
+}  // namespace posewright

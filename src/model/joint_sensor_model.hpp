@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/tip_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Self-calibration: a closed chain's redundant joint sensors against what its other joints say. No instrument, so
+/// base.* and tool.* have no effect and are left out of what `auto` chooses from.
+class JointSensorModel : public IdentificationModel {
+ public:
+  /// Throws CannotDo for a robot without redundant sensors, InputError for a sensor that it has not.
+  JointSensorModel(std::unique_ptr<TipModel> tip, const Problem& problem);
+
+ private:
+  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                    Linearisation& out) const override;
+  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
+                          std::span<double> values) const override;
+  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  std::unique_ptr<TipModel> tip_;
+  std::vector<int> sensors_;  // which of the robot's, in the order of the rows
+  double variance_;
+};
+
+}  // namespace posewright

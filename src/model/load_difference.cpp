@@ -1,0 +1,46 @@
+#include "load_difference.hpp"
+
+#include <algorithm>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : inside_(std::move(inside)) {
+  parameters_ = inside_->parameters();
+  coordinates_ = inside_->coordinates();
+  geometric_ = inside_->geometric_parameters();
+  unmeasurable_reason_ = inside_->unmeasurable_reason();
+  rows_ = inside_->rows();
+  const auto load =
+      std::find_if(coordinates_.begin(), coordinates_.end(), [](const Coordinate& c) { return c.name == "load_case"; });
+  if (load == coordinates_.end() || load->values.size() < 2)
+    throw CannotDo("measurement: loaded minus unloaded needs robot: elastostatic with at least two load cases");
+  load_ = std::size_t(load - coordinates_.begin());
+  load->values.erase(load->values.begin());
+  load->labels.erase(load->labels.begin());
+  load->lower = load->values.front();
+}
+
+bool LoadDifference::do_linearise(std::span<const double> q, std::span<const double> correction,
+                                  std::span<const int> selected, Linearisation& out) const {
+  static thread_local Linearisation unloaded;
+  static thread_local std::vector<double> same;
+  same.assign(q.begin(), q.end());
+  same[load_] = 0.0;
+  if (!inside_->linearise(q, correction, selected, out) || !inside_->linearise(same, correction, selected, unloaded))
+    return false;
+  out.G -= unloaded.G;
+  out.covariance += unloaded.covariance;
+  return true;
+}
+
+bool LoadDifference::do_measurable(std::span<const double> q, std::span<const double>) const {
+  return inside_->measurable(q);
+}
+
+Eigen::Isometry3d LoadDifference::do_tool_pose(std::span<const double> q, std::span<const double>) const {
+  return inside_->tool_pose(q);
+}
+
+}  // namespace posewright

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "posewright/model/identification_model.hpp"
+
+namespace posewright {
+
+/// Loaded minus unloaded: what is measured at a configuration under its load case, less the same under the first load
+/// case. Reading noise counts twice. What stays at a pose (robot repeatability, joint readings) is the same in both and
+/// cancels: the model inside must be built without it.
+class LoadDifference : public IdentificationModel {
+ public:
+  /// @param inside  a model with a coordinate `load_case`. Throws CannotDo where it has fewer than two load cases.
+  explicit LoadDifference(std::unique_ptr<IdentificationModel> inside);
+
+ private:
+  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
+                    Linearisation& out) const override;
+  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
+  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  std::unique_ptr<IdentificationModel> inside_;
+  std::size_t load_ = 0;  ///< which coordinate is the load case
+};
+
+}  // namespace posewright

@@ -1,0 +1,92 @@
+#include "measure_distance.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double default_tolerance = 1e-3;  // m
+constexpr double shortest = 1e-6;           // m
+
+}  // namespace
+
+double distance_variance(const DistanceMeasurement& spec, double d, double repeats, double repeatability) {
+  const double sigma = spec.sigma + spec.sigma_per_m * d;
+  return sigma * sigma / repeats + repeatability * repeatability;
+}
+
+bool spans(const DistanceMeasurement& spec, double d) {
+  if (!(d > shortest)) return false;
+  return spec.range_upper <= 0 || (d >= spec.range_lower && d <= spec.range_upper);
+}
+
+DistanceModel::DistanceModel(const MeasurementSpec& spec)
+    : spec_(std::get<DistanceMeasurement>(spec.instrument)),
+      repeats_(spec.repeats),
+      repeatability_(spec.repeatability) {
+  rows_ = int(spec_.targets.size() * spec_.anchors.size());
+  replaces_tool_ = true;
+  unseen_reason_ = "distance out of range";
+  const auto add = [&](const std::string& name, const Eigen::Vector3d& nominal, int tier) {
+    for (int k = 0; k < 3; ++k) {
+      preferences_.push_back({int(parameters_.size()), tier});
+      parameters_.push_back({name + "." + "xyz"[k], "m", nominal[k], default_tolerance, Role::interest});
+    }
+  };
+  for (const TargetSpec& target : spec_.targets) add("target." + target.name, target.position, 1);
+  for (const TargetSpec& anchor : spec_.anchors) add("anchor." + anchor.name, anchor.position, 0);
+  for (const TargetSpec& anchor : spec_.anchors)
+    parameters_.push_back({"anchor." + anchor.name + ".length", "m", 0.0, default_tolerance, Role::interest});
+}
+
+DistanceModel::Span DistanceModel::span_of(const Sighting& sighting, std::size_t row) const {
+  const std::size_t targets = spec_.targets.size(), t = row % targets, a = row / targets;
+  Eigen::Vector3d p_TipTarget = spec_.targets[t].position, anchor = spec_.anchors[a].position;
+  if (!sighting.correction.empty()) {
+    p_TipTarget += Eigen::Map<const Eigen::Vector3d>(sighting.correction.data() + 3 * t);
+    anchor += Eigen::Map<const Eigen::Vector3d>(sighting.correction.data() + 3 * (targets + a));
+  }
+  Span span;
+  span.p = sighting.X_MeasureTip * p_TipTarget;
+  span.between = span.p - anchor;
+  return span;
+}
+
+void DistanceModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                                   Eigen::Ref<Eigen::MatrixXd> rows) const {
+  for (Eigen::Index row = 0; row < rows_; ++row) {
+    const Span span = span_of(sighting, std::size_t(row));
+    Twist along;
+    along.head<3>() = span.between.normalized();
+    along.tail<3>() = span.p.cross(along.head<3>());
+    rows.row(row) = along.transpose() * twists;
+  }
+}
+
+void DistanceModel::own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const {
+  column.setZero();
+  const int targets = int(spec_.targets.size()), anchors = int(spec_.anchors.size());
+  for (int row = 0; row < rows_; ++row) {
+    const int t = row % targets, a = row / targets;
+    if (index >= 3 * (targets + anchors)) {
+      if (index - 3 * (targets + anchors) == a) column[row] = 1.0;
+      continue;
+    }
+    const Eigen::Vector3d e = span_of(sighting, std::size_t(row)).between.normalized();
+    if (index < 3 * targets && index / 3 == t) column[row] = e.dot(sighting.X_MeasureTip.linear().col(index % 3));
+    if (index >= 3 * targets && index / 3 - targets == a) column[row] = -e[index % 3];
+  }
+}
+
+void DistanceModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
+  covariance.setZero();
+  for (int row = 0; row < rows_; ++row)
+    covariance(row, row) =
+        distance_variance(spec_, span_of(sighting, std::size_t(row)).between.norm(), repeats_, repeatability_);
+}
+
+bool DistanceModel::sees(const Sighting& sighting) const {
+  for (int row = 0; row < rows_; ++row)
+    if (!spans(spec_, span_of(sighting, std::size_t(row)).between.norm())) return false;
+  return true;
+}
+
+}  // namespace posewright

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "posewright/model/measurement_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Distances from fixed anchors to targets on the tip: ball bar, cable sensor. Rows: anchor by anchor, target by
+/// target, d = ‖p − c‖ + length. Own parameters: target.NAME.{x,y,z} (tip frame), anchor.NAME.{x,y,z} (measurement
+/// frame), anchor.NAME.length (m, what the reading is too long by).
+class DistanceModel : public MeasurementModel {
+ public:
+  explicit DistanceModel(const MeasurementSpec& spec);
+
+  void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                      Eigen::Ref<Eigen::MatrixXd> rows) const override;
+  void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
+  void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+  bool sees(const Sighting& sighting) const override;
+
+ private:
+  /// From anchor to target, in M.
+  struct Span {
+    Eigen::Vector3d p, between;
+  };
+  Span span_of(const Sighting& sighting, std::size_t row) const;
+
+  DistanceMeasurement spec_;
+  double repeats_, repeatability_;
+};
+
+/// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats + repeatability² (of each end that moves).
+double distance_variance(const DistanceMeasurement& spec, double d, double repeats, double repeatability);
+/// Whether the instrument can span d; distances under a micrometre have no direction.
+bool spans(const DistanceMeasurement& spec, double d);
+
+}  // namespace posewright

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "posewright/model/measurement_model.hpp"
+#include "posewright/problem/problem.hpp"
+#include "stations.hpp"
+
+namespace posewright {
+
+/// Positions of targets fixed to the tip. Rows: target by target, the chosen components of its position in the frame of
+/// the station that looks (the measurement frame where there are no stations). Own parameters: target.NAME.{x,y,z} in
+/// the tip frame (m), station.NAME.{x,…,rz}.
+class PointsModel : public MeasurementModel {
+ public:
+  explicit PointsModel(const MeasurementSpec& spec);
+
+  void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                      Eigen::Ref<Eigen::MatrixXd> rows) const override;
+  bool motion(const Sighting& sighting, int index, Twist* twist) const override;
+  void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
+  void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+
+ private:
+  std::span<const double> station_part(std::span<const double> correction) const;
+  Eigen::Vector3d target(const Sighting& sighting, std::size_t index) const;
+
+  PointsMeasurement spec_;
+  Stations places_;
+  double repeats_, repeatability_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "posewright/model/measurement_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a
+/// spatial rotation vector in M): v + ω × p and ω of a twist. No parameters of its own. With photogrammetry the
+/// covariance is that of the rigid fit to the points.
+class PoseModel : public MeasurementModel {
+ public:
+  explicit PoseModel(const MeasurementSpec& spec);
+
+  void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                      Eigen::Ref<Eigen::MatrixXd> rows) const override;
+  void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+
+ private:
+  PoseMeasurement spec_;
+  std::unique_ptr<MeasurementModel> points_;  // of photogrammetry
+  double repeats_, repeatability_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,83 @@
+#include <algorithm>
+
+#include "sections.hpp"
+
+namespace posewright {
+namespace {
+
+using yaml::Section;
+using yaml::Sign;
+using yaml::Value;
+
+Eigen::Vector3d optional_vector(const Section& section, const char* key, Quantity quantity) {
+  const Value* value = section.find(key);
+  return value == nullptr ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : value->vector(quantity);
+}
+
+LoadCaseSpec read_load(const std::string& name, const Value& value) {
+  LoadCaseSpec load;
+  load.name = name;
+  const Section section(value);
+  section.allow({"force", "moment", "point", "mass", "centre_of_mass"});
+  load.force = optional_vector(section, "force", Quantity::force);
+  load.moment = optional_vector(section, "moment", Quantity::number);
+  load.point = optional_vector(section, "point", Quantity::length);
+  load.centre_of_mass = optional_vector(section, "centre_of_mass", Quantity::length);
+  if (const Value* mass = section.find("mass")) load.mass = mass->number(Quantity::number, Sign::not_negative);
+  return load;
+}
+
+CompensatorSpec read_compensator(const Value& value) {
+  const Section section(value);
+  section.allow({"joint", "L", "ax", "ay", "stiffness", "free_length", "joint_stiffness"});
+  CompensatorSpec spec;
+  spec.joint = section.at("joint").exact_name();
+  spec.L = section.at("L").number(Quantity::length, Sign::positive);
+  spec.ax = section.at("ax").number(Quantity::length);
+  spec.ay = section.at("ay").number(Quantity::length);
+  // With a = L the spring's length is zero somewhere.
+  if (!(std::abs(std::hypot(spec.ax, spec.ay) - spec.L) > 1e-6))
+    value.fail("has its fixed pin on the circle of the other", "ax² + ay² must differ from L²");
+  spec.stiffness = section.at("stiffness").number(Quantity::stiffness, Sign::positive);
+  spec.free_length = section.at("free_length").number(Quantity::length, Sign::not_negative);
+  spec.joint_stiffness = section.at("joint_stiffness").number(Quantity::number, Sign::positive);
+  return spec;
+}
+
+ElastostaticSpec::Listed read_listed(const Value& value) {
+  const Section section(value);
+  section.allow({"joint", "at"});
+  ElastostaticSpec::Listed listed;
+  listed.joint = section.at("joint").exact_name();
+  for (const Value& item : section.at("at").items("a list of positions is expected"))
+    listed.at.push_back(item.measured({Quantity::angle, Quantity::length}).value);
+  std::sort(listed.at.begin(), listed.at.end());
+  if (listed.at.empty()) section.at("at").fail("is empty", "at least one position is needed");
+  if (std::adjacent_find(listed.at.begin(), listed.at.end()) != listed.at.end())
+    section.at("at").fail("has a position twice", "each one once");
+  return listed;
+}
+
+}  // namespace
+
+ElastostaticSpec read_elastostatic(const Value& value) {
+  const Section section(value);
+  section.allow({"compliance", "loads", "gravity", "link_weights", "compensator", "listed"});
+  ElastostaticSpec spec;
+  spec.line = value.line();
+  if (const Value* compliance = section.find("compliance"))
+    for (const yaml::Entry& entry : Section(*compliance).entries())
+      spec.compliance.emplace_back(entry.key, entry.value.number(Quantity::compliance, Sign::not_negative));
+  for (const yaml::Entry& entry : Section(section.at("loads")).entries())
+    spec.loads.push_back(read_load(entry.key.value, entry.value));
+  if (spec.loads.empty()) section.at("loads").fail("is empty", "at least one load case is needed");
+  if (const Value* gravity = section.find("gravity")) spec.gravity = gravity->vector(Quantity::number);
+  if (const Value* weights = section.find("link_weights")) spec.link_gravity = weights->choice({"yes", "no"}) == "yes";
+  if (const Value* compensator = section.find("compensator")) spec.compensator = read_compensator(*compensator);
+  if (const Value* listed = section.find("listed")) spec.listed = read_listed(*listed);
+  if (spec.compensator && spec.listed && spec.compensator->joint.value == spec.listed->joint.value)
+    section.at("listed").fail("names the compensator's joint", "its compliance is either listed or the spring's");
+  return spec;
+}
+
+}  // namespace posewright

@@ -1,0 +1,93 @@
+#include "sections.hpp"
+
+namespace posewright {
+namespace {
+
+using yaml::Section;
+using yaml::Sign;
+using yaml::Value;
+
+/// {type: isotropic, noise}: one sigma.
+double read_isotropic(const Value& value, std::initializer_list<Quantity> quantities) {
+  const Section device(value);
+  device.at("type").choice({"isotropic"});
+  device.allow({"type", "noise"});
+  return device.at("noise").measured(quantities, Sign::positive).value;
+}
+
+}  // namespace
+
+DistanceMeasurement read_distance(const Section& section) {
+  section.allow({"type", "targets", "anchors", "between", "range", "device", "repeats", "repeatability", "load"});
+  DistanceMeasurement distance;
+  distance.targets = read_targets(section.at("targets"));
+  if (const Value* between = section.find("between")) {
+    between->choice({"configurations"});
+    if (section.has("anchors")) between->fail("stands beside anchors", "one of anchors, between is allowed");
+  } else {
+    distance.anchors = read_targets(section.at("anchors"));
+  }
+  if (const Value* range = section.find("range")) {
+    const yaml::Range r = read_range(*range, {Quantity::length});
+    if (!(r.lower >= 0)) range->fail("begins below zero", "distances are positive");
+    distance.range_lower = r.lower;
+    distance.range_upper = r.upper;
+  }
+  const Section device(section.at("device"));
+  device.at("type").choice({"isotropic"});
+  device.allow({"type", "noise", "noise_per_m"});
+  distance.sigma = device.at("noise").number(Quantity::length, Sign::positive);
+  if (const Value* per_m = device.find("noise_per_m"))
+    distance.sigma_per_m = per_m->number(Quantity::length, Sign::not_negative);
+  return distance;
+}
+
+CameraMeasurement read_camera(const Section& section) {
+  section.allow({"type", "mount", "camera", "board", "device", "repeats", "load"});
+  CameraMeasurement camera;
+  camera.on_hand = section.at("mount").choice({"hand", "fixed"}) == "hand";
+  const Section lens(section.at("camera"));
+  lens.allow({"focal", "centre", "distortion", "size", "position", "rpy"});
+  const auto pair = [](const Value& value, double& x, double& y) {
+    const std::vector<Value> numbers = value.items(2, "expected 2 numbers, in pixels");
+    x = numbers[0].number(Quantity::number, Sign::positive);
+    y = numbers[1].number(Quantity::number, Sign::positive);
+  };
+  pair(lens.at("focal"), camera.fx, camera.fy);
+  pair(lens.at("centre"), camera.cx, camera.cy);
+  pair(lens.at("size"), camera.width, camera.height);
+  if (const Value* distortion = lens.find("distortion")) {
+    const std::vector<Value> k = distortion->items(5, "expected 5 numbers k1, k2, p1, p2, k3");
+    for (std::size_t i = 0; i < 5; ++i) camera.distortion[i] = k[i].number(Quantity::number);
+  }
+  const auto placement = [](const Section& of) {
+    Placement p;
+    if (const Value* position = of.find("position")) p.position = position->vector(Quantity::length);
+    if (const Value* rpy = of.find("rpy")) p.rpy = rpy->vector(Quantity::angle);
+    return p;
+  };
+  camera.camera = placement(lens);
+  const Section board(section.at("board"));
+  board.allow({"rows", "columns", "spacing", "position", "rpy"});
+  camera.rows = board.at("rows").integer(1, 100);
+  camera.columns = board.at("columns").integer(1, 100);
+  if (camera.rows * camera.columns < 3 || camera.rows < 2 || camera.columns < 2)
+    board.value().fail("has too few points", "at least 2 rows and 2 columns are needed");
+  camera.spacing = board.at("spacing").number(Quantity::length, Sign::positive);
+  camera.board = placement(board);
+  camera.sigma = read_isotropic(section.at("device"), {Quantity::number});
+  return camera;
+}
+
+JointsMeasurement read_joint_sensors(const Section& section) {
+  section.allow({"type", "sensors", "device", "repeats"});
+  JointsMeasurement joints;
+  if (const Value* sensors = section.find("sensors")) {
+    joints.sensors = sensors->texts();
+    if (joints.sensors.empty()) sensors->fail("is empty", "at least one sensor is needed; leave it out for all");
+  }
+  joints.sigma = read_isotropic(section.at("device"), {Quantity::angle, Quantity::length});
+  return joints;
+}
+
+}  // namespace posewright

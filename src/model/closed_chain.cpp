@@ -16,7 +16,9 @@ constexpr double newton_tolerance = 1e-12;
 // Smallest pivot of F_x, relative to its largest, that is not a singularity.
 constexpr double singular_pivot = 1e-10;
 
-using Factor = Eigen::FullPivLU<Eigen::MatrixXd>;
+/// At most six coordinates, so nothing here touches the heap.
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using Factor = Eigen::FullPivLU<Square>;
 
 bool is_singular(const Factor& factor) {
   const auto pivots = factor.matrixLU().diagonal().cwiseAbs();
@@ -29,9 +31,18 @@ struct Scratch {
   std::vector<int> own;
   std::vector<double> actuators;
   Twists freedoms;
-  Eigen::MatrixXd along_coordinates, solved;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> response;  ///< −B F_x⁻¹: twist of the platform per loop residual
   Factor factor;
 };
+
+/// Fills s.response from s.loops and s.freedoms; false at a singularity.
+bool solve_response(Scratch& s) {
+  s.factor.compute((s.loops.platform * s.freedoms).transpose());
+  if (is_singular(s.factor)) return false;
+  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> freedoms = s.freedoms.transpose();
+  s.response = -s.factor.solve(freedoms).transpose();
+  return true;
+}
 
 Scratch& scratch_of_this_thread() {
   static thread_local Scratch scratch;
@@ -95,9 +106,7 @@ bool ClosedChain::linearise(std::span<const double> q, std::span<const double> c
   own_selection(selected, s.own);
   const Eigen::Isometry3d X_BasePlatform = do_platform(q, s.freedoms);
   loops(q, s.actuators, own, s.own, s.loops);
-  s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
-  s.factor.compute(s.along_coordinates);
-  if (is_singular(s.factor)) return false;
+  if (!solve_response(s)) return false;
 
   Frame<double> frame = frame_of(X_MeasureBase_);
   const DisplacementAxes base = displace(frame, correction.empty() ? nullptr : correction.data());
@@ -108,9 +117,8 @@ bool ClosedChain::linearise(std::span<const double> q, std::span<const double> c
       displace(frame, correction.size() > first_tool ? correction.data() + first_tool : nullptr);
   X_MeasureTip = isometry_of(frame);
 
-  s.solved = s.factor.solve(s.loops.parameter);
   twists.resize(6, Eigen::Index(selected.size()));
-  twists.noalias() = -s.freedoms * s.solved;
+  twists.noalias() = s.response.lazyProduct(s.loops.parameter);
   change_frame(X_MeasureBase, twists);
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int index = selected[c];
@@ -119,9 +127,8 @@ bool ClosedChain::linearise(std::span<const double> q, std::span<const double> c
       twists.col(Eigen::Index(c)) = tool.twist(index - int(first_tool));
   }
   if (reading_twists != nullptr) {
-    s.solved = s.factor.solve(s.loops.actuator);
-    reading_twists->resize(6, s.solved.cols());
-    reading_twists->noalias() = -s.freedoms * s.solved;
+    reading_twists->resize(6, s.loops.actuator.cols());
+    reading_twists->noalias() = s.response.lazyProduct(s.loops.actuator);
     change_frame(X_MeasureBase, *reading_twists);
   }
   return true;
@@ -137,16 +144,14 @@ bool ClosedChain::sensor_rows(std::span<const double> q, std::span<const double>
   own_selection(selected, s.own);
   do_platform(q, s.freedoms);
   loops(q, s.actuators, own, s.own, s.loops);
-  s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
-  s.factor.compute(s.along_coordinates);
-  if (is_singular(s.factor)) return false;
+  if (!solve_response(s)) return false;
   const auto count = Eigen::Index(sensors_.size());
   s.sensors.parameter.setZero(count, Eigen::Index(selected.size()));
   s.sensors.platform.setZero(count, 6);
   s.sensors.actuator.setZero(count, Eigen::Index(actuators_.size()));
   do_sensors(q, s.actuators, own, s.own, s.sensors);
-  rows = s.sensors.parameter - s.sensors.platform * s.freedoms * s.factor.solve(s.loops.parameter);
-  reading_rows = s.sensors.actuator - s.sensors.platform * s.freedoms * s.factor.solve(s.loops.actuator);
+  rows = s.sensors.parameter + s.sensors.platform * s.response * s.loops.parameter;
+  reading_rows = s.sensors.actuator + s.sensors.platform * s.response * s.loops.actuator;
   return true;
 }
 
@@ -163,8 +168,7 @@ std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<con
   for (int step = 0; step < newton_steps; ++step) {
     do_platform(q, s.freedoms);
     loops(q, actuators, own_part(correction), {}, s.loops);
-    s.along_coordinates.noalias() = s.loops.platform * s.freedoms;
-    s.factor.compute(s.along_coordinates);
+    s.factor.compute(s.loops.platform * s.freedoms);
     if (!s.loops.value.allFinite() || is_singular(s.factor)) return std::nullopt;
     const Eigen::VectorXd change = s.factor.solve(s.loops.value);
     for (std::size_t i = 0; i < q.size(); ++i) q[i] -= change[Eigen::Index(i)];

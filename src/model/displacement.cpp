@@ -2,38 +2,6 @@
 
 namespace posewright {
 
-Twist revolute(const Eigen::Vector3d& axis, const Eigen::Vector3d& origin) {
-  Twist twist;
-  twist << origin.cross(axis), axis;
-  return twist;
-}
-
-Twist prismatic(const Eigen::Vector3d& axis) {
-  Twist twist;
-  twist << axis, Eigen::Vector3d::Zero();
-  return twist;
-}
-
-Twist DisplacementAxes::twist(int component) const {
-  return component < 3 ? prismatic(translation.col(component)) : revolute(rotation.col(component - 3), origin);
-}
-
-DisplacementAxes displace(Frame<double>& frame, const double* d) {
-  DisplacementAxes axes;
-  axes.translation = frame.R;
-  axes.rotation = frame.R;
-  if (d != nullptr) {
-    frame.then_translate({d[0], d[1], d[2]});
-    frame.then_rotate(Eigen::Vector3d::UnitZ(), d[5]);
-    axes.rotation.col(1) = frame.R.col(1);
-    frame.then_rotate(Eigen::Vector3d::UnitY(), d[4]);
-    axes.rotation.col(0) = frame.R.col(0);
-    frame.then_rotate(Eigen::Vector3d::UnitX(), d[3]);
-  }
-  axes.origin = frame.p;
-  return axes;
-}
-
 Frame<double> frame_of(const Eigen::Isometry3d& X) {
   Frame<double> frame;
   frame.R = X.linear();

@@ -10,6 +10,18 @@ namespace posewright {
 
 inline constexpr std::array<const char*, 6> displacement_names = {"x", "y", "z", "rx", "ry", "rz"};
 
+/// Rotation about an axis through a point; translation along an axis.
+inline Twist revolute(const Eigen::Vector3d& axis, const Eigen::Vector3d& origin) {
+  Twist twist;
+  twist << origin.cross(axis), axis;
+  return twist;
+}
+inline Twist prismatic(const Eigen::Vector3d& axis) {
+  Twist twist;
+  twist << axis, Eigen::Vector3d::Zero();
+  return twist;
+}
+
 /// The six axes of a displacement and where they act: translations and rz along the undisplaced axes, ry and rx along
 /// partially rotated ones, all through the displaced origin.
 struct DisplacementAxes {
@@ -17,15 +29,27 @@ struct DisplacementAxes {
   Eigen::Vector3d origin;
 
   /// Spatial twist along x, y, z, rx, ry, rz (0 … 5).
-  Twist twist(int component) const;
+  Twist twist(int component) const {
+    return component < 3 ? prismatic(translation.col(component)) : revolute(rotation.col(component - 3), origin);
+  }
 };
 
 /// Displaces the frame by d (six values; null: zero) and returns the axes.
-DisplacementAxes displace(Frame<double>& frame, const double* d);
-
-/// Rotation about an axis through a point; translation along an axis.
-Twist revolute(const Eigen::Vector3d& axis, const Eigen::Vector3d& origin);
-Twist prismatic(const Eigen::Vector3d& axis);
+inline DisplacementAxes displace(Frame<double>& frame, const double* d) {
+  DisplacementAxes axes;
+  axes.translation = frame.R;
+  axes.rotation = frame.R;
+  if (d != nullptr) {
+    frame.then_translate({d[0], d[1], d[2]});
+    frame.then_rotate(Eigen::Vector3d::UnitZ(), d[5]);
+    axes.rotation.col(1) = frame.R.col(1);
+    frame.then_rotate(Eigen::Vector3d::UnitY(), d[4]);
+    axes.rotation.col(0) = frame.R.col(0);
+    frame.then_rotate(Eigen::Vector3d::UnitX(), d[3]);
+  }
+  axes.origin = frame.p;
+  return axes;
+}
 
 Frame<double> frame_of(const Eigen::Isometry3d& X);
 Eigen::Isometry3d isometry_of(const Frame<double>& frame);

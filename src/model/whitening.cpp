@@ -24,8 +24,11 @@ bool whitened_block(const IdentificationModel& model, std::span<const double> q,
     factorise_covariance(scratch);
     scratch.factor.matrixL().solveInPlace(scratch.basis);
     scratch.compression.compute(scratch.basis);
-    block.noalias() =
-        scratch.compression.matrixQR().topRows(rows).triangularView<Eigen::Upper>() * scratch.coefficients;
+    const auto& r = scratch.compression.matrixQR();
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      block.row(i) = r(i, i) * scratch.coefficients.row(i);
+      for (Eigen::Index k = i + 1; k < rows; ++k) block.row(i) += r(i, k) * scratch.coefficients.row(k);
+    }
     return true;
   }
   if (!model.linearise(q, correction, selected, scratch)) return false;

@@ -32,7 +32,8 @@ struct Linearisation {
   Eigen::MatrixXd G;             ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
   Eigen::MatrixXd covariance;    ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
   Eigen::MatrixXd basis;         ///< r × c, c < r, where the model offers G = basis · coefficients
-  Eigen::MatrixXd coefficients;  ///< c × selected
+  /// c × selected
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
   Eigen::MatrixXd rows;                                     ///< scratch

@@ -89,6 +89,12 @@ Dependency explain(const Eigen::MatrixXd& g, const Eigen::ColPivHouseholderQR<Ei
   return dependency;
 }
 
+/// "m/rad", "m" for m by 1, "1/m".
+std::string quotient(const std::string& unit, const std::string& by) {
+  const std::string denominator = by.find("·") == std::string::npos ? by : "(" + by + ")";
+  return by == "1" ? unit : unit + "/" + denominator;
+}
+
 }  // namespace
 
 Identifiability identifiability(const BlockArray& sample, const std::vector<Parameter>& parameters,
@@ -118,7 +124,7 @@ std::string describe(const Dependency& dependency, const std::vector<Parameter>&
     text += first ? (term.coefficient < 0 ? " −" : " ") : (term.coefficient < 0 ? " − " : " + ");
     first = false;
     const double size = std::abs(term.coefficient);
-    if (kept.unit != dropped.unit) text += fmt::format("{:.4g} {}/{}·", size, kept.unit, dropped.unit);
+    if (kept.unit != dropped.unit) text += fmt::format("{:.4g} {}·", size, quotient(kept.unit, dropped.unit));
     else if (std::abs(size - 1) > 5e-4) text += fmt::format("{:.4g}·", size);
     text += kept.name;
   }

@@ -3,8 +3,10 @@
 #include <boost/program_options.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewright/support/error.hpp"
@@ -50,5 +52,8 @@ std::string single(const Words& positional, const std::string& what);
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper);
 /// The text of an option, empty where it is not given.
 std::string text_of(const po::variables_map& values, const std::string& option);
+/// One of the allowed words, or empty where the option is not given. Throws InputError for another word.
+std::string choice_of(const po::variables_map& values, const std::string& option,
+                      std::initializer_list<std::string_view> allowed);
 
 }  // namespace posewright::cli

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <charconv>
 
 #include "command.hpp"
@@ -54,6 +57,14 @@ std::optional<int> whole_number(const po::variables_map& values, const std::stri
 
 std::string text_of(const po::variables_map& values, const std::string& option) {
   return values.count(option) > 0 ? values[option].as<std::string>() : std::string();
+}
+
+std::string choice_of(const po::variables_map& values, const std::string& option,
+                      std::initializer_list<std::string_view> allowed) {
+  if (values.count(option) == 0) return {};
+  const std::string text = text_of(values, option);
+  if (std::find(allowed.begin(), allowed.end(), text) != allowed.end()) return text;
+  throw InputError({}, "--" + option + " " + text, fmt::format("allowed: {}", fmt::join(allowed, ", ")));
 }
 
 }  // namespace posewright::cli

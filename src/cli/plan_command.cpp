@@ -13,14 +13,15 @@ namespace {
 po::options_description options() {
   po::options_description options("Options");
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add_options()                                                                          //
-      ("poses", text("N"), "number of poses (design: poses)")                                    //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                  //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())  //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())          //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                //
-      ("restarts", text("k"), "starts of the search (10)")                                       //
-      ("repeats", text("allow|forbid"), "whether a configuration may be measured twice (forbid)");
+  options.add_options()                                                                            //
+      ("poses", text("N"), "number of poses (design: poses)")                                      //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                    //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())    //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())            //
+      ("candidates", text("n"), "feasible configurations to choose from (10000)")                  //
+      ("restarts", text("k"), "starts of the search (10)")                                         //
+      ("repeats", text("allow|forbid"), "whether a configuration may be measured twice (forbid)")  //
+      ("prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
   options.add(output_options(true));
   return options;
 }
@@ -36,6 +37,8 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.candidates = whole_number(values, "candidates", 1, 10000000);
   plan_options.restarts = whole_number(values, "restarts", 1, 1000000);
   plan_options.repeats = repeats_of(values);
+  if (const std::string prior = choice_of(values, "prior", {"none", "tolerance"}); !prior.empty())
+    plan_options.prior = prior == "tolerance";
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = read_problem(file);

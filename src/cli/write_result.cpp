@@ -19,11 +19,9 @@ po::options_description output_options(bool poses) {
 }
 
 std::optional<Repeats> repeats_of(const po::variables_map& values) {
-  const std::string text = text_of(values, "repeats");
-  if (values.count("repeats") == 0) return std::nullopt;
-  if (text == "allow") return Repeats::allow;
-  if (text == "forbid") return Repeats::forbid;
-  throw InputError({}, "--repeats " + text, "allowed: allow, forbid");
+  const std::string text = choice_of(values, "repeats", {"allow", "forbid"});
+  if (text.empty()) return std::nullopt;
+  return text == "allow" ? Repeats::allow : Repeats::forbid;
 }
 
 Outputs::Outputs(const po::variables_map& values, const std::filesystem::path& input, bool poses) {

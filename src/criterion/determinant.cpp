@@ -106,7 +106,7 @@ class DeterminantState : public DesignState {
  public:
   DeterminantState(const CandidateView& view, std::vector<int> members)
       : DesignState(view, std::move(members)),
-        inverse_(*view.blocks, view.blocks->columns()),
+        inverse_(*view.blocks, view.blocks->columns(), view.prior),
         gain_(inverse_, view.blocks->rows()) {
     refresh();
   }

@@ -12,7 +12,7 @@ namespace {
 class NuisanceState : public DesignState {
  public:
   NuisanceState(const CandidateView& view, std::vector<int> members)
-      : DesignState(view, std::move(members)), rest_(*view.blocks, view.nuisance) {
+      : DesignState(view, std::move(members)), rest_(*view.blocks, view.nuisance, view.prior) {
     refresh();
   }
 

@@ -17,8 +17,9 @@ constexpr double singular_swap = 1e-4;
 
 }  // namespace
 
-InverseInformation::InverseInformation(const BlockArray& blocks, int columns)
+InverseInformation::InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior)
     : blocks_(blocks),
+      prior_(prior),
       columns_(columns),
       stride_(blocks.stride()),
       rows_(blocks.rows()),
@@ -29,6 +30,7 @@ InverseInformation::InverseInformation(const BlockArray& blocks, int columns)
 
 bool InverseInformation::refresh(const std::vector<int>& members, double ridge) {
   Eigen::MatrixXd m = ridge * Eigen::MatrixXd::Identity(columns_, columns_);
+  if (prior_ != nullptr) m += *prior_;
   for (const int i : members)
     m.selfadjointView<Eigen::Lower>().rankUpdate(blocks_.block(std::size_t(i)).leftCols(columns_).transpose());
   const Eigen::LLT<Eigen::MatrixXd> factor(m);

@@ -30,8 +30,8 @@ double interest_log_det(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance)
 
 }  // namespace
 
-LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance)
-    : blocks_(blocks), nuisance_(nuisance), padded_nuisance_(round16(nuisance)) {
+LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd* prior)
+    : blocks_(blocks), prior_(prior), nuisance_(nuisance), padded_nuisance_(round16(nuisance)) {
   const int m = blocks.columns(), interest_tiles = round16(m - nuisance) / 16;
   tiles_ = padded_nuisance_ / 16 + interest_tiles;
   t_.assign(std::size_t(m * 16 * tiles_), 0.0);
@@ -42,6 +42,7 @@ LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance)
 
 bool LeaveOneOut::set_members(const std::vector<int>& members) {
   information_ = Eigen::MatrixXd::Zero(blocks_.columns(), blocks_.columns());
+  if (prior_ != nullptr) information_ += *prior_;
   for (const int i : members) information_ += blocks_.block(std::size_t(i)).transpose() * blocks_.block(std::size_t(i));
   factorise();
   return std::isfinite(value_);

@@ -15,7 +15,8 @@ Json criterion_json(const Plan& plan) {
           {"log_det", plan.log_det},
           {"log_det_full", plan.log_det_full},
           {"indices", {{"o1", o.o1}, {"o2", o.o2}, {"o3", o.o3}, {"o4", o.o4}, {"o5", o.o5}}},
-          {"scaling", "tolerance"}};
+          {"scaling", "tolerance"},
+          {"prior", plan.prior ? "tolerance" : "none"}};
 }
 
 Json certificate_json(const Certificate& c) {

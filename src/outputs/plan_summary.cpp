@@ -20,7 +20,10 @@ std::string headline(const Plan& plan) {
   text += fmt::format(": {} parameters", kept - nuisance);
   if (nuisance > 0) text += fmt::format(" and {} nuisance parameters", nuisance);
   if (plan.interrupted) text += " (search interrupted: best plan so far)";
-  return text + "\n";
+  text += "\n";
+  if (plan.prior)
+    text += "Tolerances count as prior knowledge: σ and log det are those after the measurement with them.\n";
+  return text;
 }
 
 std::string certificate_text(const Plan& plan) {

@@ -1,28 +1,55 @@
 #include "posewright/pipeline/observe_problem.hpp"
 
+#include <algorithm>
+
 #include "posewright/planning/evaluate.hpp"
+#include "posewright/support/error.hpp"
 #include "study.hpp"
 
 namespace posewright {
 namespace {
 
-Observation observe(const Study& study, const Problem& problem, const VariantSpec& variant, int threads) {
+// Nine tenths of an effect look like other parameters': worth a line.
+constexpr double near_share = 0.1;
+
+/// Poses that σ is predicted for: what is asked for, what the design says, but enough to determine everything.
+int judged_poses(const Problem& problem, const ObserveOptions& options, int smallest) {
+  const int wanted = options.poses ? *options.poses : problem.design.poses ? problem.design.poses->value : 2 * smallest;
+  return std::max(wanted, smallest);
+}
+
+void add_practical(Observation& o, const BlockArray& pool, const Problem& problem, const ObserveOptions& options,
+                   const Monitor& monitor) {
+  if (!o.smallest_poses) return;
+  try {
+    o.practical =
+        practical_identifiability(pool, o.kept, judged_poses(problem, options, *o.smallest_poses), near_share, monitor);
+  } catch (const CannotDo&) {
+    // Told apart by less than double precision can use: the dependencies above say so.
+  }
+}
+
+Observation observe(const Study& study, const Problem& problem, const VariantSpec& variant,
+                    const ObserveOptions& options, const Monitor& monitor) {
   const VariantColumns columns = select_columns(*study.model, problem, variant);
-  const BlockArray pool = build_blocks(*study.model, columns.selected, study.configurations, threads);
+  const BlockArray pool = build_blocks(*study.model, columns.selected, study.configurations, options.threads);
   Observation result;
   result.variant = variant.name;
   result.configurations = study.configurations.count();
   result.rows = study.model->rows();
   result.parameters = columns.parameters;
-  IdentifiabilityOptions options;
-  options.tiers = columns.tiers;
-  result.identifiability = identifiability(pool, columns.parameters, options);
-  options.threshold = 1e-9;
-  result.exact_rank = identifiability(pool, columns.parameters, options).rank;
+  IdentifiabilityOptions structural;
+  structural.tiers = columns.tiers;
+  result.identifiability = identifiability(pool, columns.parameters, structural);
+  structural.threshold = 1e-9;
+  result.exact_rank = identifiability(pool, columns.parameters, structural).rank;
   const VariantColumns kept = subset(columns, result.identifiability.kept);
-  if (int(kept.selected.size()) > kept.nuisance)
-    result.indices =
-        evaluate(build_blocks(*study.model, kept.selected, study.configurations, threads), kept.parameters).indices;
+  result.kept = kept.parameters;
+  if (int(kept.selected.size()) == kept.nuisance) return result;
+  const BlockArray kept_pool = build_blocks(*study.model, kept.selected, study.configurations, options.threads);
+  result.indices = evaluate(kept_pool, kept.parameters).indices;
+  result.smallest_poses = smallest_number_of_poses(study, kept, options.threads);
+  add_practical(result, kept_pool, problem, options, monitor);
   return result;
 }
 
@@ -39,7 +66,7 @@ std::vector<Observation> observe_problem(const Problem& problem, const ObserveOp
   for (const VariantSpec& variant : problem.variants)
     if (options.variant.empty() || variant.name == options.variant)
       observations.push_back(
-          observe(make_study(problem, variant, sampling, monitor), problem, variant, options.threads));
+          observe(make_study(problem, variant, sampling, monitor), problem, variant, options, monitor));
   return observations;
 }
 

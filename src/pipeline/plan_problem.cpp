@@ -14,6 +14,7 @@ namespace {
 struct Settings {
   std::string criterion, method;
   int poses, candidates;
+  bool prior;
   SearchRequest request;
 };
 
@@ -28,11 +29,19 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
     throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
   s.poses = options.poses ? *options.poses : design.poses->value;
   s.candidates = options.candidates.value_or(design.candidates.value);
-  s.request = {s.criterion, s.method, s.poses, 0, options.repeats.value_or(design.repeats), {}};
+  s.prior = options.prior.value_or(design.prior);
+  s.request = {s.criterion, s.method, s.poses, 0, options.repeats.value_or(design.repeats), {}, {}};
   s.request.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.request.planner.seed = options.seed;
   s.request.planner.threads = options.threads;
   return s;
+}
+
+Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
+  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    tolerance[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  return tolerance;
 }
 
 std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::span<const double> values) {
@@ -96,9 +105,10 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   sampling.seed = options.seed;
   sampling.threads = options.threads;
   const Study study = make_study(problem, variant, sampling, monitor);
-  const ResolvedColumns resolved = resolve_columns(study, problem, variant, options.threads);
+  const ResolvedColumns resolved = resolve_columns(study, problem, variant, settings.prior, options.threads);
   const VariantColumns& columns = resolved.columns;
-  require_enough_poses(study, columns, settings.poses, options.threads);
+  if (settings.prior) settings.request.prior_sigma = tolerances_of(columns);
+  else require_enough_poses(study, columns, settings.poses, options.threads);
 
   settings.request.nuisance = columns.nuisance;
   SearchResult found = search(build_blocks(*study.model, columns.selected, study.configurations, options.threads),
@@ -111,8 +121,8 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
     const auto q = study.configurations[std::size_t(i)];
     chosen.values.insert(chosen.values.end(), q.begin(), q.end());
   }
-  const Evaluation evaluation =
-      evaluate(build_blocks(*study.model, columns.selected, chosen, options.threads), columns.parameters);
+  const Evaluation evaluation = evaluate(build_blocks(*study.model, columns.selected, chosen, options.threads),
+                                         columns.parameters, settings.prior);
 
   Plan plan;
   plan.seed = options.seed;
@@ -120,6 +130,7 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   plan.problem_sha256 = problem.sha256;
   plan.variant = columns.name;
   plan.criterion = settings.criterion;
+  plan.prior = settings.prior;
   plan.log_det = evaluation.log_det;
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;

@@ -37,15 +37,18 @@ SearchResult search(BlockArray blocks, const SearchRequest& request, const Monit
   if (!repeats && std::size_t(request.poses) > blocks.count())
     throw CannotDo(std::to_string(request.poses) + " poses without repeats cannot be chosen from " +
                    std::to_string(blocks.count()) + " candidates");
-  const Whitening whitening = whiten(blocks);
+  const Eigen::MatrixXd raw_prior = request.prior_sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+  const Whitening whitening = whiten(blocks, raw_prior / double(request.poses));
+  const Eigen::MatrixXd prior = whitening.prior * double(request.poses);
   ApproximateDesignOptions bound_options;
   bound_options.cap = repeats ? 1.0 : 1.0 / request.poses;
+  bound_options.prior = whitening.prior;
   const ApproximateDesign approximate = solve_approximate_design(blocks, request.nuisance, bound_options, monitor);
 
   const auto criterion = make_criterion(request.criterion);
   const auto planner = make_planner(request.method);
   DesignTask task;
-  task.candidates = {&blocks, request.nuisance, repeats ? request.poses : 1};
+  task.candidates = {&blocks, request.nuisance, repeats ? request.poses : 1, prior.size() > 0 ? &prior : nullptr};
   task.criterion = criterion.get();
   task.poses = request.poses;
   task.approximate = &approximate;

@@ -16,6 +16,7 @@ struct SearchRequest {
   int nuisance = 0;
   Repeats repeats = Repeats::forbid;
   PlannerOptions planner;
+  Eigen::VectorXd prior_sigma{};  ///< 1σ known before of every column, raw units; empty: nothing
 };
 
 struct SearchResult {

@@ -34,8 +34,8 @@ std::string dropped_names(const Identifiability& found, const std::vector<Parame
     first = false;
   }
   throw CannotDo(text +
-                 ": these cannot be told apart by any number of poses; list one of each group under fixed, or use "
-                 "parameters: auto");
+                 ": these cannot be told apart by any number of poses; list one of each group under fixed, use "
+                 "parameters: auto, or count tolerances as prior knowledge (prior: tolerance)");
 }
 
 }  // namespace
@@ -60,7 +60,8 @@ Configurations thinned(const Configurations& configurations, std::size_t count) 
   return result;
 }
 
-ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, int threads) {
+ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, bool prior,
+                                int threads) {
   ResolvedColumns resolved;
   VariantColumns all = select_columns(*study.model, problem, variant);
   const BlockArray sample =
@@ -68,7 +69,7 @@ ResolvedColumns resolve_columns(const Study& study, const Problem& problem, cons
   if (!all.automatic) {
     const Identifiability found = identifiability(sample, all.parameters, exact_options());
     // With fewer rows than columns nothing can be said yet; require_enough_poses() says it.
-    if (!found.dependencies.empty() && sample.all().rows() >= sample.columns()) report_dependent(found, all);
+    if (!prior && !found.dependencies.empty() && sample.all().rows() >= sample.columns()) report_dependent(found, all);
     resolved.columns = std::move(all);
     return resolved;
   }
@@ -83,25 +84,36 @@ ResolvedColumns resolve_columns(const Study& study, const Problem& problem, cons
   return resolved;
 }
 
+namespace {
+
+/// Structure of the first configurations, interior ones: generic, unlike corners.
+Identifiability of_first(const Study& study, const VariantColumns& columns, int poses, int threads) {
+  Configurations few;
+  few.dimension = study.configurations.dimension;
+  const std::size_t take = std::min(study.configurations.count(), std::size_t(poses)) * std::size_t(few.dimension);
+  few.values.assign(study.configurations.values.begin(), study.configurations.values.begin() + std::ptrdiff_t(take));
+  return identifiability(build_blocks(*study.model, columns.selected, few, threads), columns.parameters,
+                         exact_options());
+}
+
+}  // namespace
+
+std::optional<int> smallest_number_of_poses(const Study& study, const VariantColumns& columns, int threads) {
+  const int parameters = int(columns.selected.size()), rows = study.model->block_rows(columns.selected);
+  const int most = int(std::min<std::size_t>(study.configurations.count(), std::size_t(parameters) + 1));
+  for (int n = std::max(1, (parameters + rows - 1) / rows); n <= most; ++n)
+    if (of_first(study, columns, n, threads).dependencies.empty()) return n;
+  return std::nullopt;
+}
+
 void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads) {
-  const auto missing = [&](int n) {
-    // The first configurations are interior ones: generic, unlike corners.
-    Configurations few;
-    few.dimension = study.configurations.dimension;
-    const std::size_t take = std::min(study.configurations.count(), std::size_t(n)) * std::size_t(few.dimension);
-    few.values.assign(study.configurations.values.begin(), study.configurations.values.begin() + std::ptrdiff_t(take));
-    const BlockArray sample = build_blocks(*study.model, columns.selected, few, threads);
-    return identifiability(sample, columns.parameters, exact_options());
-  };
-  const Identifiability found = missing(poses);
+  const Identifiability found = of_first(study, columns, poses, threads);
   if (found.dependencies.empty()) return;
-  const int most = int(std::min<std::size_t>(study.configurations.count(), columns.selected.size() + 1));
-  int enough = poses + 1;
-  while (enough <= most && !missing(enough).dependencies.empty()) ++enough;
-  throw CannotDo(
-      std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
-      std::to_string(columns.selected.size()) + " parameters (not " + dropped_names(found, columns.parameters) + "); " +
-      (enough <= most ? "at least " + std::to_string(enough) + " poses are needed" : "more candidates are needed"));
+  const std::optional<int> enough = smallest_number_of_poses(study, columns, threads);
+  throw CannotDo(std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
+                 std::to_string(columns.selected.size()) + " parameters (not " +
+                 dropped_names(found, columns.parameters) + "); " +
+                 (enough ? "at least " + std::to_string(*enough) + " poses are needed" : "more candidates are needed"));
 }
 
 }  // namespace posewright

@@ -79,9 +79,9 @@ std::vector<int> next_working_set(const RestrictedDesign& restricted, const std:
 }
 
 /// cap = 1/n: the only feasible weights.
-ApproximateDesign all_alike(const BlockArray& blocks, int nuisance) {
+ApproximateDesign all_alike(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd& prior) {
   const auto n = blocks.count();
-  RestrictedDesign restricted(blocks, nuisance, 1.0);
+  RestrictedDesign restricted(blocks, nuisance, 1.0, prior);
   ApproximateDesign result;
   result.support.resize(n);
   std::iota(result.support.begin(), result.support.end(), 0);
@@ -111,8 +111,8 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisanc
   const std::size_t start = std::max<std::size_t>({std::size_t(6 * m), 4 * top, 50});
   const std::size_t room = std::max<std::size_t>(std::size_t(3 * m), 2 * top);
 
-  if (top == n) return all_alike(blocks, nuisance);
-  RestrictedDesign restricted(blocks, nuisance, options.cap);
+  if (top == n) return all_alike(blocks, nuisance, options.prior);
+  RestrictedDesign restricted(blocks, nuisance, options.cap, options.prior);
   std::size_t size = start;
   while (!restricted.set_candidates(first_working_set(blocks, size))) {
     if (size >= n)
@@ -127,7 +127,7 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisanc
   for (int round = 1;; ++round) {
     result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)));
     sensitivities(blocks, nuisance, restricted.inverse_factor(), d);
-    const double ratio = std::max(1.0, mean_of_largest(d, top) / interest);
+    const double ratio = std::max(1.0, (mean_of_largest(d, top) + restricted.prior_sensitivity()) / interest);
     const double bound = with_margin(restricted.log_det() + interest * std::log(ratio));
     gap = ratio - 1;
     monitor.report({"certificate", double(round), 0, {}, {}, std::exp(-(bound - restricted.log_det()) / interest)});

@@ -21,9 +21,11 @@ void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& p
 
 }  // namespace
 
-Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters) {
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior) {
   const auto m = Eigen::Index(chosen.columns());
-  const Eigen::MatrixXd g = chosen.all();
+  const Eigen::Index measured = chosen.all().rows();
+  Eigen::MatrixXd g(measured + (prior ? m : 0), m);
+  g.topRows(measured) = chosen.all();
   if (g.rows() < m)
     throw CannotDo(std::to_string(chosen.count()) + " poses give " + std::to_string(g.rows()) + " equations for " +
                    std::to_string(m) + " parameters");
@@ -31,6 +33,8 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
       std::count_if(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.role == Role::nuisance; });
   Eigen::VectorXd tolerance(m);
   for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
+
+  if (prior) g.bottomRows(m) = tolerance.cwiseInverse().asDiagonal();
 
   // Columns in units of their tolerance, so that pivots can be compared across m and rad.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(g * tolerance.asDiagonal());
@@ -48,7 +52,7 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   result.indices = observability_indices(result.singular_values, int(chosen.count()));
   result.condition = result.indices.o2 > 0 ? 1 / result.indices.o2 : std::numeric_limits<double>::infinity();
 
-  const Eigen::MatrixXd q = (g * tolerance.asDiagonal()) * inverse;
+  const Eigen::MatrixXd q = (g.topRows(measured) * tolerance.asDiagonal()) * inverse;
   result.contribution.resize(Eigen::Index(chosen.count()));
   for (Eigen::Index i = 0; i < result.contribution.size(); ++i)
     result.contribution[i] = q.middleRows(i * chosen.rows(), chosen.rows()).squaredNorm() / double(m);

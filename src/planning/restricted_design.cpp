@@ -27,8 +27,8 @@ double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& dx) {
 
 }  // namespace
 
-RestrictedDesign::RestrictedDesign(const BlockArray& blocks, int nuisance, double cap)
-    : blocks_(blocks), nuisance_(nuisance), interest_(blocks.columns() - nuisance), cap_(cap) {}
+RestrictedDesign::RestrictedDesign(const BlockArray& blocks, int nuisance, double cap, const Eigen::MatrixXd& prior)
+    : blocks_(blocks), nuisance_(nuisance), interest_(blocks.columns() - nuisance), cap_(cap), prior_(prior) {}
 
 bool RestrictedDesign::set_candidates(const std::vector<int>& candidates) {
   std::unordered_map<int, double> old;
@@ -67,7 +67,7 @@ bool RestrictedDesign::factorise() {
     rows.middleRows(i * r, r) = blocks_.block(std::size_t(candidates_[std::size_t(i)]));
   BlockArray::RowMatrix scaled(s * r, m);
   for (Eigen::Index i = 0; i < s; ++i) scaled.middleRows(i * r, r) = std::sqrt(w_[i]) * rows.middleRows(i * r, r);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(m, m);
+  Eigen::MatrixXd information = prior_.size() > 0 ? prior_ : Eigen::MatrixXd::Zero(m, m);
   information.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success ||
@@ -75,6 +75,8 @@ bool RestrictedDesign::factorise() {
     return false;
   log_det_ = 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
   inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
+  if (prior_.size() > 0)
+    prior_sensitivity_ = (inverse_factor_ * prior_ * inverse_factor_.transpose()).diagonal().tail(interest_).sum();
   rotated_.noalias() = rows * inverse_factor_.transpose();
   // Leading entries of L⁻¹x are the nuisance block's own: d_i is what the interest entries add.
   d_.resize(s);
@@ -120,14 +122,14 @@ double RestrictedDesign::complementarity() const {
 }
 
 double RestrictedDesign::gap() const {
-  if (!capped()) return d_.maxCoeff() / interest_ - 1;
+  if (!capped()) return (d_.maxCoeff() + prior_sensitivity_) / interest_ - 1;
   // Best feasible mean sensitivity on the working set: fill the largest up to the cap.
   std::vector<double> sorted(d_.data(), d_.data() + d_.size());
   const auto top = std::min<std::size_t>(sorted.size(), std::size_t(std::lround(1 / cap_)));
   std::partial_sort(sorted.begin(), sorted.begin() + std::ptrdiff_t(top), sorted.end(), std::greater<>());
   double sum = 0;
   for (std::size_t i = 0; i < top; ++i) sum += sorted[i];
-  return sum / double(top) / interest_ - 1;
+  return (sum / double(top) + prior_sensitivity_) / interest_ - 1;
 }
 
 void RestrictedDesign::newton_step(double mu) {

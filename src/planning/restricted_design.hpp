@@ -13,7 +13,8 @@ namespace posewright {
 /// Newton matrix of −log det S: H_ij = ‖J_i M⁻¹ J_jᵀ‖²_F less the same of the nuisance block, positive semidefinite.
 class RestrictedDesign {
  public:
-  RestrictedDesign(const BlockArray& blocks, int nuisance, double cap);
+  /// @param prior  information per unit of weight, M(w) = prior + Σ w_i J_iᵀJ_i; empty: none
+  RestrictedDesign(const BlockArray& blocks, int nuisance, double cap, const Eigen::MatrixXd& prior);
 
   /// New working set; candidates already in it keep their weight, new ones enter with a small one.
   /// Returns false where they leave M(w) singular; the set is then of no use.
@@ -26,6 +27,8 @@ class RestrictedDesign {
   const Eigen::VectorXd& weights() const { return w_; }
   double price() const { return lambda_; }
   double log_det() const { return log_det_; }
+  /// What the prior has of Σ w_i d_i + tr(prior part) = number of interest parameters; 0 without one.
+  double prior_sensitivity() const { return prior_sensitivity_; }
   /// L⁻¹ of M(w) = L Lᵀ, for the pass over all candidates.
   const Eigen::MatrixXd& inverse_factor() const { return inverse_factor_; }
 
@@ -40,9 +43,10 @@ class RestrictedDesign {
   const BlockArray& blocks_;
   int nuisance_, interest_;
   double cap_;
+  const Eigen::MatrixXd& prior_;
   std::vector<int> candidates_;
   Eigen::VectorXd w_, z_, y_, d_;
-  double lambda_ = 0.0, log_det_ = 0.0;
+  double lambda_ = 0.0, log_det_ = 0.0, prior_sensitivity_ = 0.0;
   Eigen::MatrixXd inverse_factor_;
   BlockArray::RowMatrix rotated_;  ///< rows J_i L⁻ᵀ of the working set
   Eigen::MatrixXd hessian_;

@@ -29,11 +29,12 @@ double Whitening::log_det_offset(int nuisance) const {
   return 2 * R.diagonal().tail(R.cols() - nuisance).array().abs().log().sum();
 }
 
-Whitening whiten(BlockArray& blocks) {
+Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior) {
   const int m = blocks.columns();
-  Whitening whitening{Eigen::MatrixXd::Identity(m, m)};
+  Whitening whitening{Eigen::MatrixXd::Identity(m, m), prior};
   for (int pass = 0; pass < 2; ++pass) {
-    const Eigen::MatrixXd information = gram(blocks);
+    Eigen::MatrixXd information = gram(blocks);
+    if (prior.size() > 0) information += whitening.prior;
     Eigen::VectorXd scale = information.diagonal().cwiseSqrt();
     if (!(scale.minCoeff() > 0)) throw CannotDo("a parameter has no effect on any candidate");
     const Eigen::VectorXd inverse = scale.cwiseInverse();
@@ -44,6 +45,10 @@ Whitening whiten(BlockArray& blocks) {
     const Eigen::MatrixXd r = factor.matrixU() * Eigen::MatrixXd(scale.asDiagonal());
     for_each_chunk(blocks, [&](auto rows) { r.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows); });
     whitening.R = r * whitening.R;
+    if (prior.size() == 0) continue;
+    const auto upper = r.triangularView<Eigen::Upper>();
+    upper.solveInPlace<Eigen::OnTheRight>(whitening.prior);
+    upper.transpose().solveInPlace(whitening.prior);
   }
   return whitening;
 }

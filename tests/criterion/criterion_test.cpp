@@ -120,7 +120,7 @@ TEST(DeterminantState, SingularStartRecoversWhenTheCandidatesAllowIt) {
 
 TEST(InverseInformation, TracesStayTrueOverManySwaps) {
   const BlockArray blocks = random_blocks(80, 2, 9, 21);
-  InverseInformation inverse(blocks, 9);
+  InverseInformation inverse(blocks, 9, nullptr);
   std::vector<int> members = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   ASSERT_TRUE(inverse.refresh(members, 0));
   Random random(9, 1);
@@ -129,7 +129,7 @@ TEST(InverseInformation, TracesStayTrueOverManySwaps) {
     if (!inverse.swap(members[std::size_t(p)], enter)) ASSERT_TRUE(inverse.refresh(members, 0));
     else members[std::size_t(p)] = enter;
   }
-  InverseInformation fresh(blocks, 9);
+  InverseInformation fresh(blocks, 9, nullptr);
   ASSERT_TRUE(fresh.refresh(members, 0));
   for (int j = 0; j < 80; ++j) EXPECT_NEAR(inverse.trace(j), fresh.trace(j), 1e-8 * (1 + fresh.trace(j)));
   EXPECT_NEAR(inverse.log_det(), fresh.log_det(), 1e-9);

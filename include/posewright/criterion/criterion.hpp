@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ struct CandidateView {
   const BlockArray* blocks = nullptr;
   int nuisance = 0;     ///< the leading columns that are nuisance; eliminated by Schur complement
   int max_repeats = 1;  ///< how often one candidate may be chosen
+  /// Information that is there before any pose is measured (m × m, positive semidefinite); null: none.
+  const Eigen::MatrixXd* prior = nullptr;
 };
 
 /// One exchange: candidate `enter` takes the place of the member at a position; `gain` is Φ(after) − Φ(before).

@@ -11,7 +11,7 @@ namespace posewright {
 /// d_j = tr(J_j V J_jᵀ) of every candidate j. Updated by rank 2r (Sherman–Morrison–Woodbury), refreshed by Cholesky.
 class InverseInformation {
  public:
-  InverseInformation(const BlockArray& blocks, int columns);
+  InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior);
 
   /// From scratch. Returns false (and leaves everything untouched) where M is not safely positive definite.
   bool refresh(const std::vector<int>& members, double ridge);
@@ -32,6 +32,7 @@ class InverseInformation {
 
  private:
   const BlockArray& blocks_;
+  const Eigen::MatrixXd* prior_;  ///< null: none
   int columns_, stride_, rows_;
   std::vector<double> v_;  ///< columns × stride, row-major
   std::vector<double> d_;

@@ -14,7 +14,7 @@ namespace posewright {
 /// O(r m²) per candidate asked for; needs no running inverse, so nothing drifts.
 class LeaveOneOut {
  public:
-  LeaveOneOut(const BlockArray& blocks, int nuisance);
+  LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd* prior);
 
   /// Σ JᵀJ over the members. Returns false where it is singular.
   bool set_members(const std::vector<int>& members);
@@ -38,6 +38,7 @@ class LeaveOneOut {
   Eigen::MatrixXd swapped(int leave, int enter) const;
 
   const BlockArray& blocks_;
+  const Eigen::MatrixXd* prior_;  ///< null: none
   int nuisance_, padded_nuisance_, tiles_;
   Eigen::MatrixXd information_, inverse_factor_;
   double value_ = 0.0;

@@ -60,6 +60,7 @@ struct Plan {
   std::string problem_file, problem_sha256;
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1";
+  bool prior = false;  ///< tolerances count as prior knowledge in log_det, σ and everything else
   double log_det = 0.0, log_det_full = 0.0;
   ObservabilityIndices indices;
   double condition = 0.0;

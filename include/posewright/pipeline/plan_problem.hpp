@@ -15,6 +15,7 @@ struct PlanOptions {
   std::string variant, criterion, method;  ///< empty = as in the file
   std::optional<int> poses, candidates, restarts;
   std::optional<Repeats> repeats;
+  std::optional<bool> prior;  ///< count tolerances as prior knowledge
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <vector>
 
 #include "posewright/blocks/block_array.hpp"
@@ -31,6 +32,9 @@ struct ApproximateDesignOptions {
   double cap = 1.0;         ///< w_i ≤ cap; 1/N where an exact plan of N poses may not repeat one
   double tolerance = 1e-9;  ///< stop at max_sensitivity_ratio ≤ 1 + tolerance
   int max_rounds = 200;
+  /// Information known before, per unit of weight (that of a plan of N poses divided by N), in the blocks' coordinates;
+  /// empty: none. It counts as if every candidate carried it too, so everything above holds with d_i + its own share.
+  Eigen::MatrixXd prior;
 };
 
 /// Maximises log det of the interest information of M(w) = Σ w_i J_iᵀJ_i over 0 ≤ w ≤ cap, Σw = 1.

@@ -18,13 +18,15 @@ struct Evaluation {
       singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled by tolerance; descending
   ObservabilityIndices indices;  ///< O1 … O5 from singular_values
   Eigen::VectorXd contribution;  ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
+                                 ///< with the prior's
   double condition = 0.0;        ///< σ1/σm
 };
 
 /// By Householder QR of the stacked rows; no inverse of M is formed.
 /// @param chosen      raw blocks of the chosen poses, nuisance columns first
 /// @param parameters  labels of the columns; role nuisance for exactly the leading ones, tolerance > 0
+/// @param prior       count every tolerance as one more measurement of its parameter: M = GᵀG + diag(1/tolerance²)
 /// Throws CannotDo where G is rank deficient (fewer independent rows than parameters), naming a parameter.
-Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters);
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior = false);
 
 }  // namespace posewright

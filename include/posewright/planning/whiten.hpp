@@ -8,7 +8,8 @@ namespace posewright {
 
 /// Upper triangular R of X_raw = X R; see whiten().
 struct Whitening {
-  Eigen::MatrixXd R;  ///< m × m
+  Eigen::MatrixXd R;      ///< m × m
+  Eigen::MatrixXd prior;  ///< R⁻ᵀ prior R⁻¹; empty without one
 
   /// log det of the interest information in raw coordinates minus that in whitened ones.
   double log_det_offset(int nuisance) const;
@@ -18,6 +19,7 @@ struct Whitening {
 /// keep their span, so Schur complements only gain a constant factor. Two passes of Cholesky QR on columns scaled to
 /// unit length (Yamamoto et al. 2015, ETNA 44): orthogonal to machine precision for condition numbers up to about 1e8.
 /// Throws CannotDo where the columns are linearly dependent.
-Whitening whiten(BlockArray& blocks);
+/// With a prior (information per pose) Σ JᵀJ / n + prior becomes I, so that candidates need not tell everything.
+Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior = {});
 
 }  // namespace posewright

@@ -12,6 +12,8 @@ namespace {
 // Of two columns whose remaining norms differ by less than this share, the first in order is kept: rounding must not
 // decide.
 constexpr double tie = 1e-6;
+// A column this much shorter than the longest (both in units of tolerance) is the rounding of zeros.
+constexpr double no_effect = 1e-12;
 // Terms whose effect is below this share of the dropped column's effect are rounding, not physics.
 constexpr double negligible_term = 1e-3;
 
@@ -31,7 +33,11 @@ Eigen::MatrixXd compressed(const BlockArray& sample, const std::vector<Parameter
 class Elimination {
  public:
   Elimination(const Eigen::MatrixXd& g, const IdentifiabilityOptions& options)
-      : remaining_(g), norms_(g.colwise().norm()), options_(options), kept_(std::size_t(g.cols()), false) {}
+      : remaining_(g),
+        norms_(g.colwise().norm()),
+        floor_(no_effect * norms_.maxCoeff()),
+        options_(options),
+        kept_(std::size_t(g.cols()), false) {}
 
   std::vector<int> run() {
     std::vector<int> order;
@@ -55,7 +61,8 @@ class Elimination {
     int best = -1;
     for (int j = 0; j < int(remaining_.cols()); ++j) {
       const double rest = remaining_.col(j).norm();
-      if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] == 0) continue;
+      if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] <= floor_)
+        continue;
       if (best < 0 || tier(j) < tier(best) || (tier(j) == tier(best) && rest > (1 + tie) * remaining_.col(best).norm()))
         best = j;
     }
@@ -64,6 +71,7 @@ class Elimination {
 
   Eigen::MatrixXd remaining_;
   Eigen::VectorXd norms_;
+  double floor_;
   const IdentifiabilityOptions& options_;
   std::vector<bool> kept_;
   std::vector<Eigen::VectorXd> basis_;
@@ -75,7 +83,7 @@ Dependency explain(const Eigen::MatrixXd& g, const Eigen::ColPivHouseholderQR<Ei
   dependency.dropped = dropped;
   const Eigen::VectorXd column = g.col(dropped);
   const double norm = column.norm();
-  if (norm == 0 || kept.empty()) return dependency;
+  if (norm <= no_effect * g.colwise().norm().maxCoeff() || kept.empty()) return dependency;
   const Eigen::VectorXd solution = qr.solve(column);
   Eigen::VectorXd rest = column;
   for (std::size_t i = 0; i < kept.size(); ++i) {

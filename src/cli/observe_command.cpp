@@ -50,25 +50,13 @@ std::string equations(const std::vector<Dependency>& dependencies, const std::ve
   return table.text();
 }
 
-/// The terms of largest effect, largest first.
-std::vector<Dependency::Term> strongest(const Dependency& d, const Observation& o, std::size_t most) {
-  const auto tolerance = [&](int i) { return o.kept[std::size_t(i)].tolerance; };
-  const auto effect = [&](const Dependency::Term& t) {
-    return std::abs(t.coefficient) * tolerance(d.dropped) / tolerance(t.parameter);
-  };
-  std::vector<Dependency::Term> terms = d.terms;
-  std::stable_sort(terms.begin(), terms.end(), [&](const auto& a, const auto& b) { return effect(a) > effect(b); });
-  if (terms.size() > most) terms.resize(most);
-  return terms;
-}
-
-/// Names of what parameter j mostly looks like; empty where a tenth or more of its effect is its own.
+/// Names of what parameter j mostly looks like, largest effect first; empty where a tenth or more of its effect is its own.
 std::string most_like(const Observation& o, int j) {
   std::string text;
   for (const Dependency& d : o.practical->near)
     if (d.dropped == j)
-      for (const Dependency::Term& t : strongest(d, o, 3))
-        text += (text.empty() ? "" : ", ") + o.kept[std::size_t(t.parameter)].name;
+      for (std::size_t i = 0; i < std::min<std::size_t>(3, d.terms.size()); ++i)
+        text += (text.empty() ? "" : ", ") + o.kept[std::size_t(d.terms[i].parameter)].name;
   return text;
 }
 
@@ -82,7 +70,7 @@ std::string near_text(const Observation& o) {
       continue;
     }
     shown.push_back(d);
-    shown.back().terms = strongest(d, o, most_terms);
+    if (d.terms.size() > most_terms) shown.back().terms.resize(most_terms);
   }
   if (shown.empty()) return {};
   return "Near dependencies (the parameter on the left mostly looks like those on the right; largest terms):\n" +

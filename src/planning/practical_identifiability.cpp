@@ -82,10 +82,16 @@ Dependency resemblance(const Eigen::MatrixXd& information, const Eigen::MatrixXd
   Dependency dependency;
   dependency.dropped = int(j);
   dependency.remainder = 1 / std::sqrt(information(j, j) * covariance(j, j));
-  const double own = std::sqrt(information(j, j));
-  for (Eigen::Index k = 0; k < information.cols(); ++k) {
-    const double coefficient = -covariance(j, k) / covariance(j, j);
-    if (k == j || std::abs(coefficient) * std::sqrt(information(k, k)) < negligible_term * own) continue;
+  const Eigen::VectorXd coefficients = -covariance.col(j) / covariance(j, j);
+  // Size of each term's effect on the readings, in shares of the parameter's own.
+  const Eigen::VectorXd effect =
+      coefficients.cwiseAbs().cwiseProduct((information.diagonal() / information(j, j)).cwiseSqrt());
+  std::vector<Eigen::Index> order(std::size_t(information.cols()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return effect[a] > effect[b]; });
+  for (const Eigen::Index k : order) {
+    const double coefficient = coefficients[k];
+    if (k == j || effect[k] < negligible_term) continue;
     dependency.terms.push_back(
         {int(k), coefficient * parameters[std::size_t(k)].tolerance / parameters[std::size_t(j)].tolerance});
   }

@@ -71,7 +71,7 @@ TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   EXPECT_EQ(folder.count_files(), 0U);
   const ProgramRun observe = run_program(folder.path(), {"observe", telescope, "--candidates", "300", "--json"});
   const auto json = nlohmann::json::parse(observe.out);
-  EXPECT_EQ(json["variants"].size(), 3U);
+  EXPECT_EQ(json["variants"].size(), 7U);
   EXPECT_EQ(json["variants"][0]["rank"], 42);
 }
 
@@ -107,7 +107,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"plan", telescope, "--seed", "-1"}, 2, "--seed -1 is no seed"},
       {{"plan", telescope, "--threads", "0"}, 2, "--threads 0; a whole number from 1 to 4096"},
       {{"plan", telescope, "--time-limit", "soon"}, 2, "--time-limit soon"},
-      {{"plan", telescope, "--variant", "none"}, 2, "has no variant 'none'; variants: rigid, rigid_6, all_free"},
+      {{"plan", telescope, "--variant", "none"}, 2, "has no variant 'none'; variants: rigid, rigid_6, linear, matrix, all_free, kappa_and_ux, row_of_K"},
       {{"plan", telescope, "--criterion", "o9"}, 2, "unknown criterion 'o9'; available: o1"},
       {{"plan", telescope, "--method", "magic"}, 2, "unknown method 'magic'; available: exchange"},
       {{"plan", telescope, "--repeats", "maybe"}, 2, "--repeats maybe; allowed: allow, forbid"},
@@ -127,7 +127,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"select", blocks, "--rows", "2", "--poses", "21"}, 1, "21 poses without repeats cannot be chosen from 20"},
       {{"select", blocks, "--rows", "2", "--poses", "5", "--nuisance", "4"}, 2, "--nuisance 4; 0 to 3"},
       {{"observe", telescope, "--variant", "none"}, 2, "has no variant 'none'"},
-      {{"observe", telescope, "--poses", "4"}, 2, "unrecognised option"},
+      {{"observe", telescope, "--restarts", "4"}, 2, "unrecognised option"},
   };
   for (const Bad& bad : table) {
     const ProgramRun run = run_program(folder.path(), bad.words);

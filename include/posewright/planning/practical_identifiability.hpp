@@ -16,7 +16,8 @@ struct PracticalIdentifiability {
   /// Share of each parameter's effect that the others together do not explain, √(1 − R²) = 1/√(M_jj (M⁻¹)_jj) in (0,
   /// 1].
   Eigen::VectorXd unexplained;
-  /// Parameters of which less than `near_share` is their own, smallest first, with the combination they resemble.
+  /// Parameters of which less than `near_share` is their own, smallest first, with the combination they resemble,
+  /// its terms by the size of their effect.
   std::vector<Dependency> near;
   /// Indices of the parameters to identify: of those that are told less than their tolerance says already, the worst is
   /// fixed, then the rest is judged again, until every one left is worth it. Nuisance parameters always stay.

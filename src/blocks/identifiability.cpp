@@ -61,8 +61,7 @@ class Elimination {
     int best = -1;
     for (int j = 0; j < int(remaining_.cols()); ++j) {
       const double rest = remaining_.col(j).norm();
-      if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] <= floor_)
-        continue;
+      if (kept_[std::size_t(j)] || !(rest > options_.threshold * norms_[j]) || norms_[j] <= floor_) continue;
       if (best < 0 || tier(j) < tier(best) || (tier(j) == tier(best) && rest > (1 + tie) * remaining_.col(best).norm()))
         best = j;
     }

@@ -50,7 +50,8 @@ std::string equations(const std::vector<Dependency>& dependencies, const std::ve
   return table.text();
 }
 
-/// Names of what parameter j mostly looks like, largest effect first; empty where a tenth or more of its effect is its own.
+/// Names of what parameter j mostly looks like, largest effect first; empty where a tenth or more of its effect is its
+/// own.
 std::string most_like(const Observation& o, int j) {
   std::string text;
   for (const Dependency& d : o.practical->near)

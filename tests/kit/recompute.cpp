@@ -1,6 +1,7 @@
 #include "recompute.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -28,6 +29,26 @@ double recomputed_log_det(const Problem& problem, const std::string& variant,
   };
   return log_det(information) -
          (columns.nuisance > 0 ? log_det(information.topLeftCorner(columns.nuisance, columns.nuisance)) : 0.0);
+}
+
+std::vector<std::vector<double>> configurations_of(const Problem& problem, const Plan& plan) {
+  const auto model = make_model(problem, find_variant(problem, plan.variant));
+  std::vector<std::vector<double>> poses;
+  for (const PlannedPose& pose : plan.poses) {
+    std::vector<double> q;
+    std::size_t next = 0;
+    for (const Coordinate& c : model->coordinates()) {
+      if (!c.choice()) {
+        q.push_back(pose.configuration.at(next++).value);
+        continue;
+      }
+      const std::string& label = c.name == "station" ? pose.station : pose.load_case;
+      const auto at = std::find(c.labels.begin(), c.labels.end(), label);
+      q.push_back(at == c.labels.end() ? -1 : c.values[std::size_t(at - c.labels.begin())]);
+    }
+    poses.push_back(std::move(q));
+  }
+  return poses;
 }
 
 WrittenPlan read_back(const std::string& text) {

@@ -13,6 +13,10 @@ namespace posewright {
 double recomputed_log_det(const Problem& problem, const std::string& variant,
                           const std::vector<std::vector<double>>& poses);
 
+/// The configurations of a plan as the model takes them: the written numbers, then load case and station by their
+/// names.
+std::vector<std::vector<double>> configurations_of(const Problem& problem, const Plan& plan);
+
 /// What a reader of plan.json finds.
 struct WrittenPlan {
   std::string variant;

@@ -24,8 +24,11 @@ inline std::string urdf_text(const std::vector<UrdfJoint>& joints, const char* t
     text += fmt::format(
         "  <link name=\"{0}\"/>\n  <joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/>"
         "<origin xyz=\"{4}\" rpy=\"{5}\"/><axis xyz=\"{6}\"/>{7}</joint>\n",
-        child, n, joint.kind == 'R' ? "revolute" : joint.kind == 'C' ? "continuous" : "prismatic", parent, joint.xyz,
-        joint.rpy, joint.axis,
+        child, n,
+        joint.kind == 'R'   ? "revolute"
+        : joint.kind == 'C' ? "continuous"
+                            : "prismatic",
+        parent, joint.xyz, joint.rpy, joint.axis,
         joint.kind == 'C'   ? ""
         : joint.kind == 'R' ? "<limit lower=\"-2.5\" upper=\"2.5\" effort=\"1\" velocity=\"1\"/>"
                             : "<limit lower=\"-0.4\" upper=\"0.6\" effort=\"1\" velocity=\"1\"/>");

@@ -1,4 +1,5 @@
-// A loop over configurations must not allocate: counts calls of malloc during whitened_block() once its scratch is warm.
+// A loop over configurations must not allocate: counts calls of malloc during whitened_block() once its scratch is
+// warm.
 
 #include <gtest/gtest.h>
 

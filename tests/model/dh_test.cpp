@@ -59,8 +59,8 @@ TEST(DenavitHartenberg, ChainHasTheSameTipAsTheUrdfEverywhere) {
 TEST(DenavitHartenberg, ColumnsEqualAutomaticDifferentiation) {
   const TemporaryFolder folder;
   MeasurementSpec points;
-  points.instrument = PointsMeasurement{
-      {{"A", {0.1, 0.2, -0.3}, 0}}, GaussianNoise{1e-8 * Eigen::Matrix3d::Identity()}, {}, {0, 1, 2}};
+  points.instrument =
+      PointsMeasurement{{{"A", {0.1, 0.2, -0.3}, 0}}, GaussianNoise{1e-8 * Eigen::Matrix3d::Identity()}, {}, {0, 1, 2}};
   for (const NamedChain& named : named_chains())
     for (const DhConvention convention : conventions) {
       const DhDescription dh = denavit_hartenberg(read(folder, named), convention);
@@ -69,8 +69,8 @@ TEST(DenavitHartenberg, ColumnsEqualAutomaticDifferentiation) {
         std::vector<Jet> all(d.begin(), d.end() - 3);
         all.resize(all.size() + 6, Jet(0.0));
         const Frame<Jet> tip = dh_tip_pose<Jet>(dh, q.data(), all.data());
-        const Eigen::Matrix<Jet, 3, 1> y = tip * Eigen::Matrix<Jet, 3, 1>(d[d.size() - 3] + 0.1, d[d.size() - 2] + 0.2,
-                                                                          d[d.size() - 1] - 0.3);
+        const Eigen::Matrix<Jet, 3, 1> y =
+            tip * Eigen::Matrix<Jet, 3, 1>(d[d.size() - 3] + 0.1, d[d.size() - 2] + 0.2, d[d.size() - 1] - 0.3);
         return std::vector<Jet>{y[0], y[1], y[2]};
       };
       for (const double size : {0.0, 10.0})
@@ -78,9 +78,13 @@ TEST(DenavitHartenberg, ColumnsEqualAutomaticDifferentiation) {
     }
 }
 
-Identifiability identified(const IdentificationModel& model, int configurations) {
+/// Structure of the parameters that `auto` chooses from.
+Identifiability identified(const IdentificationModel& model, int configurations, std::vector<Parameter>& labels) {
   Random random(5, 0);
-  const std::vector<int> all = all_parameters(model);
+  std::vector<int> all;
+  for (const auto& preference : model.geometric_parameters()) all.push_back(preference.parameter);
+  labels.clear();
+  for (const int i : all) labels.push_back(model.parameters()[std::size_t(i)]);
   BlockArray sample(std::size_t(configurations), model.block_rows(all), int(all.size()));
   Linearisation scratch;
   for (std::size_t i = 0; i < sample.count(); ++i)
@@ -88,28 +92,66 @@ Identifiability identified(const IdentificationModel& model, int configurations)
                    sample.stride());
   IdentifiabilityOptions options;
   options.threshold = 1e-7;
-  return identifiability(sample, model.parameters(), options);
+  return identifiability(sample, labels, options);
 }
 
-/// As many as 4R + 2P + 6, in joint frames (with offsets but without gears), and in both conventions.
-TEST(DenavitHartenberg, NumberOfIdentifiableParametersIs4RPlus2PPlus6InEveryConvention) {
+/// Joint frames and both conventions.
+std::vector<std::unique_ptr<ExplicitModel>> models_of(const ChainDescription& chain) {
+  std::vector<std::unique_ptr<ExplicitModel>> models;
+  models.push_back(
+      std::make_unique<ExplicitModel>(std::make_unique<SerialChain>(chain), make_measurement(full_pose())));
+  for (const DhConvention convention : conventions)
+    models.push_back(std::make_unique<ExplicitModel>(std::make_unique<DhChain>(denavit_hartenberg(chain, convention)),
+                                                     make_measurement(full_pose())));
+  return models;
+}
+
+TEST(Conventions, NumberOfIdentifiableParametersIs4RPlus2PPlus6InEveryOne) {
   const TemporaryFolder folder;
   int chains = 0, with_prismatic = 0;
+  std::vector<Parameter> labels;
   for (const NamedChain& named : named_chains()) {
-    if (named.deficit != 0) continue;
-    int expected = 6;
+    int expected = 6 + named.deficit;
     for (const UrdfJoint& joint : named.joints) expected += joint.kind == 'P' ? 2 : 4;
-    const ChainDescription chain = read(folder, named);
     ++chains;
-    with_prismatic += std::any_of(named.joints.begin(), named.joints.end(), [](const auto& j) { return j.kind == 'P'; });
-    for (const DhConvention convention : conventions) {
-      const ExplicitModel model(std::make_unique<DhChain>(denavit_hartenberg(chain, convention)),
-                                make_measurement(full_pose()));
-      EXPECT_EQ(identified(model, 200).rank, expected) << named.name;
-    }
+    with_prismatic +=
+        std::any_of(named.joints.begin(), named.joints.end(), [](const auto& j) { return j.kind == 'P'; });
+    for (const auto& model : models_of(read(folder, named)))
+      EXPECT_EQ(identified(*model, 200, labels).rank, expected) << named.name;
   }
   EXPECT_GE(chains, 10);
   EXPECT_GE(with_prismatic, 5);
+}
+
+/// The equation that explains why a parameter is dropped.
+std::string equation_of(const Identifiability& found, const std::vector<Parameter>& labels, const std::string& name) {
+  for (const Dependency& d : found.dependencies)
+    if (labels[std::size_t(d.dropped)].name == name) return describe(d, labels);
+  return name + " is kept";
+}
+
+TEST(Conventions, SpecialGeometryIsExplainedByEquations) {
+  const TemporaryFolder folder;
+  const auto find = [](const std::string& name) {
+    for (const NamedChain& named : named_chains())
+      if (named.name == name) return named;
+    throw std::logic_error("no such chain");
+  };
+  std::vector<Parameter> labels;
+  // Parallel axes: a shift along the next joint's axis is one along the joint's own.
+  const ChainDescription parallel = read(folder, find("anthropomorphic_6R"));
+  Identifiability found = identified(*models_of(parallel).front(), 200, labels);
+  for (const char* pair : {"j3.y j2.y", "j3.ry j3.offset", "j6.ry j5.offset"}) {
+    const std::string text = pair, dropped = text.substr(0, text.find(' ')), kept = text.substr(text.find(' ') + 1);
+    const bool either = equation_of(found, labels, dropped) == dropped + " = " + kept ||
+                        equation_of(found, labels, kept) == kept + " = " + dropped;
+    EXPECT_TRUE(either) << equation_of(found, labels, dropped) << "; " << equation_of(found, labels, kept);
+  }
+  // Coaxial joints: the offsets of both and a turn of the base are one and the same.
+  found = identified(*models_of(read(folder, find("coaxial_pair_RRR"))).front(), 200, labels);
+  std::string text = equation_of(found, labels, "j2.offset") + "; " + equation_of(found, labels, "j1.offset");
+  EXPECT_NE(text.find("j1.offset = base.r"), std::string::npos) << text;
+  EXPECT_NE(text.find("j2.offset = base.r"), std::string::npos) << text;
 }
 
 TEST(DenavitHartenberg, ParallelAxesGetHayatisAngleInPlaceOfAnOffset) {

@@ -29,9 +29,9 @@ Coordinate make_choice(const std::string& name, const std::vector<std::string>& 
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
-  Eigen::MatrixXd G;             ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
-  Eigen::MatrixXd covariance;    ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
-  Eigen::MatrixXd basis;         ///< r × c, c < r, where the model offers G = basis · coefficients
+  Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
+  Eigen::MatrixXd covariance;  ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
+  Eigen::MatrixXd basis;       ///< r × c, c < r, where the model offers G = basis · coefficients
   /// c × selected
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter

@@ -13,8 +13,9 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr int newton_steps = 50;
 // Newton's method ends after a step this small (m, rad): it squares the error, so what is left is rounding.
 constexpr double newton_tolerance = 1e-12;
-// Smallest pivot of F_x, relative to its largest, that is not a singularity.
-constexpr double singular_pivot = 1e-10;
+// Smallest pivot of F_x, relative to its largest, that is not a singularity: nearer to one the linear model would not
+// hold over the tolerances.
+constexpr double singular_pivot = 1e-4;
 
 /// At most six coordinates, so nothing here touches the heap.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;

@@ -1,6 +1,7 @@
 #include "distance_pair_model.hpp"
 
 #include "measure_distance.hpp"
+#include "posewright/model/closed_chain.hpp"
 
 namespace posewright {
 namespace {
@@ -41,6 +42,7 @@ DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const Measur
   twice(actuators_, tip_->actuators());
   rows_ = int(spec_.targets.size());
   unmeasurable_reason_ = "distance out of range";
+  if (!actuators_.empty()) unmeasurable_reason_ += " or " + near_singularity();
 }
 
 Eigen::Vector3d DistancePairModel::target(const Eigen::Isometry3d& X, std::span<const double> correction,

@@ -161,11 +161,11 @@ bool ElasticChain::linearise(std::span<const double> q, std::span<const double> 
                              std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
                              Twists* reading_twists) const {
   static thread_local std::vector<int> geometric;
-  static thread_local std::vector<double> rigid;
+  static thread_local std::vector<double> rigid, derivative;
   static thread_local Twists own_readings;
   const std::size_t joints = chain_.coordinates().size(), count = springs_.size(), first = std::size_t(first_);
   std::array<double, max_joints> deflection{};
-  std::array<double, 2 * max_joints> derivative{};
+  derivative.assign(count, 0.0);
   const auto elastic = correction.empty() ? correction : correction.subspan(first, count);
   deflect(q, elastic, std::span(deflection).first(joints), derivative);
 

@@ -3,7 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "posewright/model/closed_chain.hpp"
+
 namespace posewright {
+namespace {
+
+/// Spatial twists about the origin of M become coefficients of the unit twists about p.
+void about_tip_origin(const Eigen::Vector3d& p, Twists& twists) {
+  for (Eigen::Index c = 0; c < twists.cols(); ++c)
+    twists.col(c).head<3>() -= p.cross(Eigen::Vector3d(twists.col(c).tail<3>()));
+}
+
+}  // namespace
 
 /// Configuration and corrections, each cut into the robot's and the instrument's.
 struct ExplicitModel::Parts {
@@ -30,6 +41,7 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
     is_own_column_.push_back(i >= tip_parameters_ &&
                              !measurement_->motion({anywhere, {}, 0}, i - tip_parameters_, nullptr));
   unmeasurable_reason_ = measurement_->unseen_reason();
+  if (!actuators_.empty()) unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + near_singularity();
   rows_ = measurement_->rows();
   reading_noise_ =
       std::any_of(tip_->reading_noise().begin(), tip_->reading_noise().end(), [](double s) { return s > 0; });
@@ -43,9 +55,10 @@ ExplicitModel::Parts ExplicitModel::parts(std::span<const double> q, std::span<c
           choice ? int(q.back()) : 0};
 }
 
-/// Twists of the selected parameters (zero for the instrument's own columns) and the covariance of the rows.
-bool ExplicitModel::twists_and_covariance(const Parts& p, std::span<const int> selected, Eigen::Isometry3d& X,
-                                          Linearisation& out) const {
+/// Twists of the selected parameters (zero for the instrument's own columns) and of the readings, the instrument's own
+/// covariance.
+bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> selected, Eigen::Isometry3d& X,
+                                     Linearisation& out) const {
   if (!tip_->linearise(p.q, p.tip_correction, selected, X, out.twists, reading_noise_ ? &out.reading_twists : nullptr))
     return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
@@ -58,11 +71,9 @@ bool ExplicitModel::twists_and_covariance(const Parts& p, std::span<const int> s
   }
   out.covariance.resize(rows_, rows_);
   measurement_->covariance(sighting, out.covariance);
-  if (!reading_noise_) return true;
-  out.rows.resize(rows_, out.reading_twists.cols());
-  measurement_->rows_of_twists(sighting, out.reading_twists, out.rows);
-  for (Eigen::Index j = 0; j < out.rows.cols(); ++j) out.rows.col(j) *= tip_->reading_noise()[std::size_t(j)];
-  out.covariance.noalias() += out.rows * out.rows.transpose();
+  if (!reading_noise_) out.reading_twists.resize(6, 0);
+  for (Eigen::Index j = 0; j < out.reading_twists.cols(); ++j)
+    out.reading_twists.col(j) *= tip_->reading_noise()[std::size_t(j)];
   return true;
 }
 
@@ -70,8 +81,13 @@ bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const doub
                                  std::span<const int> selected, Linearisation& out) const {
   const Parts p = parts(q, correction);
   Eigen::Isometry3d X;
-  if (!twists_and_covariance(p, selected, X, out)) return false;
+  if (!twists_and_noise(p, selected, X, out)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  if (reading_noise_) {
+    out.rows.resize(rows_, out.reading_twists.cols());
+    measurement_->rows_of_twists(sighting, out.reading_twists, out.rows);
+    out.covariance.noalias() += out.rows * out.rows.transpose();
+  }
   out.G.resize(rows_, Eigen::Index(selected.size()));
   measurement_->rows_of_twists(sighting, out.twists, out.G);
   for (std::size_t c = 0; c < selected.size(); ++c)
@@ -90,7 +106,7 @@ bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<c
                                           std::span<const int> selected, Linearisation& out) const {
   const Parts p = parts(q, correction);
   Eigen::Isometry3d X;
-  if (!twists_and_covariance(p, selected, X, out)) return false;
+  if (!twists_and_noise(p, selected, X, out)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
   const int width = do_block_rows(selected);
   // Unit twists about the tip's origin: about the origin of M they would be ill-scaled far away.
@@ -99,9 +115,11 @@ bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<c
   out.basis.resize(rows_, width);
   measurement_->rows_of_twists(sighting, about_tip, out.basis.leftCols<6>());
   out.coefficients.setZero(width, Eigen::Index(selected.size()));
+  about_tip_origin(X.translation(), out.twists);
+  about_tip_origin(X.translation(), out.reading_twists);
   out.coefficients.topRows<6>() = out.twists;
-  for (Eigen::Index c = 0; c < out.twists.cols(); ++c)
-    out.coefficients.col(c).head<3>() -= X.translation().cross(Eigen::Vector3d(out.twists.col(c).tail<3>()));
+  out.reading_coefficients.setZero(width, out.reading_twists.cols());
+  out.reading_coefficients.topRows<6>() = out.reading_twists;
   Eigen::Index next = 6;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     if (is_own_column_[std::size_t(selected[c])] == 0) continue;

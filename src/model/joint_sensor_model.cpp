@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "posewright/model/closed_chain.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -29,6 +30,7 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
     if (!name.starts_with("base.") && !name.starts_with("tool.")) geometric_.push_back(p);
   }
   rows_ = int(sensors_.size());
+  unmeasurable_reason_ = near_singularity();
 }
 
 bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const double> correction,
@@ -45,6 +47,12 @@ bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const d
   out.covariance = out.rows * out.rows.transpose();
   out.covariance.diagonal().array() += variance_;
   return true;
+}
+
+bool JointSensorModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+  Twists none;
+  Eigen::Isometry3d X;
+  return tip_->linearise(q, correction, {}, X, none, nullptr);
 }
 
 bool JointSensorModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,

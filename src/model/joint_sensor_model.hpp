@@ -18,6 +18,7 @@ class JointSensorModel : public IdentificationModel {
  private:
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
+  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
   bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
                           std::span<double> values) const override;
   Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;

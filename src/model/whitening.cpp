@@ -1,5 +1,7 @@
 #include "posewright/model/whitening.hpp"
 
+#include <cmath>
+
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/support/error.hpp"
 
@@ -12,6 +14,46 @@ void factorise_covariance(Linearisation& scratch) {
     throw CannotDo("measurement: the noise covariance is not positive definite");
 }
 
+/// Divides rows of `block` by the lower triangle l, row by row: the block is row-major.
+template <class Block, class Triangle>
+void forward_substitute(const Triangle& l, Block& block) {
+  for (Eigen::Index i = 0; i < block.rows(); ++i) {
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (l(i, k) != 0) block.row(i) -= l(i, k) * block.row(k);
+    block.row(i) /= l(i, i);
+  }
+}
+
+/// G = B C, covariance Σ + B N Nᵀ Bᵀ: with L⁻¹ B = Q R (Σ = L Lᵀ; Q turns rows only) the block is
+/// (I + R N Nᵀ Rᵀ)^{-1/2} R C, so that the cost grows with the readings r linearly.
+void whiten_factored(Linearisation& s, BlockArray::Map& block) {
+  if (s.covariance.isDiagonal(0.0)) {
+    if (!(s.covariance.diagonal().minCoeff() > 0))
+      throw CannotDo("measurement: the noise covariance is not positive definite");
+    for (Eigen::Index i = 0; i < s.basis.rows(); ++i) s.basis.row(i) /= std::sqrt(s.covariance(i, i));
+  } else {
+    factorise_covariance(s);
+    s.factor.matrixL().solveInPlace(s.basis);
+  }
+  s.compression.compute(s.basis);
+  const auto& r = s.compression.matrixQR();
+  s.rows.resize(block.rows(), s.reading_coefficients.cols());
+  for (Eigen::Index i = 0; i < block.rows(); ++i) {
+    block.row(i) = r(i, i) * s.coefficients.row(i);
+    s.rows.row(i) = r(i, i) * s.reading_coefficients.row(i);
+    for (Eigen::Index k = i + 1; k < block.rows(); ++k) {
+      block.row(i) += r(i, k) * s.coefficients.row(k);
+      s.rows.row(i) += r(i, k) * s.reading_coefficients.row(k);
+    }
+  }
+  if (s.rows.cols() == 0) return;
+  s.small.resize(block.rows(), block.rows());
+  s.small.noalias() = s.rows.lazyProduct(s.rows.transpose());
+  s.small.diagonal().array() += 1.0;
+  s.small_factor.compute(s.small);
+  forward_substitute(s.small_factor.matrixLLT(), block);
+}
+
 }  // namespace
 
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
@@ -19,28 +61,14 @@ bool whitened_block(const IdentificationModel& model, std::span<const double> q,
   const Eigen::Index rows = model.block_rows(selected);
   BlockArray::Map block(out, rows, Eigen::Index(selected.size()), Eigen::OuterStride<>(stride));
   if (rows < model.rows()) {
-    // G = B C: L⁻¹ B = Q R, and Q turns rows only.
     if (!model.linearise_factored(q, correction, selected, scratch)) return false;
-    factorise_covariance(scratch);
-    scratch.factor.matrixL().solveInPlace(scratch.basis);
-    scratch.compression.compute(scratch.basis);
-    const auto& r = scratch.compression.matrixQR();
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      block.row(i) = r(i, i) * scratch.coefficients.row(i);
-      for (Eigen::Index k = i + 1; k < rows; ++k) block.row(i) += r(i, k) * scratch.coefficients.row(k);
-    }
+    whiten_factored(scratch, block);
     return true;
   }
   if (!model.linearise(q, correction, selected, scratch)) return false;
   factorise_covariance(scratch);
-  // Forward substitution by rows: the block is row-major and G may be overwritten row by row.
-  const auto& l = scratch.factor.matrixLLT();
-  for (Eigen::Index i = 0; i < block.rows(); ++i) {
-    block.row(i) = scratch.G.row(i);
-    for (Eigen::Index k = 0; k < i; ++k)
-      if (l(i, k) != 0) block.row(i) -= l(i, k) * block.row(k);
-    block.row(i) /= l(i, i);
-  }
+  block = scratch.G;
+  forward_substitute(scratch.factor.matrixLLT(), block);
   return true;
 }
 

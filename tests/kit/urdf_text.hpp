@@ -43,10 +43,10 @@ inline std::string urdf_text(const std::vector<UrdfJoint>& joints, const char* t
 struct NamedChain {
   const char* name;
   std::vector<UrdfJoint> joints;
-  int deficit = 0;  ///< parameters fewer than 4R + 2P + 6, for special geometry
+  int dh_deficit = 0;  ///< Denavit–Hartenberg parameters fewer than 4R + 2P + 6: where the convention is incomplete
 };
 
-/// Kinds of arms; `deficit` counts what special geometry hides.
+/// Kinds of arms.
 inline std::vector<NamedChain> named_chains() {
   const char *o = "0 0 0", *x = "1 0 0", *y = "0 1 0", *z = "0 0 1", *none = "0 0 0";
   return {
@@ -113,8 +113,8 @@ inline std::vector<NamedChain> named_chains() {
         {'R', "0.2 -0.2 0.1", "0.2 -0.7 0.1", "0.3 -0.4 0.8"}}},
       {"turntable_2R", {{'C', o, none, z}, {'R', "0.1 0 0.2", none, y}}},
       {"positioner_3P", {{'P', o, none, x}, {'P', "0.1 0 0", none, y}, {'P', "0 0 0.2", none, z}}},
-      // Two coaxial revolute joints in a row: their sum is all that shows, so one joint's worth of angles and of places
-      // is lost twice over; the equations name them.
+      // Two coaxial joints in a row: one offset less shows, one sideways shift of the second axis more. The first has
+      // no direction for a common normal, so Denavit–Hartenberg parameters lack that shift.
       {"coaxial_pair_RRR", {{'R', o, none, z}, {'R', "0 0 0.2", none, z}, {'R', "0.3 0 0", none, y}}, -1},
   };
 }

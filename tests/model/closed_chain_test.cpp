@@ -294,6 +294,20 @@ TEST(ClosedChain, InformationEqualsThatOfTheWeightedLoopEquations) {
   EXPECT_LT((J.transpose() * J - expected).norm(), 1e-9 * expected.norm());
 }
 
+TEST(FiveBar, NearASingularityNothingIsMeasured) {
+  // Distal links in line: the point can leave the line without the motors moving.
+  FiveBarSpec spec = five_bar();
+  spec.legs = {{{{-0.2, 0}, 0.3, 0.25, 1.0}, {{0.2, 0}, 0.3, 0.25, -1.0}}};
+  MeasurementSpec pose;
+  pose.instrument = PoseMeasurement{1e-8 * Eigen::Matrix<double, 6, 6>::Identity(), {0, 1}, {}, 0};
+  const ExplicitModel model(std::make_unique<FiveBar>(spec), make_measurement(pose));
+  EXPECT_EQ(model.unmeasurable_reason(), "near a singularity");
+  // Elbows at (±0.25, h): in line with the point between them when both distal links lie along x.
+  const double h = std::sqrt(0.3 * 0.3 - 0.05 * 0.05);
+  EXPECT_FALSE(model.measurable(std::vector<double>{0.0, h + 1e-7}));
+  EXPECT_TRUE(model.measurable(std::vector<double>{0.0, h + 0.1}));
+}
+
 TEST(SixLegs, DeformedPlatformNeedsOtherActuatorsAndStillClosesItsLoops) {
   Problem problem = telescope();
   VariantSpec variant = problem.variants.front();

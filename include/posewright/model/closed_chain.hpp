@@ -7,6 +7,9 @@
 
 namespace posewright {
 
+/// Why a configuration is refused where F_x is nearly singular, in the table of rejections.
+inline std::string near_singularity() { return "near a singularity"; }
+
 /// Closed-chain robots: loop equations f(x, ρ, ξ) = 0 tie the platform's coordinates x (the configuration) to the
 /// actuators ρ; as many equations as coordinates. A robot gives f's derivatives; everything else is done here:
 ///   twist of the platform along a parameter = −B F_x⁻¹ F_ξ,  along an actuator reading = −B F_x⁻¹ F_ρ,

@@ -34,8 +34,8 @@ class ExplicitModel : public IdentificationModel {
 
   struct Parts;
   Parts parts(std::span<const double> q, std::span<const double> correction) const;
-  bool twists_and_covariance(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
-                             Linearisation& out) const;
+  bool twists_and_noise(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
+                        Linearisation& out) const;
 
   std::unique_ptr<TipModel> tip_;
   std::unique_ptr<MeasurementModel> measurement_;

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "posewright/problem/robot_specs.hpp"
+
+/// What a problem file may say of the measurement: one plain struct an instrument, SI units.
+namespace posewright {
+
+struct TargetSpec {
+  std::string name;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, in the frame the key says
+  int line = 0;
+};
+
+/// Components of one measured quantity that the instrument delivers, e.g. x y z (0..2), rx ry rz (3..5); ascending.
+using Components = std::vector<int>;
+
+/// Noise of one point: the same everywhere, in the axes of the station.
+struct GaussianNoise {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m²
+};
+/// Noise of a laser tracker, an ellipsoid along the line of sight (1σ): range + range_per_m·R along the beam,
+/// transverse + angle·R across. Defaults: an interferometer's data sheet (design §3.5).
+struct TrackerNoise {
+  double range = 2.5e-6, range_per_m = 0.075e-6;  ///< m, m/m
+  double transverse = 3.75e-6, angle = 1.5e-6;    ///< m, rad
+};
+using PointNoise = std::variant<GaussianNoise, TrackerNoise>;
+
+/// Where an instrument stands. Its base pose is a set of parameters station.NAME.*.
+struct StationSpec {
+  std::string name;
+  Placement placement;  ///< in the measurement frame
+};
+
+/// Full or partial pose of the tip. Rows: the chosen components of (x, y, z, rx, ry, rz), measurement frame.
+struct PoseMeasurement {
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< m², m·rad, rad²
+  Components components{0, 1, 2, 3, 4, 5};
+  /// Photogrammetry: the covariance follows from the rigid fit to these points (tip frame, m) with `point_sigma` (m);
+  /// empty: `covariance` counts.
+  std::vector<TargetSpec> photogrammetry;
+  double point_sigma = 0.0;
+};
+
+/// Positions of one or more targets fixed to the tip. `position` in the file is `points` with one target.
+struct PointsMeasurement {
+  std::vector<TargetSpec> targets;
+  PointNoise noise;
+  std::vector<StationSpec> stations;  ///< empty: one, in the origin of the measurement frame
+  Components components{0, 1, 2};
+};
+
+/// Distances: from fixed anchors to targets (ball bar, cable sensor), or between one target's places in two
+/// configurations.
+struct DistanceMeasurement {
+  std::vector<TargetSpec> targets;            ///< tip frame
+  std::vector<TargetSpec> anchors;            ///< measurement frame; empty: between two configurations
+  double sigma = 0.0, sigma_per_m = 0.0;      ///< m, m/m (1σ = sigma + sigma_per_m · distance)
+  double range_lower = 0.0, range_upper = 0;  ///< m, what the instrument can span; upper 0: anything
+};
+
+/// Pinhole camera with radial and tangential distortion (k1, k2, p1, p2, k3) and a board of known points.
+struct CameraMeasurement {
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
+  std::array<double, 5> distortion{};
+  double width = 0, height = 0;  ///< px
+  bool on_hand = true;           ///< camera on the tip and board fixed, or the other way round
+  Placement camera, board;       ///< in the tip frame or the measurement frame, whichever carries it
+  int rows = 0, columns = 0;     ///< of points
+  double spacing = 0.0;          ///< m
+  double sigma = 0.0;            ///< px, 1σ of each image coordinate
+};
+
+/// Redundant joint sensors of a closed chain.
+struct JointsMeasurement {
+  std::vector<Located<std::string>> sensors;  ///< empty: all the robot has
+  double sigma = 0.0;                         ///< rad or m
+};
+
+using InstrumentSpec =
+    std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement, JointsMeasurement>;
+
+struct MeasurementSpec {
+  InstrumentSpec instrument;
+  int repeats = 1;                     ///< readings averaged per configuration
+  double repeatability = 0.0;          ///< 1σ (m) that stays at a pose and is not averaged away (robot repeatability)
+  bool loaded_minus_unloaded = false;  ///< differences between each load case and the first one, at the same pose
+  int line = 0;
+};
+
+}  // namespace posewright

@@ -46,6 +46,35 @@ TEST(UrdfReader, ChainHasJointsLimitsAndMergedFixedJoints) {
   EXPECT_EQ(read(folder, good, "a").joints.size(), 1U);
 }
 
+TEST(UrdfReader, MassesOfFixedLinksAndSideBranchesGoToTheJointThatCarriesThem) {
+  const TemporaryFolder folder;
+  std::string text = good;
+  const auto weigh = [&](const std::string& link, const std::string& inertial) {
+    const std::string empty = "<link name=\"" + link + "\"/>";
+    text.replace(text.find(empty), empty.size(), "<link name=\"" + link + "\">" + inertial + "</link>");
+  };
+  const auto inertial = [](const char* mass, const char* xyz) {
+    return "<inertial><origin xyz=\"" + std::string(xyz) + "\"/><mass value=\"" + mass +
+           "\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
+  };
+  weigh("base", inertial("50", "0 0 0"));
+  weigh("a", inertial("10", "0 0 0.1"));
+  weigh("b", inertial("30", "0 0.2 0"));  // fixed to a, 0.5 m along x
+  weigh("c", inertial("4", "0 0 0"));
+  text.insert(text.find("</robot>"),
+              "<link name=\"gripper\">" + inertial("1", "0 0 0") +
+                  "</link><joint name=\"g\" type=\"revolute\"><parent link=\"c\"/><child link=\"gripper\"/><origin "
+                  "xyz=\"0 0 0.5\"/><axis xyz=\"1 0 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
+                  "velocity=\"1\"/></joint>");
+  const ChainDescription chain = read(folder, text, "c");
+  ASSERT_EQ(chain.joints.size(), 2U);
+  EXPECT_NEAR(chain.joints[0].mass, 40, 1e-12) << "a and b; what the base weighs moves no joint";
+  EXPECT_TRUE(chain.joints[0].centre_of_mass.isApprox(
+      (10 * Eigen::Vector3d(0, 0, 0.1) + 30 * Eigen::Vector3d(0.5, 0.2, 0)) / 40, 1e-12));
+  EXPECT_NEAR(chain.joints[1].mass, 5, 1e-12) << "c and the branch on it";
+  EXPECT_TRUE(chain.joints[1].centre_of_mass.isApprox(Eigen::Vector3d(0, 0, 0.1), 1e-12));
+}
+
 TEST(UrdfReader, MimicJointFollowsItsMaster) {
   const TemporaryFolder folder;
   std::string text = good;

@@ -14,6 +14,8 @@ namespace {
 constexpr double tie = 1e-6;
 // A column this much shorter than the longest (both in units of tolerance) is the rounding of zeros.
 constexpr double no_effect = 1e-12;
+// A row counts as new when this share of the longest row of all is outside the others' span.
+constexpr double new_row = 1e-10;
 // Terms whose effect is below this share of the dropped column's effect are rounding, not physics.
 constexpr double negligible_term = 1e-3;
 
@@ -119,6 +121,44 @@ Identifiability identifiability(const BlockArray& sample, const std::vector<Para
     if (!std::binary_search(result.kept.begin(), result.kept.end(), j))
       result.dependencies.push_back(explain(g, qr, result.kept, j, parameters));
   return result;
+}
+
+std::vector<int> most_independent(const BlockArray& sample, const std::vector<Parameter>& parameters) {
+  const int m = sample.columns(), n = int(sample.count());
+  std::vector<Eigen::MatrixXd> rest;  // of every block what is outside the rows chosen so far
+  std::vector<double> length;
+  double longest = 0;
+  for (int i = 0; i < n; ++i) {
+    Eigen::MatrixXd block = sample.block(std::size_t(i));
+    for (int j = 0; j < m; ++j) block.col(j) *= parameters[std::size_t(j)].tolerance;
+    length.push_back(block.rowwise().norm().maxCoeff());
+    longest = std::max(longest, length.back());
+    rest.push_back(std::move(block));
+  }
+  const auto independent = [&](const Eigen::MatrixXd& rows) {
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
+    // An absolute threshold: what is left of a block that has nothing new is rounding, whatever its own size.
+    const auto pivots = qr.matrixR().diagonal().cwiseAbs();
+    return std::pair(int((pivots.array() > new_row * longest).count()), std::move(qr));
+  };
+  std::vector<int> order;
+  std::vector<bool> taken(std::size_t(n), false);
+  for (int known = 0; known < m;) {
+    int best = -1, gain = 0;
+    for (int i = 0; i < n && gain < std::min(sample.rows(), m - known); ++i) {
+      if (taken[std::size_t(i)]) continue;
+      const int found = independent(rest[std::size_t(i)]).first;
+      if (found > gain) best = i, gain = found;
+    }
+    if (best < 0) break;
+    const auto [count, qr] = independent(rest[std::size_t(best)]);
+    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(m, count);
+    for (Eigen::MatrixXd& block : rest) block -= (block * basis) * basis.transpose();
+    taken[std::size_t(best)] = true;
+    order.push_back(best);
+    known += count;
+  }
+  return order;
 }
 
 std::string describe(const Dependency& dependency, const std::vector<Parameter>& parameters) {

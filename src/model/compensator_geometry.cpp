@@ -17,8 +17,10 @@ constexpr double length_tolerance = 5e-3, angle_tolerance = std::numbers::pi / 1
 /// Measurement spec reduced to what the two markers need.
 const PointsMeasurement& markers_of(const MeasurementSpec& measurement) {
   const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument);
-  if (points == nullptr || points->targets.size() != 2 || points->components.size() != 3 || points->stations.size() > 1)
-    throw CannotDo("measurement: a compensator needs type: points with the targets P0 and P1 from one station");
+  if (points == nullptr || points->targets.size() != 2 || points->components.size() != 3 || !points->stations.empty())
+    throw CannotDo(
+        "measurement: a compensator needs type: points with the targets P0 and P1, seen from the measurement frame: no "
+        "stations");
   for (const TargetSpec& target : points->targets)
     if ((target.name != "P0" && target.name != "P1") || !target.position.isZero())
       throw CannotDo("measurement: the targets of a compensator are P0: [0, 0, 0] and P1: [0, 0, 0], on the pins");

@@ -54,8 +54,9 @@ bool Delta::do_inverse_kinematics(std::span<const double> q, std::span<const dou
     const double A = c.dot(d), B = -c.z();
     const double cosine = (c.squaredNorm() + leg[2] * leg[2] - leg[3] * leg[3]) / (2 * leg[2] * std::hypot(A, B));
     if (!(std::abs(cosine) < 1)) return false;
-    // Of the two solutions the elbow that points outwards.
-    rho[std::size_t(i)] = std::remainder(std::atan2(B, A) - std::acos(cosine) - leg[4], 2 * std::numbers::pi);
+    // Of the two solutions the elbow that points outwards, whether the platform hangs or stands.
+    rho[std::size_t(i)] =
+        std::remainder(std::atan2(B, A) - std::copysign(std::acos(cosine), B) - leg[4], 2 * std::numbers::pi);
   }
   return true;
 }

@@ -1,5 +1,7 @@
 #include "posewright/model/dh_chain.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "displacement.hpp"
@@ -9,8 +11,9 @@ namespace posewright {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-// Axes closer than this (sine of their angle) are parallel, lines closer than this (m) coincide.
-constexpr double parallel = 1e-7, coincident = 1e-9;
+// Axes closer than this (sine of their angle) count as parallel: rounded URDFs (3.1416) are 1e-5 off, and a common
+// normal of almost parallel axes lies anywhere. Lines closer than this (m) coincide.
+constexpr double parallel = 1e-3, coincident = 1e-7;
 
 struct Axis {
   Eigen::Vector3d point, direction;
@@ -43,7 +46,7 @@ Eigen::Isometry3d frame_along(const Eigen::Vector3d& origin, const Eigen::Vector
 
 /// The four (or, with Hayati's β, other four) numbers from a frame on one axis to the next axis.
 struct Link {
-  double theta = 0, d = 0, a = 0, alpha = 0;
+  double theta = 0, d = 0, a = 0, alpha = 0, beta = 0;
   bool hayati = false;
 };
 
@@ -55,7 +58,8 @@ Link link_to(const Eigen::Isometry3d& X, Axis next) {
   Eigen::Vector3d normal = z.cross(next.direction), foot = o, next_foot = next.point;
   link.hayati = normal.norm() < parallel;
   if (link.hayati) {
-    next_foot = next.point + next.direction * next.direction.dot(o - next.point);
+    // Where the next axis meets the plane through o across this one; α and β take up what the axes lack of parallel.
+    next_foot = next.point + next.direction * (z.dot(o - next.point) / z.dot(next.direction));
     normal = next_foot - o;
     if (normal.norm() < coincident) normal = X.linear().col(0);
   } else {
@@ -75,13 +79,14 @@ Link link_to(const Eigen::Isometry3d& X, Axis next) {
   link.theta = std::atan2(x.dot(X.linear().col(1)), x.dot(X.linear().col(0)));
   link.a = x.dot(next_foot - foot);
   link.alpha = std::atan2(z.cross(next.direction).dot(x), z.dot(next.direction));
+  if (link.hayati) link.beta = std::asin(std::clamp(next.direction.dot(x), -1.0, 1.0));
   return link;
 }
 
 Eigen::Isometry3d after(const Eigen::Isometry3d& X, const Link& link) {
   using Eigen::AngleAxisd, Eigen::Vector3d;
   return X * AngleAxisd(link.theta, Vector3d::UnitZ()) * Eigen::Translation3d(link.a, 0, link.d) *
-         AngleAxisd(link.alpha, Vector3d::UnitX());
+         AngleAxisd(link.alpha, Vector3d::UnitX()) * AngleAxisd(link.beta, Vector3d::UnitY());
 }
 
 }  // namespace
@@ -115,7 +120,7 @@ DhDescription denavit_hartenberg(const ChainDescription& chain, DhConvention con
     const std::string& holder = proximal ? chain.joints[i + 1].name : own;
     add(holder + ".a", false, 0, link.a);
     add(holder + ".alpha", true, 0, link.alpha);
-    if (link.hayati) add(holder + ".beta", true, 1, 0);
+    if (link.hayati) add(holder + ".beta", true, 1, link.beta);
   }
   dh.tool = X.inverse() * X_MeasureTip;
   return dh;

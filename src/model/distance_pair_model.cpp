@@ -31,18 +31,30 @@ DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const Measur
       parameters_.push_back(
           {"target." + t.name + "." + "xyz"[k], "m", t.position[k], default_target_tolerance, Role::interest});
     }
-  const auto twice = [](std::vector<Coordinate>& to, const std::vector<Coordinate>& from) {
-    to = from;
+  const auto append = [](std::vector<Coordinate>& to, const std::vector<Coordinate>& from, const char* suffix,
+                         bool choices) {
     for (Coordinate c : from) {
-      c.name += ".second";
+      if (c.choice() != choices) continue;
+      c.name += suffix;
       to.push_back(c);
     }
   };
-  twice(coordinates_, tip_->coordinates());
-  twice(actuators_, tip_->actuators());
+  append(coordinates_, tip_->coordinates(), "", false);
+  moving_ = coordinates_.size();
+  append(coordinates_, tip_->coordinates(), ".second", false);
+  append(coordinates_, tip_->coordinates(), "", true);
+  append(actuators_, tip_->actuators(), "", false);
+  append(actuators_, tip_->actuators(), ".second", false);
   rows_ = int(spec_.targets.size());
   unmeasurable_reason_ = "distance out of range";
   if (!actuators_.empty()) unmeasurable_reason_ += " or " + near_singularity();
+}
+
+std::vector<double> DistancePairModel::at_end(std::span<const double> q, std::size_t which) const {
+  std::vector<double> own(q.begin() + std::ptrdiff_t(which * moving_),
+                          q.begin() + std::ptrdiff_t((which + 1) * moving_));
+  own.insert(own.end(), q.begin() + std::ptrdiff_t(2 * moving_), q.end());
+  return own;
 }
 
 Eigen::Vector3d DistancePairModel::target(const Eigen::Isometry3d& X, std::span<const double> correction,
@@ -62,9 +74,8 @@ bool DistancePairModel::end(std::span<const double> q, std::span<const double> c
 bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const double> correction,
                                      std::span<const int> selected, Linearisation& out) const {
   static thread_local End ends[2];
-  const std::size_t half = q.size() / 2;
   for (std::size_t i = 0; i < 2; ++i)
-    if (!end(q.subspan(i * half, half), correction, selected, ends[i])) return false;
+    if (!end(at_end(q, i), correction, selected, ends[i])) return false;
   out.G.resize(rows_, Eigen::Index(selected.size()));
   out.covariance.setZero(rows_, rows_);
   out.rows.resize(rows_, 2 * Eigen::Index(tip_->reading_noise().size()));
@@ -97,10 +108,9 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
 }
 
 bool DistancePairModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
-  const std::size_t half = q.size() / 2;
   End ends[2];
   for (std::size_t i = 0; i < 2; ++i)
-    if (!end(q.subspan(i * half, half), correction, {}, ends[i])) return false;
+    if (!end(at_end(q, i), correction, {}, ends[i])) return false;
   for (std::size_t t = 0; t < spec_.targets.size(); ++t)
     if (!spans(spec_, (target(ends[1].X, correction, t) - target(ends[0].X, correction, t)).norm())) return false;
   return true;
@@ -108,16 +118,16 @@ bool DistancePairModel::do_measurable(std::span<const double> q, std::span<const
 
 bool DistancePairModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
                                            std::span<double> values) const {
-  const std::size_t half = q.size() / 2, actuators = values.size() / 2;
+  const std::size_t actuators = values.size() / 2;
   const auto tip = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
-  return tip_->actuator_values(q.first(half), tip, values.first(actuators)) &&
-         tip_->actuator_values(q.last(half), tip, values.last(actuators));
+  return tip_->actuator_values(at_end(q, 0), tip, values.first(actuators)) &&
+         tip_->actuator_values(at_end(q, 1), tip, values.last(actuators));
 }
 
 Eigen::Isometry3d DistancePairModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
   End second;
   second.X.setIdentity();
-  end(q.last(q.size() / 2), correction, {}, second);
+  end(at_end(q, 1), correction, {}, second);
   return second.X;
 }
 

@@ -9,8 +9,9 @@
 namespace posewright {
 
 /// How far a sphere on the tip travels from one configuration to another, e.g. by a ball bar's two ends or a cable
-/// sensor read twice: d = ‖p(q') − p(q)‖ for each target. Configuration: q, then q' (coordinates NAME.second).
-/// Parameters: the robot's without tool.*, target.NAME.{x,y,z}. Where the base stands has no effect.
+/// sensor read twice: d = ‖p(q') − p(q)‖ for each target. Configuration: q, then q' (coordinates NAME.second), then
+/// what is chosen for both (the load case). Parameters: the robot's without tool.*, target.NAME.{x,y,z}. Where the base
+/// stands has no effect.
 class DistancePairModel : public IdentificationModel {
  public:
   DistancePairModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& spec);
@@ -24,6 +25,8 @@ class DistancePairModel : public IdentificationModel {
   /// That of the second configuration.
   Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
 
+  /// The robot's own coordinates at the first (0) or second (1) end.
+  std::vector<double> at_end(std::span<const double> q, std::size_t which) const;
   struct End;
   bool end(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
            End& result) const;
@@ -33,6 +36,7 @@ class DistancePairModel : public IdentificationModel {
   DistanceMeasurement spec_;
   double repeats_, repeatability_;
   int tip_parameters_ = 0;
+  std::size_t moving_ = 0;  ///< the robot's coordinates that are no choices; these come first
 };
 
 }  // namespace posewright

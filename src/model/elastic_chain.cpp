@@ -36,15 +36,18 @@ int coordinate_named(const std::vector<Coordinate>& coordinates, const Located<s
                    joint_names(coordinates));
 }
 
-void limit_to(Coordinate& c, const std::vector<double>& values, const SourcePlace& place) {
-  for (const double value : values)
+Quantity quantity_of(const Coordinate& c) { return c.unit == "m" ? Quantity::length : Quantity::angle; }
+
+void limit_to(Coordinate& c, const ElastostaticSpec::Listed& listed, const SourcePlace& place) {
+  if (listed.quantity != Quantity::number && listed.quantity != quantity_of(c))
+    throw InputError(place, "the listed positions of '" + c.name + "' have the wrong unit",
+                     "allowed: " + allowed_units({quantity_of(c)}));
+  for (const double value : listed.at)
     if (value < c.lower || value > c.upper)
       throw InputError(
           place, "a listed position of '" + c.name + "' is outside its limits",
           "positions between " + std::to_string(c.lower) + " and " + std::to_string(c.upper) + " " + c.unit);
-  c.values = values;
-  c.lower = values.front();
-  c.upper = values.back();
+  c.values = listed.at;
   c.periodic = false;
 }
 
@@ -71,12 +74,17 @@ ElasticChain::ElasticChain(ChainDescription chain, const ElastostaticSpec& spec,
 void ElasticChain::add_springs(const SourcePlace& place) {
   const std::vector<Coordinate>& joints = chain_.coordinates();
   std::vector<double> nominal(joints.size(), 0.0);
-  for (const auto& [name, value] : spec_.compliance)
-    nominal[std::size_t(coordinate_named(joints, name, place))] = value;
+  for (const auto& [name, value] : spec_.compliance) {
+    const auto c = std::size_t(coordinate_named(joints, name, place));
+    if (value.quantity == Quantity::compliance && joints[c].unit == "m")
+      throw InputError({place.file, name.line},
+                       "the compliance of the prismatic joint '" + name.value + "' is an angle's",
+                       "a plain number in m/N is needed");
+    nominal[c] = value.value;
+  }
   const int compensated = spec_.compensator ? coordinate_named(joints, spec_.compensator->joint, place) : -1;
   const int listed = spec_.listed ? coordinate_named(joints, spec_.listed->joint, place) : -1;
-  if (listed >= 0)
-    limit_to(coordinates_[std::size_t(listed)], spec_.listed->at, {place.file, spec_.listed->joint.line});
+  if (listed >= 0) limit_to(coordinates_[std::size_t(listed)], *spec_.listed, {place.file, spec_.listed->joint.line});
   const auto add = [&](const std::string& name, const std::string& unit, double value, double least, Spring spring) {
     parameters_.push_back({name, unit, value, std::max(least, relative_tolerance * std::abs(value)), Role::interest});
     springs_.push_back(spring);
@@ -88,7 +96,9 @@ void ElasticChain::add_springs(const SourcePlace& place) {
       const CompensatorSpec& spring = *spec_.compensator;
       add(name + ".stiffness", "N·m/rad", spring.joint_stiffness, 0, {Spring::Kind::joint_stiffness, c});
       add("compensator.stiffness", "N/m", spring.stiffness, 0, {Spring::Kind::spring_stiffness, c});
-      add("compensator.preload", "N", spring.free_length * spring.stiffness, 0, {Spring::Kind::preload, c});
+      // A spring without free length (s0 = 0) may still have one: as much as a tenth of the crank.
+      add("compensator.preload", "N", spring.free_length * spring.stiffness, 0.1 * spring.L * spring.stiffness,
+          {Spring::Kind::preload, c});
     } else if (c == listed) {
       for (int i = 0; i < int(spec_.listed->at.size()); ++i)
         add(name + ".compliance_" + std::to_string(i + 1), unit, nominal[std::size_t(c)], compliance_tolerance,

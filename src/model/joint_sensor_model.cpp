@@ -21,6 +21,13 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
   }
   if (sensors_.empty())
     for (int i = 0; i < int(all.size()); ++i) sensors_.push_back(i);
+  for (const int i : sensors_) {
+    const Quantity own = all[std::size_t(i)].unit == "m" ? Quantity::length : Quantity::angle;
+    if (spec.quantity != Quantity::number && spec.quantity != own)
+      throw InputError(problem.at(problem.measurement.line),
+                       "the noise of the joint sensors has the wrong unit for '" + all[std::size_t(i)].name + "'",
+                       "allowed: " + allowed_units({own}));
+  }
   variance_ = spec.sigma * spec.sigma / problem.measurement.repeats;
   parameters_ = tip_->parameters();
   coordinates_ = tip_->coordinates();

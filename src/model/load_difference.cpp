@@ -12,8 +12,8 @@ LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : in
   geometric_ = inside_->geometric_parameters();
   unmeasurable_reason_ = inside_->unmeasurable_reason();
   rows_ = inside_->rows();
-  const auto load =
-      std::find_if(coordinates_.begin(), coordinates_.end(), [](const Coordinate& c) { return c.name == "load_case"; });
+  const auto load = std::find_if(coordinates_.begin(), coordinates_.end(),
+                                 [](const Coordinate& c) { return c.choice() && c.name == "load_case"; });
   if (load == coordinates_.end() || load->values.size() < 2)
     throw CannotDo("measurement: loaded minus unloaded needs robot: elastostatic with at least two load cases");
   load_ = std::size_t(load - coordinates_.begin());

@@ -72,11 +72,21 @@ class Names {
   std::vector<std::string> shown_;
 };
 
-bool fits(VariantSpec::Tolerance::Quantity quantity, const std::string& unit) {
-  using Quantity = VariantSpec::Tolerance::Quantity;
-  if (quantity == Quantity::number) return true;
-  if (quantity == Quantity::compliance) return unit == "rad/(N·m)";
-  return unit == (quantity == Quantity::length ? "m" : "rad");
+bool fits(Quantity quantity, const std::string& unit) {
+  switch (quantity) {
+    case Quantity::length:
+      return unit == "m";
+    case Quantity::angle:
+      return unit == "rad";
+    case Quantity::force:
+      return unit == "N";
+    case Quantity::compliance:
+      return unit == "rad/(N·m)";
+    case Quantity::stiffness:
+      return unit == "N/m";
+    default:
+      return true;  // a plain number is SI
+  }
 }
 
 /// Calls use(index, value) for every parameter that a written value is meant for; later entries come later.
@@ -94,7 +104,10 @@ void for_each_value(const Names& names, const Problem& problem, const std::vecto
       throw InputError(
           problem.at(value.pattern.line),
           std::string(what) + " of '" + value.pattern.value + "' is in a unit that none of these parameters has",
-          "lengths in m, mm, um; angles in rad, mrad, urad, deg; compliances in rad/Nm, urad/Nm");
+          "allowed: " +
+              allowed_units(
+                  {Quantity::length, Quantity::angle, Quantity::force, Quantity::compliance, Quantity::stiffness}) +
+              " as the parameter's own unit says");
   }
 }
 

@@ -55,7 +55,7 @@ std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::s
 std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];
-    if (c.name != name) continue;
+    if (!c.choice() || c.name != name) continue;
     const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
     return c.labels[std::size_t(at)];
   }

@@ -81,35 +81,58 @@ ResolvedColumns resolve_columns(const Study& study, const Problem& problem, cons
     resolved.reasons.push_back(describe(d, all.parameters));
   }
   resolved.columns = subset(all, found.kept);
+  if (int(resolved.columns.selected.size()) == resolved.columns.nuisance) {
+    std::string text;
+    for (const std::string& reason : resolved.reasons) text += (text.empty() ? "" : ", ") + reason;
+    throw CannotDo("variant '" + variant.name +
+                   "': no parameter of interest can be told from the nuisance ones: " + text);
+  }
   return resolved;
 }
 
 namespace {
 
-/// Structure of the first configurations, interior ones: generic, unlike corners.
-Identifiability of_first(const Study& study, const VariantColumns& columns, int poses, int threads) {
-  Configurations few;
-  few.dimension = study.configurations.dimension;
-  const std::size_t take = std::min(study.configurations.count(), std::size_t(poses)) * std::size_t(few.dimension);
-  few.values.assign(study.configurations.values.begin(), study.configurations.values.begin() + std::ptrdiff_t(take));
-  return identifiability(build_blocks(*study.model, columns.selected, few, threads), columns.parameters,
-                         exact_options());
-}
+/// Configurations that tell as much as so few can, and their blocks.
+class Fewest {
+ public:
+  Fewest(const Study& study, const VariantColumns& columns, int threads)
+      : parameters_(columns.parameters),
+        sample_(
+            build_blocks(*study.model, columns.selected, thinned(study.configurations, structural_sample), threads)),
+        order_(most_independent(sample_, columns.parameters)) {}
+
+  /// Structure of the best `poses` of them; a few more than bring new rows cost nothing.
+  Identifiability of(int poses) const {
+    std::vector<int> chosen = order_;
+    for (int i = 0; int(chosen.size()) < std::min(poses, int(sample_.count())); ++i)
+      if (std::find(order_.begin(), order_.end(), i) == order_.end()) chosen.push_back(i);
+    chosen.resize(std::size_t(std::min(poses, int(chosen.size()))));
+    return identifiability(sample_.subset(chosen), parameters_, exact_options());
+  }
+
+  std::optional<int> number() const {
+    for (int n = 1; n <= int(order_.size()) + 1; ++n)
+      if (of(n).dependencies.empty()) return n;
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<Parameter> parameters_;
+  BlockArray sample_;
+  std::vector<int> order_;
+};
 
 }  // namespace
 
 std::optional<int> smallest_number_of_poses(const Study& study, const VariantColumns& columns, int threads) {
-  const int parameters = int(columns.selected.size()), rows = study.model->block_rows(columns.selected);
-  const int most = int(std::min<std::size_t>(study.configurations.count(), std::size_t(parameters) + 1));
-  for (int n = std::max(1, (parameters + rows - 1) / rows); n <= most; ++n)
-    if (of_first(study, columns, n, threads).dependencies.empty()) return n;
-  return std::nullopt;
+  return Fewest(study, columns, threads).number();
 }
 
 void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads) {
-  const Identifiability found = of_first(study, columns, poses, threads);
+  const Fewest fewest(study, columns, threads);
+  const Identifiability found = fewest.of(poses);
   if (found.dependencies.empty()) return;
-  const std::optional<int> enough = smallest_number_of_poses(study, columns, threads);
+  const std::optional<int> enough = fewest.number();
   throw CannotDo(std::to_string(poses) + " poses determine " + std::to_string(found.rank) + " of " +
                  std::to_string(columns.selected.size()) + " parameters (not " +
                  dropped_names(found, columns.parameters) + "); " +

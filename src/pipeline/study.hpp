@@ -36,15 +36,16 @@ struct ResolvedColumns {
 };
 
 /// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
-/// they are independent; with a prior every column can be told apart. Throws CannotDo with the equations where they are
+/// they are independent, unless a prior tells them apart. Throws CannotDo with the equations where they are
 /// not.
 ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, bool prior,
                                 int threads);
 
-/// Smallest number of generic configurations that determines all columns; empty where the candidates do not suffice.
+/// Smallest number of configurations that determines all columns, by choosing each for what it adds; empty where the
+/// candidates do not suffice.
 std::optional<int> smallest_number_of_poses(const Study& study, const VariantColumns& columns, int threads);
 
-/// Throws CannotDo where `poses` generic configurations leave parameters undetermined: names the shortfall, the
+/// Throws CannotDo where `poses` well-chosen configurations leave parameters undetermined: names the shortfall, the
 /// parameters and the number of poses that suffices.
 void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads);
 

@@ -49,8 +49,14 @@ ElastostaticSpec::Listed read_listed(const Value& value) {
   section.allow({"joint", "at"});
   ElastostaticSpec::Listed listed;
   listed.joint = section.at("joint").exact_name();
-  for (const Value& item : section.at("at").items("a list of positions is expected"))
-    listed.at.push_back(item.measured({Quantity::angle, Quantity::length}).value);
+  for (const Value& item : section.at("at").items("a list of positions is expected")) {
+    const Measured position = item.measured({Quantity::angle, Quantity::length});
+    if (position.quantity != Quantity::number && listed.quantity != Quantity::number &&
+        position.quantity != listed.quantity)
+      item.fail("has another unit than the positions before", "all lengths or all angles");
+    if (position.quantity != Quantity::number) listed.quantity = position.quantity;
+    listed.at.push_back(position.value);
+  }
   std::sort(listed.at.begin(), listed.at.end());
   if (listed.at.empty()) section.at("at").fail("is empty", "at least one position is needed");
   if (std::adjacent_find(listed.at.begin(), listed.at.end()) != listed.at.end())
@@ -67,7 +73,7 @@ ElastostaticSpec read_elastostatic(const Value& value) {
   spec.line = value.line();
   if (const Value* compliance = section.find("compliance"))
     for (const yaml::Entry& entry : Section(*compliance).entries())
-      spec.compliance.emplace_back(entry.key, entry.value.number(Quantity::compliance, Sign::not_negative));
+      spec.compliance.emplace_back(entry.key, entry.value.measured({Quantity::compliance}, Sign::not_negative));
   for (const yaml::Entry& entry : Section(section.at("loads")).entries())
     spec.loads.push_back(read_load(entry.key.value, entry.value));
   if (spec.loads.empty()) section.at("loads").fail("is empty", "at least one load case is needed");

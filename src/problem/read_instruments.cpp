@@ -11,11 +11,11 @@ using yaml::Value;
 constexpr int most_points = 500;
 
 /// {type: isotropic, noise}: one sigma.
-double read_isotropic(const Value& value, std::initializer_list<Quantity> quantities) {
+Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quantities) {
   const Section device(value);
   device.at("type").choice({"isotropic"});
   device.allow({"type", "noise"});
-  return device.at("noise").measured(quantities, Sign::positive).value;
+  return device.at("noise").measured(quantities, Sign::positive);
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ DistanceMeasurement read_distance(const Section& section) {
 }
 
 CameraMeasurement read_camera(const Section& section) {
-  section.allow({"type", "mount", "camera", "board", "device", "repeats", "load"});
+  section.allow({"type", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
   CameraMeasurement camera;
   camera.on_hand = section.at("mount").choice({"hand", "fixed"}) == "hand";
   const Section lens(section.at("camera"));
@@ -80,7 +80,7 @@ CameraMeasurement read_camera(const Section& section) {
     board.value().fail("has too many points", "at most " + std::to_string(most_points) + " are allowed");
   camera.spacing = board.at("spacing").number(Quantity::length, Sign::positive);
   camera.board = placement(board);
-  camera.sigma = read_isotropic(section.at("device"), {Quantity::number});
+  camera.sigma = read_isotropic(section.at("device"), {Quantity::number}).value;
   return camera;
 }
 
@@ -91,7 +91,9 @@ JointsMeasurement read_joint_sensors(const Section& section) {
     joints.sensors = sensors->texts();
     if (joints.sensors.empty()) sensors->fail("is empty", "at least one sensor is needed; leave it out for all");
   }
-  joints.sigma = read_isotropic(section.at("device"), {Quantity::angle, Quantity::length});
+  const Measured noise = read_isotropic(section.at("device"), {Quantity::angle, Quantity::length});
+  joints.sigma = noise.value;
+  joints.quantity = noise.quantity;
   return joints;
 }
 

@@ -37,6 +37,10 @@ LegSpec read_leg(const Value& value, LegActuation actuation) {
     // stableNormalized: the length of a direction written with huge or tiny numbers neither overflows nor vanishes.
     leg.u = u->vector(Quantity::number).stableNormalized();
     if (!(leg.u.norm() > 0.5)) u->fail("has length zero", "a direction is needed");
+    // ux and uy are the parameters of the direction; a horizontal one cannot be told by them.
+    if (!(std::abs(leg.u.z()) > 0.05))
+      u->fail("is (nearly) horizontal",
+              "turn the base frame (placement) so that every u has a share of 0.05 or more in z");
   }
   return leg;
 }

@@ -7,13 +7,6 @@ using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
 
-VariantSpec::Tolerance::Quantity tolerance_quantity(Quantity quantity) {
-  using Kind = VariantSpec::Tolerance::Quantity;
-  if (quantity == Quantity::length) return Kind::length;
-  if (quantity == Quantity::compliance) return Kind::compliance;
-  return quantity == Quantity::angle ? Kind::angle : Kind::number;
-}
-
 void read_parameters(const Value& value, VariantSpec& variant) {
   using Convention = VariantSpec::Convention;
   const std::string expected = "a list of names or one of the words auto, dh, mdh is expected";
@@ -38,8 +31,9 @@ void read_parameters(const Value& value, VariantSpec& variant) {
 std::vector<VariantSpec::Tolerance> read_values(const Value& value, Sign sign) {
   std::vector<VariantSpec::Tolerance> values;
   for (const yaml::Entry& entry : Section(value).entries()) {
-    const Measured measured = entry.value.measured({Quantity::length, Quantity::angle, Quantity::compliance}, sign);
-    values.push_back({entry.key, measured.value, tolerance_quantity(measured.quantity)});
+    const Measured measured = entry.value.measured(
+        {Quantity::length, Quantity::angle, Quantity::force, Quantity::compliance, Quantity::stiffness}, sign);
+    values.push_back({entry.key, measured.value, measured.quantity});
   }
   return values;
 }

@@ -20,7 +20,8 @@ std::string range_text(const Coordinate& c) {
 
 std::string names(const std::vector<Coordinate>& coordinates) {
   std::string text;
-  for (const Coordinate& c : coordinates) text += (text.empty() ? "" : ", ") + c.name;
+  for (const Coordinate& c : coordinates)
+    if (!c.choice()) text += (text.empty() ? "" : ", ") + c.name;
   return text;
 }
 
@@ -35,13 +36,15 @@ void narrow(Coordinate& c, const CoordinateLimits& limits, const SourcePlace& pl
   c.periodic = false;
   c.lower = std::max(c.lower, limits.lower);
   c.upper = std::min(c.upper, limits.upper);
-  if (!c.discrete()) return;
+}
+
+/// Listed positions that are left inside the limits.
+void keep_listed(Coordinate& c, const SourcePlace& place) {
+  if (!c.discrete() || c.choice()) return;
   std::erase_if(c.values, [&](double value) { return value < c.lower || value > c.upper; });
   if (c.values.empty())
-    throw InputError(place, "limits of '" + limits.name.value + "' leave none of its listed positions",
+    throw InputError(place, "workspace: limits and margin of '" + c.name + "' leave none of its listed positions",
                      "positions are listed in robot: elastostatic");
-  c.lower = c.values.front();
-  c.upper = c.values.back();
 }
 
 void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits, const Problem& problem) {
@@ -65,12 +68,13 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
   for (Coordinate& c : coordinates) {
     const double margin = c.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
     const Coordinate before = c;
-    if (c.periodic || c.discrete()) continue;
+    if (c.periodic || c.choice()) continue;
     c.lower += margin;
     c.upper -= margin;
     if (!(c.lower < c.upper))
       throw InputError(problem.at(0), "workspace: nothing is left of the range of '" + c.name + "' inside the margin",
                        "its limits are " + range_text(before));
+    keep_listed(c, problem.at(0));
   }
   return coordinates;
 }

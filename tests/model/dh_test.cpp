@@ -175,6 +175,31 @@ TEST(DenavitHartenberg, ParallelAxesGetHayatisAngleInPlaceOfAnOffset) {
   }
 }
 
+TEST(DenavitHartenberg, AlmostParallelAxesOfARoundedUrdfAreParallel) {
+  const TemporaryFolder folder;
+  NamedChain rounded = named_chains()[1];
+  rounded.joints[2].rpy = "3.14159 0 0.000003";  // axis 3 against axis 2, as five digits of π have it
+  const ChainDescription chain = read(folder, rounded);
+  for (const DhConvention convention : conventions) {
+    const DhDescription dh = denavit_hartenberg(chain, convention);
+    for (const ElementaryMotion& motion : dh.motions) EXPECT_LT(std::abs(motion.nominal), 7) << motion.name;
+    const SerialChain frames(chain);
+    const DhChain converted(dh);
+    Random random(2, 0);
+    Eigen::Isometry3d X, Y;
+    Twists none;
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<double> q = random_configuration(chain.coordinates, random);
+      frames.linearise(q, {}, {}, X, none, nullptr);
+      converted.linearise(q, {}, {}, Y, none, nullptr);
+      EXPECT_TRUE(X.isApprox(Y, 1e-9));
+    }
+    std::vector<Parameter> labels;
+    const ExplicitModel model(std::make_unique<DhChain>(dh), make_measurement(full_pose()));
+    EXPECT_EQ(identified(model, 200, labels).rank, 30);
+  }
+}
+
 TEST(DenavitHartenberg, MimicJointsAreRefused) {
   ChainDescription chain;
   chain.joints.resize(2);

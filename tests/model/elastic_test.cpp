@@ -32,7 +32,7 @@ CompensatorSpec kr270_compensator() {
 
 ElastostaticSpec springs() {
   ElastostaticSpec spec;
-  spec.compliance = {{{"j1", 1}, 0.6e-6}, {{"j3", 2}, 0.4e-6}, {{"j4", 3}, 2.8e-6}, {{"j6", 4}, 2e-6}};
+  spec.compliance = {{{"j1", 1}, {0.6e-6}}, {{"j3", 2}, {0.4e-6}}, {{"j4", 3}, {2.8e-6}}, {{"j6", 4}, {2e-6}}};
   spec.link_gravity = true;
   LoadCaseSpec pull, payload;
   pull.name = "pull", pull.force = {300, -200, -2000}, pull.moment = {10, 50, -20}, pull.point = {0.1, 0, 0.2};
@@ -127,7 +127,7 @@ std::vector<Jet> loaded_points(const ChainDescription& chain, const Elastostatic
   correction.resize(std::size_t(layout.count), Jet(0.0));
   const std::vector<double> torque = torques_by_definition(chain, spec, int(q[6]), q);
   std::vector<double> nominal(6, 0.0);
-  for (const auto& [name, k] : spec.compliance) nominal[std::size_t(name.value[1] - '1')] = k;
+  for (const auto& [name, k] : spec.compliance) nominal[std::size_t(name.value[1] - '1')] = k.value;
   std::size_t next = std::size_t(layout.tool);
   for (std::size_t c = 0; c < 6; ++c) {
     Jet deflection;
@@ -163,7 +163,7 @@ TEST(ElasticChain, ColumnsEqualAutomaticDifferentiation) {
   const ChainDescription chain = heavy_chain();
   ElastostaticSpec constant = springs(), compensated = springs(), listed = springs();
   compensated.compensator = kr270_compensator();
-  listed.listed = ElastostaticSpec::Listed{{"j2", 5}, {-1.5, -0.5, 0.5}};
+  listed.listed = ElastostaticSpec::Listed{{"j2", 5}, {-1.5, -0.5, 0.5}, Quantity::number};
   for (const ElastostaticSpec& spec : {constant, compensated, listed}) {
     const ExplicitModel model(std::make_unique<ElasticChain>(chain, spec, SourcePlace{}),
                               make_measurement(measurement()));
@@ -206,7 +206,7 @@ TEST(LoadDifference, NeedsTwoLoadCases) {
 
 TEST(ElasticChain, UnknownJointsAreNamed) {
   ElastostaticSpec spec = springs();
-  spec.compliance.push_back({{"joint_9", 12}, 1e-6});
+  spec.compliance.push_back({{"joint_9", 12}, {1e-6}});
   try {
     const ElasticChain model(heavy_chain(), spec, {"p.yaml", 3});
     FAIL() << "accepted";

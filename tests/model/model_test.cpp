@@ -98,7 +98,7 @@ TEST(Variant, BadPatternsNameWhatExists) {
               HasSubstr("leaves no parameter of interest free"));
   EXPECT_THAT(complaint(problem,
                         [](VariantSpec& v) {
-                          v.tolerance = {{{"dq2", 9}, 1e-3, VariantSpec::Tolerance::Quantity::length}};
+                          v.tolerance = {{{"dq2", 9}, 1e-3, Quantity::length}};
                         }),
               HasSubstr(":9: the tolerance of 'dq2' is in a unit"));
 }

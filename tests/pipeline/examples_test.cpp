@@ -147,7 +147,7 @@ TEST(Refusals, EachSaysWhatDoesNotFit) {
               testing::HasSubstr("'distance out of range' rejects 100 %"));
   EXPECT_THAT(refusal("telescope/problem.yaml",
                       [](Problem& p) {
-                        p.measurement.instrument = JointsMeasurement{{}, 1e-3};
+                        p.measurement.instrument = JointsMeasurement{{}, 1e-3, Quantity::number};
                       }),
               testing::HasSubstr("this robot has no redundant joint sensors"));
   EXPECT_THAT(refusal("five_bar/problem.yaml",
@@ -172,6 +172,62 @@ TEST(Refusals, EachSaysWhatDoesNotFit) {
                         std::get<SerialArmSpec>(p.robot).elastostatic->listed->joint = {"joint_9", 16};
                       }),
               testing::HasSubstr(":16: 'joint_9' is no joint of this arm"));
+}
+
+TEST(ListedPositions, OnePoseForEachSuffices) {
+  // Five positions of one joint, nine parameters, nine rows: one pose at each position determines everything.
+  EXPECT_EQ(observed("kr270/elastostatic.yaml", "compliances").smallest_poses, 5);
+  PlanOptions options;
+  options.candidates = 1000;
+  options.poses = 5;
+  const Plan plan = plan_problem(read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/kr270/elastostatic.yaml"),
+                                 options, Monitor{});
+  std::vector<double> second;
+  for (const PlannedPose& pose : plan.poses) second.push_back(pose.configuration[1].value);
+  std::sort(second.begin(), second.end());
+  EXPECT_EQ(std::unique(second.begin(), second.end()) - second.begin(), 5);
+}
+
+TEST(Refusals, UnitsOfTheWrongKindAreNotTakenAsSI) {
+  EXPECT_THAT(
+      refusal("kr270/elastostatic.yaml",
+              [](Problem& p) { std::get<SerialArmSpec>(p.robot).elastostatic->listed->quantity = Quantity::length; }),
+      testing::HasSubstr("the listed positions of 'joint_a2' have the wrong unit; allowed: rad, mrad, urad, deg"));
+  EXPECT_THAT(
+      refusal("five_bar/problem.yaml",
+              [](Problem& p) { std::get<JointsMeasurement>(p.measurement.instrument).quantity = Quantity::length; }),
+      testing::HasSubstr("the noise of the joint sensors has the wrong unit"));
+}
+
+TEST(Refusals, AnAutomaticVariantWithNothingLeftSaysWhy) {
+  EXPECT_THAT(refusal("kr270/problem.yaml",
+                      [](Problem& p) {
+                        VariantSpec& v = p.variants.front();
+                        v.automatic = true;
+                        v.parameters.clear();
+                        v.fixed = {{"joint_a?.*", 1}};
+                        v.nuisance = {{"base.*", 1}, {"target.*", 1}};
+                        p.robot = std::get<SerialArmSpec>(p.robot);
+                      }),
+              testing::AnyOf(testing::HasSubstr("leaves no parameter of interest free"),
+                             testing::HasSubstr("no parameter of interest can be told from the nuisance ones")));
+}
+
+TEST(BallBar, BothEndsCarryTheSameLoad) {
+  Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/instruments/ball_bar.yaml");
+  ElastostaticSpec springs;
+  LoadCaseSpec light, heavy;
+  light.name = "light", heavy.name = "heavy", heavy.mass = 100;
+  springs.loads = {light, heavy};
+  std::get<SerialArmSpec>(problem.robot).elastostatic = springs;
+  PlanOptions options;
+  options.candidates = 300;
+  options.restarts = 1;
+  const Plan plan = plan_problem(problem, options, Monitor{});
+  for (const PlannedPose& pose : plan.poses) {
+    EXPECT_EQ(pose.configuration.size(), 12U);
+    EXPECT_TRUE(pose.load_case == "light" || pose.load_case == "heavy");
+  }
 }
 
 TEST(FiveBarSelfCalibration, AnglesAloneTellNeitherPlaceNorSize) {

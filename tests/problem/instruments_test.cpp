@@ -152,12 +152,12 @@ TEST(Instruments, AWrittenDataSheetCountsAsItStands) {
 TEST(Elastostatic, IsReadFieldByField) {
   const Problem problem = parse_problem(
       with_robot("{urdf: a.urdf, elastostatic: {compliance: {j1: 0.6 urad/Nm}, link_weights: yes, listed: {joint: j2, "
-                 "at: [0, -30 deg]}, compensator: {joint: j3, L: 0.2, ax: 0.7, ay: 0.1, stiffness: 7 N/um, "
+                 "at: [0 deg, -30 deg]}, compensator: {joint: j3, L: 0.2, ax: 0.7, ay: 0.1, stiffness: 7 N/um, "
                  "free_length: 458 mm, joint_stiffness: 3e6}, loads: {none: {}, pull: {force: [0, 0, -2 kN], point: "
                  "[0.1, 0, 0]}, tool: {mass: 100, centre_of_mass: [0, 0, 0.2]}}}}"),
       "p.yaml");
   const ElastostaticSpec& spec = *std::get<SerialArmSpec>(problem.robot).elastostatic;
-  EXPECT_DOUBLE_EQ(spec.compliance.front().second, 0.6e-6);
+  EXPECT_DOUBLE_EQ(spec.compliance.front().second.value, 0.6e-6);
   EXPECT_TRUE(spec.link_gravity);
   EXPECT_EQ(spec.listed->at.size(), 2U);
   EXPECT_LT(spec.listed->at.front(), 0) << "ascending";

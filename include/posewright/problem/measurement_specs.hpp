@@ -81,6 +81,7 @@ struct CameraMeasurement {
 struct JointsMeasurement {
   std::vector<Located<std::string>> sensors;  ///< empty: all the robot has
   double sigma = 0.0;                         ///< rad or m
+  Quantity quantity = Quantity::number;       ///< what its written unit measures; number: none, so SI
 };
 
 using InstrumentSpec =

@@ -24,8 +24,8 @@ struct VariantSpec {
   std::vector<Located<std::string>> fixed;       ///< names or globs taken out again
   struct Tolerance {
     Located<std::string> pattern;
-    double value = 0.0;  ///< SI
-    enum class Quantity { length, angle, compliance, number } quantity = Quantity::number;
+    double value = 0.0;                    ///< SI
+    Quantity quantity = Quantity::number;  ///< what the written unit measures; number: none was written
   };
   std::vector<Tolerance> tolerance;  ///< later entries win
   std::vector<Tolerance> nominal;    ///< values that this variant is linearised at, in place of the robot's

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 
 /// What a problem file may say of the robot: one plain struct a kind, SI units.
@@ -42,15 +43,16 @@ struct CompensatorSpec {
 
 /// Joints as springs: reduced elastostatic model of an arm.
 struct ElastostaticSpec {
-  std::vector<std::pair<Located<std::string>, double>> compliance;  ///< nominal, by joint; rad/(N·m) or m/N, others 0
-  Eigen::Vector3d gravity{0, 0, -9.81};                             ///< m/s², measurement frame
-  bool link_gravity = false;                                        ///< weight of the links from the URDF's inertials
-  std::vector<LoadCaseSpec> loads;                                  ///< at least one
+  std::vector<std::pair<Located<std::string>, Measured>> compliance;  ///< nominal, by joint; rad/(N·m) or m/N, others 0
+  Eigen::Vector3d gravity{0, 0, -9.81};                               ///< m/s², measurement frame
+  bool link_gravity = false;                                          ///< weight of the links from the URDF's inertials
+  std::vector<LoadCaseSpec> loads;                                    ///< at least one
   std::optional<CompensatorSpec> compensator;
   /// One compliance for each of these positions of one joint, which then takes no other.
   struct Listed {
     Located<std::string> joint;
-    std::vector<double> at;  ///< rad or m, ascending
+    std::vector<double> at;                ///< rad or m, ascending
+    Quantity quantity = Quantity::number;  ///< what the written units measure; number: none, so SI
   };
   std::optional<Listed> listed;
   int line = 0;

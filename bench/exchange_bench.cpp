@@ -24,7 +24,7 @@ struct Prepared {
   }
   Size size;
   BlockArray blocks;
-  std::unique_ptr<Criterion> criterion = make_criterion("o1");
+  std::unique_ptr<Criterion> criterion = make_criterion("o1", {});
 };
 
 ApproximateDesign bound_of(const Prepared& p) {

@@ -135,7 +135,7 @@ Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& op
   std::mutex mutex;
   const int interest = task.candidates.blocks->columns() - task.candidates.nuisance;
   Progress progress{"exchange", 0, double(options.restarts), {}, {}, {}};
-  if (task.approximate != nullptr) progress.bound = task.approximate->log_det_bound_for(task.poses, interest);
+  progress.bound = task.bound;
   parallel_for(outcomes.size(), thread_count(options.threads), [&](std::size_t i, int) {
     // The first restart always runs: whoever interrupts still gets a plan.
     if (i > 0 && monitor.should_stop()) return;

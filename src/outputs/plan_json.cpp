@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 Json criterion_json(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
   return {{"name", plan.criterion},
-          {"value", o.o1},
+          {"value", plan.criterion_value},
           {"log_det", plan.log_det},
           {"log_det_full", plan.log_det_full},
           {"indices", {{"o1", o.o1}, {"o2", o.o2}, {"o3", o.o3}, {"o4", o.o4}, {"o5", o.o5}}},
@@ -20,6 +20,7 @@ Json criterion_json(const Plan& plan) {
 }
 
 Json certificate_json(const Certificate& c) {
+  if (!c.proved) return {{"candidates", nullptr}, {"workspace", nullptr}};
   return {{"candidates",
            {{"efficiency", c.efficiency},
             {"log_det_bound", c.log_det_bound},
@@ -98,7 +99,7 @@ std::string plan_json(const Plan& plan) {
   json["certificate"] = certificate_json(plan.certificate);
   json["parameters"] = Json::array();
   for (const PlannedParameter& p : plan.parameters) json["parameters"].push_back(parameter_json(p));
-  json["accuracy"] = {{"rho0", nullptr}, {"test_poses", Json::array()}};
+  json["accuracy"] = {{"rho0", plan.rho0 ? Json(*plan.rho0) : Json(nullptr)}, {"test_poses", plan.test_errors}};
   json["poses"] = Json::array();
   for (const PlannedPose& pose : plan.poses) json["poses"].push_back(pose_json(pose));
   json["statistics"] = statistics_json(plan.statistics);

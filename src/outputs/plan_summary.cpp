@@ -28,6 +28,9 @@ std::string headline(const Plan& plan) {
 
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
+  if (!c.proved)
+    return fmt::format("No bound is computed for criterion {}: how near the best plan this is, is not proved.\n",
+                       plan.criterion);
   // Rounded down: a certificate must not promise more than was proved.
   const double percent = std::floor(c.efficiency * 1e4) / 100;
   return fmt::format("At least {:.2f} % as informative as any plan of {} of these {} candidates{}.\n", percent,
@@ -36,9 +39,17 @@ std::string certificate_text(const Plan& plan) {
 
 std::string indices_text(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
-  std::string text = fmt::format("log det {:.6f} (bound {:.6f})\n", plan.log_det, plan.certificate.log_det_bound);
+  std::string text = fmt::format("log det {:.6f}", plan.log_det);
+  text += plan.certificate.proved ? fmt::format(" (bound {:.6f})\n", plan.certificate.log_det_bound) : "\n";
+  if (plan.rho0)
+    text +=
+        fmt::format("Predicted position error after calibration: {} (root mean square over {} test poses, worst {})\n",
+                    shown_value(*plan.rho0, "m"), plan.test_errors.size(),
+                    shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  (columns scaled by tolerance)\n", o.o1,
                       o.o2, o.o3, o.o4, o.o5);
+  if (plan.criterion.starts_with("test_pose") && plan.test_errors.size() == 1)
+    text += "A single test pose: the plan crowds around it and tells little of other places; give several.\n";
   if (plan.condition > 1e6)
     text += fmt::format("Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some directions are hardly measured.\n",
                         plan.condition);

@@ -6,6 +6,7 @@
 #include "posewright/planning/evaluate.hpp"
 #include "search.hpp"
 #include "study.hpp"
+#include "test_points.hpp"
 
 namespace posewright {
 namespace {
@@ -30,7 +31,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.poses = options.poses ? *options.poses : design.poses->value;
   s.candidates = options.candidates.value_or(design.candidates.value);
   s.prior = options.prior.value_or(design.prior);
-  s.request = {s.criterion, s.method, s.poses, 0, options.repeats.value_or(design.repeats), {}, {}};
+  s.request = {s.criterion, s.method, s.poses, 0, options.repeats.value_or(design.repeats), {}, {}, {}, {}};
   s.request.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.request.planner.seed = options.seed;
   s.request.planner.threads = options.threads;
@@ -107,6 +108,8 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   const Study study = make_study(problem, variant, sampling, monitor);
   const ResolvedColumns resolved = resolve_columns(study, problem, variant, settings.prior, options.threads);
   const VariantColumns& columns = resolved.columns;
+  settings.request.scale = tolerances_of(columns);
+  settings.request.test_points = test_points_of(problem, variant, *study.model, columns, options.seed);
   if (settings.prior) settings.request.prior_sigma = tolerances_of(columns);
   else require_enough_poses(study, columns, settings.poses, options.threads);
 
@@ -131,6 +134,9 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   plan.variant = columns.name;
   plan.criterion = settings.criterion;
   plan.prior = settings.prior;
+  if (!settings.request.test_points.empty())
+    plan.rho0 = predicted_error(settings.request.test_points, evaluation.covariance, plan.test_errors);
+  plan.criterion_value = criterion_value(plan, evaluation, settings.request);
   plan.log_det = evaluation.log_det;
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;

@@ -41,14 +41,17 @@ Plan select_blocks(const std::filesystem::path& path, const SelectOptions& optio
   require_enough(file, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
-  SearchRequest request{options.criterion, options.method, options.poses, options.nuisance, options.repeats, {}};
+  SearchRequest request{
+      options.criterion, options.method, options.poses, options.nuisance, options.repeats, {}, {}, {}, {}};
   request.planner.restarts = options.restarts;
+  request.scale = Eigen::VectorXd::Ones(Eigen::Index(parameters.size()));
   request.planner.seed = options.seed;
   request.planner.threads = options.threads;
   SearchResult found = search(std::move(file.blocks), request, monitor);
 
   const Evaluation evaluation = evaluate(found.chosen, parameters);
   plan.log_det = evaluation.log_det;
+  plan.criterion_value = criterion_value(plan, evaluation, request);
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;
   plan.condition = evaluation.condition;

@@ -47,6 +47,7 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   result.log_det = 2 * pivots.tail(m - nuisance).sum();
   const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
   result.sigma = tolerance.array() * inverse.rowwise().norm().array();
+  result.covariance = tolerance.asDiagonal() * inverse * inverse.transpose() * tolerance.asDiagonal();
   result.singular_values =
       Eigen::JacobiSVD<Eigen::MatrixXd>(r.bottomRightCorner(m - nuisance, m - nuisance)).singularValues();
   result.indices = observability_indices(result.singular_values, int(chosen.count()));

@@ -49,7 +49,7 @@ TEST_P(DeterminantSwaps, GainEqualsRecomputationForEverySwapTaken) {
   const auto [rows, columns, nuisance, repeats] = GetParam();
   const BlockArray blocks = random_blocks(60, rows, columns, 7);
   const CandidateView view{&blocks, nuisance, repeats};
-  const auto criterion = make_criterion("o1");
+  const auto criterion = make_criterion("o1", {});
   Random random(3, 0);
   std::vector<int> members(std::size_t((columns + rows - 1) / rows + 4));
   std::iota(members.begin(), members.end(), 0);
@@ -77,7 +77,7 @@ TEST_P(DeterminantSwaps, BestSwapEqualsExhaustiveSearch) {
   int compared = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const BlockArray blocks = random_blocks(40, rows, columns, std::uint64_t(100 + trial));
-    const auto state = make_criterion("o1")->start({&blocks, nuisance, repeats}, [&] {
+    const auto state = make_criterion("o1", {})->start({&blocks, nuisance, repeats}, [&] {
       std::vector<int> members(std::size_t((columns + rows - 1) / rows + 1 + trial % 4), -1);
       for (int& i : members) {
         do i = random.index(40);
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, DeterminantSwaps,
 TEST(DeterminantState, SingularStartRecoversWhenTheCandidatesAllowIt) {
   // All members alike: M has rank 3 of 7.
   const BlockArray blocks = random_blocks(40, 3, 7, 11);
-  const auto state = make_criterion("o1")->start({&blocks, 0, 5}, {4, 4, 4, 4});
+  const auto state = make_criterion("o1", {})->start({&blocks, 0, 5}, {4, 4, 4, 4});
   EXPECT_EQ(state->value(), -std::numeric_limits<double>::infinity());
   for (int pass = 0; pass < 3; ++pass)
     for (int p = 0; p < 4; ++p)

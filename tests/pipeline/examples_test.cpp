@@ -199,6 +199,24 @@ TEST(Refusals, UnitsOfTheWrongKindAreNotTakenAsSI) {
       testing::HasSubstr("the noise of the joint sensors has the wrong unit"));
 }
 
+TEST(Refusals, TestPosesThatDoNotFitTheRobotAreNamed) {
+  const auto with = [](std::vector<std::vector<Measured>> at) {
+    return [at](Problem& p) {
+      p.design.test_poses = TestPosesSpec{};
+      p.design.test_poses->at = at;
+      p.design.test_poses->line = 33;
+    };
+  };
+  EXPECT_THAT(refusal("delta/problem.yaml", with({{{0.1}, {0.1}}})),
+              testing::HasSubstr("problem.yaml:33: a test pose has 2 values"));
+  EXPECT_THAT(refusal("delta/problem.yaml", with({{{0.1}, {0.1, Quantity::angle}, {0.1}}})),
+              testing::HasSubstr("a test pose has the wrong unit for 'y'; allowed: m, mm, um, nm"));
+  EXPECT_THAT(refusal("delta/problem.yaml", with({{{5}, {0.1}, {0.1}}})),
+              testing::HasSubstr("a test pose is out of reach"));
+  EXPECT_THAT(refusal("delta/problem.yaml", [](Problem& p) { p.design.criterion.value = "test_pose"; }),
+              testing::HasSubstr("set design: test_poses"));
+}
+
 TEST(Refusals, AnAutomaticVariantWithNothingLeftSaysWhy) {
   EXPECT_THAT(refusal("kr270/problem.yaml",
                       [](Problem& p) {

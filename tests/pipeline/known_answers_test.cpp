@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "posewright/pipeline/observe_problem.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
@@ -75,6 +76,60 @@ TEST(KnownAnswers, Planar2RDeterminantFollowsTheFormulaForAnyPoses) {
     }
     const double expected = 2 * std::log(25 - re * re - im * im) + 2 * std::log(1.5 * 0.8);
     EXPECT_NEAR(recomputed_log_det(problem, "lengths_and_offsets", poses), expected, 1e-9);
+  }
+}
+
+TEST(KnownAnswers, Planar2RTestPoseErrorFollowsTheFormula) {
+  // ρ0² = 4σ² (N − Re(z e^{−i q2⁰})) / (N² − |z|²), z = Σ e^{i q2}, whatever the links' lengths.
+  const TemporaryFolder folder;
+  folder.write("planar.urdf", planar_2r);
+  std::string text = planar_problem;
+  text.replace(
+      text.find("design: {poses: 6, candidates: 6000}"), 36,
+      "design: {poses: 5, candidates: 300, restarts: 2, criterion: test_pose, test_poses: {at: [[0.3, 0.7]], point: "
+      "[0, 0, 0]}}");
+  // Measured as a position of the tip, so that the second link's length is the tool's.
+  text.replace(text.find("type: position\n  target: [0, 0, 0]"), 34, "type: pose");
+  text.replace(text.find("noise: 1}"), 9, "noise: {position: 1, rotation: 1}}");
+  text.replace(text.find("target.target.x"), 15, "tool.x");
+  const Problem problem = read_problem(folder.write("p.yaml", text));
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  double re = 0, im = 0;
+  for (const PlannedPose& pose : plan.poses) {
+    re += std::cos(pose.configuration[1].value);
+    im += std::sin(pose.configuration[1].value);
+  }
+  const double towards = re * std::cos(0.7) + im * std::sin(0.7);
+  ASSERT_TRUE(plan.rho0.has_value());
+  EXPECT_NEAR(*plan.rho0 * *plan.rho0, 4 * (5 - towards) / (25 - re * re - im * im), 1e-9);
+  EXPECT_NEAR(plan.criterion_value, -*plan.rho0 * *plan.rho0, 1e-12);
+  EXPECT_FALSE(plan.certificate.proved);
+  // Measuring near the test pose only helps it: better than the D-optimal plan, for which z = 0.
+  EXPECT_LT(*plan.rho0 * *plan.rho0, 4.0 / 5);
+}
+
+TEST(KnownAnswers, EveryCriterionIsBestUnderItsOwnPlan) {
+  Problem problem = read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/gough/problem.yaml");
+  problem.design.test_poses = TestPosesSpec{};
+  problem.design.test_poses->random = 20;
+  PlanOptions options;
+  options.candidates = 150;
+  options.restarts = 1;
+  options.poses = 14;
+  problem.variants.front().nuisance = {{"base.*", 1}, {"target.*", 1}};
+  std::map<std::string, Plan> plans;
+  for (const char* criterion : {"o1", "a", "o2", "o3", "o5", "test_pose", "test_pose_max"}) {
+    options.criterion = criterion;
+    plans[criterion] = plan_problem(problem, options, Monitor{});
+  }
+  const auto worst = [](const Plan& p) { return *std::max_element(p.test_errors.begin(), p.test_errors.end()); };
+  for (const auto& [name, other] : plans) {
+    EXPECT_GE(plans["o1"].log_det, other.log_det - 1e-9) << name;
+    EXPECT_GE(plans["o2"].indices.o2, other.indices.o2 * (1 - 1e-9)) << name;
+    EXPECT_GE(plans["o3"].indices.o3, other.indices.o3 * (1 - 1e-9)) << name;
+    EXPECT_GE(plans["o5"].indices.o5, other.indices.o5 * (1 - 1e-9)) << name;
+    EXPECT_LE(*plans["test_pose"].rho0, *other.rho0 * (1 + 1e-9)) << name;
+    EXPECT_LE(worst(plans["test_pose_max"]), worst(other) * (1 + 1e-9)) << name;
   }
 }
 

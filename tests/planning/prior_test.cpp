@@ -57,7 +57,7 @@ TEST(Prior, SearchFindsTheBestPlanAndTheBoundHolds) {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
       const BlockArray blocks = random_blocks(8, 2, 7, 50 + seed);
       const std::vector<Parameter> parameters = labels(7, nuisance);
-      SearchRequest request{"o1", "exchange", 3, nuisance, Repeats::forbid, {}, tolerances(parameters)};
+      SearchRequest request{"o1", "exchange", 3, nuisance, Repeats::forbid, {}, {}, {}, tolerances(parameters)};
       std::vector<int> all = {0, 1, 2, 3, 4, 5, 6, 7};
       const SearchResult found = search(blocks.subset(all), request, Monitor{});
       const double value = evaluate(blocks.subset(found.design.members), parameters, true).log_det;

@@ -191,7 +191,7 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "bad.yaml:36: unknown key 'candidate'; allowed: variant, criterion, method, poses, candidates, "
-                 "restarts, repeats, prior");
+                 "restarts, repeats, prior, test_poses");
   }
 }
 

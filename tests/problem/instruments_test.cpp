@@ -182,6 +182,19 @@ TEST(Elastostatic, NonsenseGivesOneClearLine) {
               HasSubstr("must differ from L²"));
 }
 
+TEST(TestPoses, NonsenseGivesOneClearLine) {
+  const auto design = [](const std::string& test_poses) {
+    return complaint(with_robot("{urdf: a.urdf}") + "design: {test_poses: " + test_poses + "}\n");
+  };
+  EXPECT_THAT(design("{}"), HasSubstr("needs one of at, random"));
+  EXPECT_THAT(design("{at: [[1, 2]], random: 3}"), HasSubstr("needs one of at, random"));
+  EXPECT_THAT(design("{at: []}"), HasSubstr("at least one configuration is needed"));
+  EXPECT_THAT(design("{at: [[1 kN]]}"), HasSubstr("wrong unit 'kN'"));
+  EXPECT_THAT(design("{at: [[1], [2]], weights: [1]}"), HasSubstr("one weight for each configuration is expected"));
+  EXPECT_THAT(design("{at: [[1]], weights: [0]}"), HasSubstr("a value > 0 is expected"));
+  EXPECT_THAT(design("{random: 0}"), HasSubstr("a whole number from 1"));
+}
+
 TEST(ParallelRobots, NonsenseGivesOneClearLine) {
   EXPECT_THAT(complaint(with_robot("{model: delta, base_radius: 0.2, platform_radius: 0.1, arm: -1, forearm: 1, "
                                    "travel: [0, 1], range: {x: [0, 1], y: [0, 1], z: [0, 1]}}")),

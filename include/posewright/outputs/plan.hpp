@@ -37,6 +37,7 @@ struct PlannedParameter {
 
 /// What is proved about a plan over its candidates.
 struct Certificate {
+  bool proved = true;                  ///< false: no bound is computed for this criterion, the rest says nothing
   double efficiency = 0.0;             ///< lower bound of (det M / det M*)^{1/s}, in (0, 1]
   double log_det_bound = 0.0;          ///< no plan of as many of these candidates exceeds it; same scale as log_det
   double max_sensitivity_ratio = 1.0;  ///< how near the weights behind the bound are to their own optimum
@@ -60,7 +61,10 @@ struct Plan {
   std::string problem_file, problem_sha256;
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1";
-  bool prior = false;  ///< tolerances count as prior knowledge in log_det, σ and everything else
+  double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)
+  std::optional<double> rho0;    ///< predicted position error at the test poses, root of the weighted mean square, m
+  std::vector<double> test_errors{};  ///< the same at each test pose, m
+  bool prior = false;                 ///< tolerances count as prior knowledge in log_det, σ and everything else
   double log_det = 0.0, log_det_full = 0.0;
   ObservabilityIndices indices;
   double condition = 0.0;

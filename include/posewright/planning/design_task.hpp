@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace posewright {
 struct DesignTask {
   CandidateView candidates;
   const Criterion* criterion = nullptr;
-  int poses = 0;                                   ///< N, at most what the repeat policy allows
-  const ApproximateDesign* approximate = nullptr;  ///< may be null; a source of good starts
+  int poses = 0;  ///< N, at most what the repeat policy allows
+  /// May be null; a source of good starts, and of promising candidates where its sensitivities are there.
+  const ApproximateDesign* approximate = nullptr;
+  std::optional<double> bound{};  ///< no design exceeds it (Φ, whitened coordinates); for progress
 };
 
 struct PlannerOptions {

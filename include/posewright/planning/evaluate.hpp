@@ -20,6 +20,7 @@ struct Evaluation {
   Eigen::VectorXd contribution;  ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
                                  ///< with the prior's
   double condition = 0.0;        ///< σ1/σm
+  Eigen::MatrixXd covariance;    ///< M⁻¹, raw coordinates (SI)
 };
 
 /// By Householder QR of the stacked rows; no inverse of M is formed.

@@ -47,6 +47,15 @@ struct WorkspaceSpec {
 
 enum class Repeats { forbid, allow };
 
+/// Configurations where accuracy after compensation matters.
+struct TestPosesSpec {
+  std::vector<std::vector<Measured>> at;            ///< values of the robot's coordinates, or
+  int random = 0;                                   ///< so many, evenly through the workspace
+  std::vector<double> weights;                      ///< one for each of `at`; empty: all 1
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame: whose position counts
+  int line = 0;
+};
+
 struct DesignSpec {
   std::optional<Located<std::string>> variant;  ///< default: the first
   Located<std::string> criterion{"o1", 0};
@@ -56,6 +65,7 @@ struct DesignSpec {
   Located<int> restarts{10, 0};
   Repeats repeats = Repeats::forbid;
   bool prior = false;  ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
+  std::optional<TestPosesSpec> test_poses;
   int line = 0;
 };
 

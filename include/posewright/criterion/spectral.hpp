@@ -1,0 +1,16 @@
+#pragma once
+
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/criterion/information_function.hpp"
+
+namespace posewright {
+
+/// Functions of the singular values σ1 ≥ … ≥ σs of the scaled G with nuisance eliminated (design §4):
+///   o2 = σs/σ1 (Driels & Pathre 1990), o3 = σs (Nahvi et al. 1994), o4 = σs²/σ1 (Nahvi & Hollerbach 1996),
+///   o5 = 1/Σ σi⁻¹ (Sun & Hollerbach 2008).
+/// The search maximises the logarithm. They depend on the scale of the columns. ln o3 is concave in M, the others are
+/// not.
+enum class SpectralIndex { o2, o3, o4, o5 };
+std::unique_ptr<Criterion> make_spectral_criterion(SpectralIndex index, const CriterionData& data);
+
+}  // namespace posewright

@@ -1,0 +1,114 @@
+#include "posewright/criterion/information_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace posewright {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// In whitened coordinates an average pose adds the identity, so this is a thousandth of a pose.
+constexpr double start_ridge = 1e-3;
+// Exact evaluations for one position. Of concave criteria most are cut off by the derivative before.
+constexpr std::size_t most_evaluated = 16;
+
+class FunctionState : public DesignState {
+ public:
+  FunctionState(const CandidateView& view, std::vector<int> members,
+                std::shared_ptr<const InformationFunction> function)
+      : DesignState(view, std::move(members)), function_(std::move(function)), prior_(view.prior) {
+    refresh();
+  }
+
+  double value() const override { return singular_ ? -infinity : value_; }
+  double loss(int position) const override { return d_[std::size_t(members()[std::size_t(position)])]; }
+
+  Swap best_swap(int position, double min_gain) override {
+    const int k = members()[std::size_t(position)];
+    const Eigen::MatrixXd rest = information_ - square(k);
+    const std::vector<int> order = promising(k, min_gain);
+    Swap best{-1, min_gain};
+    for (const int j : order) {
+      if (function_->concave() && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) break;
+      const double gain = function_->value(rest + square(j)) - value_;
+      if (gain > best.gain) best = {j, gain};
+    }
+    return best.enter < 0 ? Swap{} : best;
+  }
+
+  bool refresh() override {
+    const auto m = blocks().columns();
+    information_ = prior_ != nullptr ? *prior_ : Eigen::MatrixXd::Zero(m, m);
+    for (const int i : members()) information_ += square(i);
+    singular_ = !std::isfinite(function_->value(information_));
+    if (singular_) information_ += start_ridge * Eigen::MatrixXd::Identity(m, m);
+    update();
+    return !singular_;
+  }
+
+ private:
+  void do_apply(int leave, int enter) override {
+    information_ += square(enter) - square(leave);
+    // A start that was singular may have become regular.
+    if (singular_ || !std::isfinite(function_->value(information_))) refresh();
+    else update();
+  }
+
+  Eigen::MatrixXd square(int i) const {
+    const auto block = blocks().block(std::size_t(i));
+    return block.transpose() * block;
+  }
+
+  /// Value and the derivative along every candidate, one pass over all rows.
+  void update() {
+    value_ = function_->value(information_);
+    const BlockArray::RowMatrix S = function_->gradient(information_);
+    d_.assign(blocks().count(), 0.0);
+    constexpr std::size_t chunk = 512;
+    BlockArray::RowMatrix projected;
+    const auto all = blocks().all();
+    const int r = blocks().rows();
+    for (std::size_t first = 0; first < d_.size(); first += chunk) {
+      const std::size_t count = std::min(chunk, d_.size() - first);
+      const auto rows = all.middleRows(Eigen::Index(first) * r, Eigen::Index(count) * r);
+      projected.noalias() = rows * S;
+      for (std::size_t i = 0; i < count; ++i)
+        d_[first + i] =
+            projected.middleRows(Eigen::Index(i) * r, r).cwiseProduct(rows.middleRows(Eigen::Index(i) * r, r)).sum();
+    }
+  }
+
+  /// Candidates of largest derivative that may enter, largest first; ties by index.
+  std::vector<int> promising(int leaving, double min_gain) const {
+    std::vector<int> order;
+    const double threshold = function_->concave() ? d_[std::size_t(leaving)] + min_gain : -infinity;
+    for (int j = 0; j < int(d_.size()); ++j)
+      if (blocked()[std::size_t(j)] == 0 && d_[std::size_t(j)] > threshold) order.push_back(j);
+    const auto before = [&](int a, int b) {
+      return d_[std::size_t(a)] != d_[std::size_t(b)] ? d_[std::size_t(a)] > d_[std::size_t(b)] : a < b;
+    };
+    const std::size_t keep = std::min(order.size(), most_evaluated);
+    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(keep), order.end(), before);
+    order.resize(keep);
+    return order;
+  }
+
+  std::shared_ptr<const InformationFunction> function_;
+  const Eigen::MatrixXd* prior_;
+  Eigen::MatrixXd information_;
+  std::vector<double> d_;
+  double value_ = 0.0;
+  bool singular_ = false;
+};
+
+}  // namespace
+
+FunctionCriterion::FunctionCriterion(std::string name, std::shared_ptr<const InformationFunction> function)
+    : name_(std::move(name)), function_(std::move(function)) {}
+
+std::unique_ptr<DesignState> FunctionCriterion::start(const CandidateView& view, std::vector<int> members) const {
+  return std::make_unique<FunctionState>(view, std::move(members), function_);
+}
+
+}  // namespace posewright

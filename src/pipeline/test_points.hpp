@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
+/// does not move the robot are zero. Empty where the problem has none. Throws InputError for configurations that do not
+/// fit the robot, CannotDo for a robot without a tip.
+std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
+                                      const IdentificationModel& model, const VariantColumns& columns,
+                                      std::uint64_t seed);
+
+/// Root of the weighted mean square of the predicted position error (m), and that of each point.
+double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                       std::vector<double>& each);
+
+}  // namespace posewright

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "summed_information.hpp"
+
 namespace posewright {
 namespace {
 
@@ -39,8 +41,7 @@ class FunctionState : public DesignState {
 
   bool refresh() override {
     const auto m = blocks().columns();
-    information_ = prior_ != nullptr ? *prior_ : Eigen::MatrixXd::Zero(m, m);
-    for (const int i : members()) information_ += square(i);
+    information_ = summed_information(blocks(), prior_, members());
     singular_ = !std::isfinite(function_->value(information_));
     if (singular_) information_ += start_ridge * Eigen::MatrixXd::Identity(m, m);
     update();
@@ -55,10 +56,7 @@ class FunctionState : public DesignState {
     else update();
   }
 
-  Eigen::MatrixXd square(int i) const {
-    const auto block = blocks().block(std::size_t(i));
-    return block.transpose() * block;
-  }
+  Eigen::MatrixXd square(int i) const { return block_information(blocks(), i); }
 
   /// Value and the derivative along every candidate, one pass over all rows.
   void update() {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "posewright/support/error.hpp"
+#include "summed_information.hpp"
 
 namespace posewright {
 namespace {
@@ -40,8 +41,7 @@ class TraceState : public DesignState {
 
   bool refresh() override {
     const auto m = blocks().columns();
-    information_ = prior_ != nullptr ? *prior_ : Eigen::MatrixXd::Zero(m, m);
-    for (const int i : members()) information_ += square(i);
+    information_ = summed_information(blocks(), prior_, members());
     singular_ = !invert();
     if (singular_) {
       information_ += start_ridge * Eigen::MatrixXd::Identity(m, m);
@@ -57,10 +57,7 @@ class TraceState : public DesignState {
     if (singular_ || !invert()) refresh();
   }
 
-  Eigen::MatrixXd square(int i) const {
-    const auto block = blocks().block(std::size_t(i));
-    return block.transpose() * block;
-  }
+  Eigen::MatrixXd square(int i) const { return block_information(blocks(), i); }
 
   double trace(int j) const { return traces_[std::size_t(j)]; }
 

@@ -17,7 +17,6 @@ struct CriterionEntry {
   std::string name;
   std::string summary;
   BoundKind bound;
-  bool needs_test_points;
   /// Throws CannotDo where the data lack what it needs.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
 };

@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "planners/registry.hpp"
+#include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -30,7 +31,7 @@ struct Prepared {
 ApproximateDesign bound_of(const Prepared& p) {
   ApproximateDesignOptions options;
   options.cap = 1.0 / p.size.poses;
-  return solve_approximate_design(p.blocks, p.size.nuisance, options, Monitor{});
+  return solve_approximate_design(p.blocks, LogDetFunction(p.size.nuisance, p.size.columns), options, Monitor{});
 }
 
 Design restart(const Prepared& p, const ApproximateDesign* approximate, int kicks, std::uint64_t seed) {

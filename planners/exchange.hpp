@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewright/planning/design_task.hpp"
+#include "local_search.hpp"
 
 namespace posewright {
 
@@ -17,5 +17,9 @@ class ExchangePlanner : public Planner {
  private:
   Design do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const override;
 };
+
+/// Local optimum of a start, then `kicks` kicks.
+Outcome exchange_search(const DesignTask& task, std::vector<int> start, int kicks, Random& random,
+                        const Monitor& monitor);
 
 }  // namespace posewright

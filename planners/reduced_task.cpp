@@ -13,8 +13,8 @@ constexpr int few_parameters = 8;
 
 std::vector<int> promising(const DesignTask& task) {
   const ApproximateDesign& w = *task.approximate;
-  const int interest = task.candidates.blocks->columns() - task.candidates.nuisance;
-  const double threshold = (interest <= few_parameters ? share_few : share_many) * w.price;
+  const int parameters = task.candidates.blocks->columns() - task.candidates.nuisance;
+  const double threshold = (parameters <= few_parameters ? share_few : share_many) * w.price;
   const auto nth_largest = [&](int count) {
     const auto nth = std::min(w.sensitivity.size(), std::size_t(count)) - 1;
     std::vector<double> sorted = w.sensitivity;
@@ -34,14 +34,16 @@ std::vector<int> promising(const DesignTask& task) {
 
 }  // namespace
 
-ReducedTask::ReducedTask(const DesignTask& task) : task_(task) {
+ReducedTask::ReducedTask(const DesignTask& task, const std::vector<int>& also) : task_(task) {
   if (task.approximate == nullptr || task.approximate->sensitivity.size() != task.candidates.blocks->count()) return;
   std::vector<int> kept = promising(task);
   if (2 * kept.size() > task.candidates.blocks->count()) return;
+  kept.insert(kept.end(), also.begin(), also.end());
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   kept_ = std::move(kept);
   blocks_ = task.candidates.blocks->subset(kept_);
   task_.candidates.blocks = &blocks_;
-  approximate_.log_det_bound = task.approximate->log_det_bound;
   for (std::size_t i = 0; i < task.approximate->support.size(); ++i) {
     const auto at = std::lower_bound(kept_.begin(), kept_.end(), task.approximate->support[i]);
     if (at == kept_.end() || *at != task.approximate->support[i]) continue;
@@ -49,6 +51,19 @@ ReducedTask::ReducedTask(const DesignTask& task) : task_(task) {
     approximate_.weights.push_back(task.approximate->weights[i]);
   }
   task_.approximate = &approximate_;
+  // Configurations are those of the whole task; a planner that needs them works on that.
+  task_.space = nullptr;
+  if (task.candidates.spacing == nullptr) return;
+  spacing_ = {task.candidates.spacing->unit, task.candidates.spacing->period};
+  spacing_.points = task.candidates.spacing->points(kept_, Eigen::all);
+  task_.candidates.spacing = &spacing_;
+}
+
+std::vector<int> ReducedTask::reduced(const std::vector<int>& members) const {
+  if (!is_smaller()) return members;
+  std::vector<int> inside;
+  for (const int i : members) inside.push_back(int(std::lower_bound(kept_.begin(), kept_.end(), i) - kept_.begin()));
+  return inside;
 }
 
 std::vector<int> ReducedTask::original(const std::vector<int>& members) const {

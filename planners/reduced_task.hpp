@@ -12,7 +12,8 @@ namespace posewright {
 class ReducedTask {
  public:
   /// Keeps the full task where there is no approximate optimum or little to save.
-  explicit ReducedTask(const DesignTask& task);
+  /// @param also  candidates to keep whatever their sensitivity
+  explicit ReducedTask(const DesignTask& task, const std::vector<int>& also = {});
   ReducedTask(const ReducedTask&) = delete;
   ReducedTask& operator=(const ReducedTask&) = delete;
 
@@ -20,12 +21,15 @@ class ReducedTask {
   bool is_smaller() const { return !kept_.empty(); }
   /// Indices of the full task for indices of the reduced one.
   std::vector<int> original(const std::vector<int>& members) const;
+  /// The other way about; all must be in the reduced task.
+  std::vector<int> reduced(const std::vector<int>& members) const;
 
  private:
   DesignTask task_;
   std::vector<int> kept_;
   BlockArray blocks_;
   ApproximateDesign approximate_;
+  Spacing spacing_;
 };
 
 }  // namespace posewright

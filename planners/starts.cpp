@@ -5,6 +5,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "posewright/support/error.hpp"
+
 namespace posewright {
 namespace {
 
@@ -16,6 +18,9 @@ class Selection {
   bool add(int candidate) {
     int& used = used_[candidate];
     if (full() || used >= task_.candidates.max_repeats) return false;
+    if (const Spacing* spacing = task_.candidates.spacing; spacing != nullptr)
+      for (const int other : members_)
+        if (spacing->too_near(other, candidate)) return false;
     ++used;
     members_.push_back(candidate);
     return true;
@@ -24,7 +29,11 @@ class Selection {
     const int n = int(task_.candidates.blocks->count());
     // Rejection is quick while most candidates are free; a sweep finishes crowded cases.
     for (int tries = 0; !full() && tries < 20 * task_.poses; ++tries) add(random.index(n));
-    for (int i = 0, first = random.index(n); !full(); ++i) add((first + i) % n);
+    for (int i = 0, first = random.index(n); !full() && i < n; ++i)
+      while (add((first + i) % n)) continue;
+    if (!full())
+      throw CannotDo("only " + std::to_string(members_.size()) + " of " + std::to_string(task_.poses) +
+                     " poses were found at the minimum distance from each other");
   }
   std::vector<int> take() { return std::move(members_); }
 

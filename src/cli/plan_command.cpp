@@ -13,15 +13,18 @@ namespace {
 po::options_description options() {
   po::options_description options("Options");
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add_options()                                                                            //
-      ("poses", text("N"), "number of poses (design: poses)")                                      //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                    //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())    //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())            //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                  //
-      ("restarts", text("k"), "starts of the search (10)")                                         //
-      ("repeats", text("allow|forbid"), "whether a configuration may be measured twice (forbid)")  //
-      ("prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
+  options.add_options()                                                                              //
+      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")  //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                      //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())      //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())              //
+      ("candidates", text("n"), "feasible configurations to choose from (10000)")                    //
+      ("restarts", text("k"), "starts of the search (10)")                                           //
+      ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
+          "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
+          "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
+          "reserve", "maximise what is left when the pose that hurts most is lost")(
+          "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
   options.add(output_options(true));
   return options;
 }
@@ -33,12 +36,17 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.variant = text_of(values, "variant");
   plan_options.criterion = text_of(values, "criterion");
   plan_options.method = text_of(values, "method");
-  plan_options.poses = whole_number(values, "poses", 1, 1000000);
+  plan_options.smallest = text_of(values, "poses") == "auto";
+  if (!plan_options.smallest) plan_options.poses = whole_number(values, "poses", 1, 1000000);
   plan_options.candidates = whole_number(values, "candidates", 1, 10000000);
   plan_options.restarts = whole_number(values, "restarts", 1, 1000000);
   plan_options.repeats = repeats_of(values);
   if (const std::string prior = choice_of(values, "prior", {"none", "tolerance"}); !prior.empty())
     plan_options.prior = prior == "tolerance";
+  if (const std::string scaling = choice_of(values, "scaling", {"tolerance", "norm", "none"}); !scaling.empty())
+    plan_options.scaling = scaling == "norm" ? Scaling::norm : scaling == "none" ? Scaling::none : Scaling::tolerance;
+  plan_options.augment = text_of(values, "augment");
+  plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = read_problem(file);

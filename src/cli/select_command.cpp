@@ -17,7 +17,8 @@ po::options_description options() {
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())  //
       ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())          //
       ("restarts", text("k"), "starts of the search (10)")                                       //
-      ("repeats", text("allow|forbid"), "whether a block may be chosen twice (forbid)");
+      ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
+          "reserve", "maximise what is left when the block that hurts most is lost");
   options.add(output_options(false));
   return options;
 }
@@ -34,7 +35,8 @@ int run(const po::variables_map& values, const Words& positional) {
   if (values.count("criterion") > 0) select.criterion = text_of(values, "criterion");
   if (values.count("method") > 0) select.method = text_of(values, "method");
   select.restarts = whole_number(values, "restarts", 1, 1000000).value_or(select.restarts);
-  select.repeats = repeats_of(values).value_or(Repeats::forbid);
+  select.repeats = repeats_of(values).value_or(Repeats{});
+  select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;
   select.threads = common.threads;
   const Outputs outputs(values, file, false);

@@ -19,9 +19,13 @@ po::options_description output_options(bool poses) {
 }
 
 std::optional<Repeats> repeats_of(const po::variables_map& values) {
-  const std::string text = choice_of(values, "repeats", {"allow", "forbid"});
+  const std::string text = text_of(values, "repeats");
   if (text.empty()) return std::nullopt;
-  return text == "allow" ? Repeats::allow : Repeats::forbid;
+  if (text == "allow") return Repeats{Repeats::any_number};
+  if (text == "forbid") return Repeats{1};
+  if (text.find_first_not_of("0123456789") == std::string::npos)
+    return Repeats{*whole_number(values, "repeats", 1, 1000000)};
+  throw InputError({}, "--repeats " + text, "allowed: allow, forbid, or how often a pose may be measured");
 }
 
 Outputs::Outputs(const po::variables_map& values, const std::filesystem::path& input, bool poses) {

@@ -13,7 +13,7 @@ namespace posewright::cli {
 
 /// -o, --poses-csv (where there are configurations), --force, --time-limit.
 po::options_description output_options(bool poses);
-/// The value of --repeats; InputError for anything but allow and forbid.
+/// The value of --repeats; InputError for anything but allow, forbid and a number.
 std::optional<Repeats> repeats_of(const po::variables_map& values);
 
 /// Where a plan goes: files, and the table or JSON on stdout.

@@ -5,7 +5,12 @@
 namespace posewright {
 
 DesignState::DesignState(const CandidateView& view, std::vector<int> members)
-    : view_(view), members_(std::move(members)), used_(view.blocks->count()), blocked_(view.blocks->count()) {
+    : view_(view),
+      members_(std::move(members)),
+      used_(view.blocks->count()),
+      banned_(view.blocks->count()),
+      blocked_(view.blocks->count()) {
+  if (view.spacing != nullptr) crowd_.resize(view.blocks->count());
   for (const int i : members_) count(i, 1);
 }
 
@@ -14,13 +19,54 @@ void DesignState::apply(int position, int enter) {
   members_[std::size_t(position)] = enter;
   count(leave, -1);
   count(enter, 1);
-  do_apply(leave, enter);
+  do_change(leave, enter);
+}
+
+void DesignState::add(int enter) {
+  members_.push_back(enter);
+  count(enter, 1);
+  do_change(-1, enter);
+}
+
+void DesignState::remove(int position) {
+  const int leave = members_[std::size_t(position)];
+  members_[std::size_t(position)] = members_.back();
+  members_.pop_back();
+  count(leave, -1);
+  do_change(leave, -1);
+}
+
+Swap DesignState::best_swap(int position, double min_gain) {
+  const int leave = members_[std::size_t(position)];
+  // Neighbours of the one that leaves become free; itself it would be no swap.
+  if (view_.spacing != nullptr) count(leave, -1);
+  const unsigned char was = std::exchange(blocked_[std::size_t(leave)], 1);
+  const Swap swap = do_best_swap(position, min_gain);
+  blocked_[std::size_t(leave)] = was;
+  if (view_.spacing != nullptr) count(leave, 1);
+  return swap;
+}
+
+void DesignState::ban(int candidate, bool banned) {
+  banned_[std::size_t(candidate)] = banned ? 1 : 0;
+  judge(candidate);
+}
+
+void DesignState::judge(int candidate) {
+  const auto i = std::size_t(candidate);
+  const bool crowded = !crowd_.empty() && crowd_[i] > 0;
+  blocked_[i] = used_[i] >= view_.max_repeats || crowded || banned_[i] != 0 ? 1 : 0;
 }
 
 void DesignState::count(int candidate, int change) {
-  const auto i = std::size_t(candidate);
-  used_[i] += change;
-  blocked_[i] = used_[i] >= view_.max_repeats ? 1 : 0;
+  used_[std::size_t(candidate)] += change;
+  judge(candidate);
+  if (view_.spacing == nullptr) return;
+  for (int j = 0; j < int(crowd_.size()); ++j) {
+    if (!view_.spacing->too_near(candidate, j)) continue;
+    crowd_[std::size_t(j)] += change;
+    judge(j);
+  }
 }
 
 }  // namespace posewright

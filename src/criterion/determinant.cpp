@@ -58,6 +58,21 @@ class SwapGain {
     b_ = eigen.eigenvectors() * rest.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
   }
 
+  /// ln det(I + D_j).
+  double addition(int j) {
+    inverse_.own(j, d_j_);
+    d_j_.diagonal().array() += 1;
+    return log_det_positive(d_j_, factor_);
+  }
+  /// ln det(I − D_k); −∞ where k is indispensable.
+  double removal(int k) {
+    inverse_.own(k, d_j_);
+    d_j_ = -d_j_;
+    d_j_.diagonal().array() += 1;
+    const double change = log_det_positive(d_j_, factor_);
+    return change < rows_ * std::log(indispensable) ? -infinity : change;
+  }
+
   /// exp(gain) is at most this, from tr D_j alone: D_j + C (I − D_k)⁻¹ Cᵀ ≼ D_j/(1 − λmax), and the geometric mean of
   /// eigenvalues is at most the arithmetic; also at most det(I + D_j) since the swap cannot beat adding without
   /// leaving.
@@ -115,10 +130,22 @@ class DeterminantState : public DesignState {
 
   double loss(int position) const override { return inverse_.trace(members()[std::size_t(position)]); }
 
-  Swap best_swap(int position, double min_gain) override {
-    const int k = members()[std::size_t(position)];
-    return blocks().rows() == 1 ? best_row(k, min_gain) : best_block(k, min_gain);
+  Swap best_addition() override {
+    Swap best{-1, -infinity};
+    const int n = static_cast<int>(blocks().count()), r = blocks().rows();
+    double ratio = 0;
+    for (int j = 0; j < n; ++j) {
+      if (blocked()[std::size_t(j)] != 0 || power(1 + inverse_.trace(j) / r, r) <= ratio) continue;
+      const double gain = gain_.addition(j);
+      if (gain > best.gain) {
+        best = {j, gain};
+        ratio = std::exp(gain);
+      }
+    }
+    return best;
   }
+
+  double removal(int position) override { return gain_.removal(members()[std::size_t(position)]); }
 
   bool refresh() override {
     since_refresh_ = 0;
@@ -128,8 +155,14 @@ class DeterminantState : public DesignState {
   }
 
  private:
-  void do_apply(int leave, int enter) override {
-    if (!inverse_.swap(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
+  Swap do_best_swap(int position, double min_gain) override {
+    const int k = members()[std::size_t(position)];
+    return blocks().rows() == 1 ? best_row(k, min_gain) : best_block(k, min_gain);
+  }
+
+  void do_change(int leave, int enter) override {
+    // A ridge is for starts; every change may be the one that makes it needless.
+    if (singular_ || !inverse_.change(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
   }
 
   Swap best_row(int k, double min_gain) {

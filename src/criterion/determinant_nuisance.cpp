@@ -1,11 +1,14 @@
 #include "determinant_nuisance.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "posewright/criterion/leave_one_out.hpp"
 
 namespace posewright {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Gains come from a fresh factor of the remaining members; the derivative of the concave criterion prunes:
 /// Φ(swap k → j) − Φ ≤ d_j − d_k, d being the sensitivities of the interest information.
@@ -19,7 +22,27 @@ class NuisanceState : public DesignState {
   double value() const override { return rest_.value(); }
   double loss(int position) const override { return d_[std::size_t(members()[std::size_t(position)])]; }
 
-  Swap best_swap(int position, double min_gain) override {
+  Swap best_addition() override {
+    rest_.leave(-1);
+    Swap best{-1, -infinity};
+    for (int j = 0; j < int(blocks().count()); ++j) {
+      if (blocked()[std::size_t(j)] != 0 || d_[std::size_t(j)] <= best.gain) continue;
+      const double gain = rest_.gain(j);
+      if (gain > best.gain) best = {j, gain};
+    }
+    return best;
+  }
+
+  double removal(int position) override { return rest_.exact(members()[std::size_t(position)], -1) - rest_.value(); }
+
+  bool refresh() override {
+    const bool regular = rest_.set_members(members());
+    rest_.sensitivities(d_);
+    return regular;
+  }
+
+ private:
+  Swap do_best_swap(int position, double min_gain) override {
     const int k = members()[std::size_t(position)];
     rest_.leave(k);
     Swap best{-1, min_gain};
@@ -35,14 +58,7 @@ class NuisanceState : public DesignState {
     return gain > min_gain ? Swap{best.enter, gain} : Swap{};
   }
 
-  bool refresh() override {
-    const bool regular = rest_.set_members(members());
-    rest_.sensitivities(d_);
-    return regular;
-  }
-
- private:
-  void do_apply(int leave, int enter) override {
+  void do_change(int leave, int enter) override {
     rest_.exchange(leave, enter);
     rest_.sensitivities(d_);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "summed_information.hpp"
 
@@ -26,17 +27,18 @@ class FunctionState : public DesignState {
   double value() const override { return singular_ ? -infinity : value_; }
   double loss(int position) const override { return d_[std::size_t(members()[std::size_t(position)])]; }
 
-  Swap best_swap(int position, double min_gain) override {
-    const int k = members()[std::size_t(position)];
-    const Eigen::MatrixXd rest = information_ - square(k);
-    const std::vector<int> order = promising(k, min_gain);
-    Swap best{-1, min_gain};
-    for (const int j : order) {
-      if (function_->concave() && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) break;
-      const double gain = function_->value(rest + square(j)) - value_;
+  Swap best_addition() override {
+    Swap best{-1, -infinity};
+    for (const int j : promising(-infinity)) {
+      if (function_->concave() && d_[std::size_t(j)] <= best.gain) break;
+      const double gain = function_->value(information_ + square(j)) - value_;
       if (gain > best.gain) best = {j, gain};
     }
-    return best.enter < 0 ? Swap{} : best;
+    return best;
+  }
+
+  double removal(int position) override {
+    return function_->value(information_ - square(members()[std::size_t(position)])) - value_;
   }
 
   bool refresh() override {
@@ -49,8 +51,22 @@ class FunctionState : public DesignState {
   }
 
  private:
-  void do_apply(int leave, int enter) override {
-    information_ += square(enter) - square(leave);
+  Swap do_best_swap(int position, double min_gain) override {
+    const int k = members()[std::size_t(position)];
+    const Eigen::MatrixXd rest = information_ - square(k);
+    const std::vector<int> order = promising(function_->concave() ? d_[std::size_t(k)] + min_gain : -infinity);
+    Swap best{-1, min_gain};
+    for (const int j : order) {
+      if (function_->concave() && d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain) break;
+      const double gain = function_->value(rest + square(j)) - value_;
+      if (gain > best.gain) best = {j, gain};
+    }
+    return best.enter < 0 ? Swap{} : best;
+  }
+
+  void do_change(int leave, int enter) override {
+    if (enter >= 0) information_ += square(enter);
+    if (leave >= 0) information_ -= square(leave);
     // A start that was singular may have become regular.
     if (singular_ || !std::isfinite(function_->value(information_))) refresh();
     else update();
@@ -78,9 +94,8 @@ class FunctionState : public DesignState {
   }
 
   /// Candidates of largest derivative that may enter, largest first; ties by index.
-  std::vector<int> promising(int leaving, double min_gain) const {
+  std::vector<int> promising(double threshold) const {
     std::vector<int> order;
-    const double threshold = function_->concave() ? d_[std::size_t(leaving)] + min_gain : -infinity;
     for (int j = 0; j < int(d_.size()); ++j)
       if (blocked()[std::size_t(j)] == 0 && d_[std::size_t(j)] > threshold) order.push_back(j);
     const auto before = [&](int a, int b) {
@@ -101,6 +116,20 @@ class FunctionState : public DesignState {
 };
 
 }  // namespace
+
+std::unique_ptr<Expansion> InformationFunction::expand(const Eigen::MatrixXd&) const {
+  throw std::logic_error("this criterion has no expansion");
+}
+
+Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& F) {
+  // With P reversing rows and (P F)ᵀ = Q R: F Fᵀ = (P Rᵀ P)(P R P), and P Rᵀ P is upper triangular.
+  const Eigen::Index m = F.rows();
+  Eigen::MatrixXd reversed = Eigen::MatrixXd::Zero(std::max(F.cols(), m), m);
+  reversed.topRows(F.cols()) = F.colwise().reverse().transpose();
+  const Eigen::MatrixXd R =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(reversed).matrixQR().topRows(m).triangularView<Eigen::Upper>();
+  return R.transpose().reverse();
+}
 
 FunctionCriterion::FunctionCriterion(std::string name, std::shared_ptr<const InformationFunction> function)
     : name_(std::move(name)), function_(std::move(function)) {}

@@ -5,12 +5,11 @@
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "regular.hpp"
 
 namespace posewright {
 namespace {
 
-// Below this ratio of Cholesky pivots the whitened information counts as singular.
-constexpr double singular_pivot = 1e-11;
 // An eigenvalue λ of the 2r × 2r swap matrix amplifies the rounding of V by 1/λ; below this a fresh factorisation is
 // due.
 constexpr double singular_swap = 1e-4;
@@ -34,11 +33,9 @@ bool InverseInformation::refresh(const std::vector<int>& members, double ridge) 
   for (const int i : members)
     m.selfadjointView<Eigen::Lower>().rankUpdate(blocks_.block(std::size_t(i)).leftCols(columns_).transpose());
   const Eigen::LLT<Eigen::MatrixXd> factor(m);
-  if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
-  if (!(pivots.minCoeff() > std::sqrt(singular_pivot) * pivots.maxCoeff())) return false;
+  if (!is_regular(factor)) return false;
 
-  log_det_ = 2 * pivots.array().log().sum();
+  log_det_ = 2 * factor.matrixLLT().diagonal().array().log().sum();
   const Eigen::MatrixXd inverse_factor = factor.matrixL().solve(Eigen::MatrixXd::Identity(columns_, columns_));
   Eigen::Map<BlockArray::RowMatrix, 0, Eigen::OuterStride<>> v(v_.data(), columns_, columns_,
                                                                Eigen::OuterStride<>(stride_));
@@ -67,19 +64,23 @@ void InverseInformation::own(int candidate, Eigen::MatrixXd& d) {
   cross(candidate, scratch_, d);
 }
 
-bool InverseInformation::swap(int leave, int enter) {
-  project(enter, scratch_);
-  std::copy_n(scratch_.begin(), rows_ * stride_, y_.begin());
-  project(leave, scratch_);
-  std::copy_n(scratch_.begin(), rows_ * stride_, y_.begin() + rows_ * stride_);
-
+bool InverseInformation::change(int leave, int enter) {
   // M' = M + Uᵀ S U with U = [J_enter; J_leave], S = diag(I, −I): V' = V − V Uᵀ K⁻¹ U V, K = S + U V Uᵀ.
-  const int size = 2 * rows_;
+  int size = 0;
+  const int of[2] = {enter, leave};
+  for (const int i : of) {
+    if (i < 0) continue;
+    project(i, scratch_);
+    std::copy_n(scratch_.begin(), rows_ * stride_, y_.begin() + size * stride_);
+    size += rows_;
+  }
   BlockArray::RowMatrix k(size, size);
-  kernels().cross(blocks_.row(std::size_t(enter), 0), rows_, stride_, y_.data(), size, k.data());
-  kernels().cross(blocks_.row(std::size_t(leave), 0), rows_, stride_, y_.data(), size, k.data() + rows_ * size);
-  k.diagonal().head(rows_).array() += 1;
-  k.diagonal().tail(rows_).array() -= 1;
+  for (int i = 0, first = 0; i < 2; ++i) {
+    if (of[i] < 0) continue;
+    kernels().cross(blocks_.row(std::size_t(of[i]), 0), rows_, stride_, y_.data(), size, k.data() + first * size);
+    k.diagonal().segment(first, rows_).array() += i == 0 ? 1.0 : -1.0;
+    first += rows_;
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()));
   const Eigen::VectorXd lambda = eigen.eigenvalues();
   if (!(lambda.cwiseAbs().minCoeff() > singular_swap)) return false;

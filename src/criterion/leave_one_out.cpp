@@ -5,23 +5,17 @@
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "regular.hpp"
+#include "summed_information.hpp"
 
 namespace posewright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Ratio of squared Cholesky pivots below which whitened information counts as singular.
-constexpr double singular_pivot = 1e-11;
 // Ridge where a member is indispensable; in whitened coordinates an average pose adds the identity.
 constexpr double ridge = 1e-6;
 
 int round16(int x) { return (x + 15) / 16 * 16; }
-
-bool regular(const Eigen::LLT<Eigen::MatrixXd>& factor) {
-  if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
-  return pivots.minCoeff() > std::sqrt(singular_pivot) * pivots.maxCoeff();
-}
 
 double interest_log_det(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance) {
   const Eigen::Index interest = factor.rows() - nuisance;
@@ -41,9 +35,7 @@ LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::Ma
 }
 
 bool LeaveOneOut::set_members(const std::vector<int>& members) {
-  information_ = Eigen::MatrixXd::Zero(blocks_.columns(), blocks_.columns());
-  if (prior_ != nullptr) information_ += *prior_;
-  for (const int i : members) information_ += blocks_.block(std::size_t(i)).transpose() * blocks_.block(std::size_t(i));
+  information_ = summed_information(blocks_, prior_, members);
   factorise();
   return std::isfinite(value_);
 }
@@ -54,29 +46,32 @@ void LeaveOneOut::exchange(int leave, int enter) {
 }
 
 Eigen::MatrixXd LeaveOneOut::swapped(int leave, int enter) const {
-  const auto out = blocks_.block(std::size_t(leave)), in = blocks_.block(std::size_t(enter));
-  return information_ + in.transpose() * in - out.transpose() * out;
+  Eigen::MatrixXd changed = information_;
+  if (enter >= 0) changed += block_information(blocks_, enter);
+  if (leave >= 0) changed -= block_information(blocks_, leave);
+  return changed;
 }
 
 void LeaveOneOut::factorise() {
   const Eigen::Index m = information_.cols();
   Eigen::LLT<Eigen::MatrixXd> factor(information_);
-  value_ = regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+  value_ = is_regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
   if (!std::isfinite(value_)) factor.compute(information_ + ridge * Eigen::MatrixXd::Identity(m, m));
   reference_ = interest_log_det(factor, nuisance_);
   inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
 }
 
 void LeaveOneOut::sensitivities(std::vector<double>& d) const {
-  posewright::sensitivities(blocks_, nuisance_, inverse_factor_, d);
+  Eigen::MatrixXd T = inverse_factor_.transpose();
+  T.leftCols(nuisance_).setZero();
+  posewright::sensitivities(blocks_, T, 1, d);
 }
 
 void LeaveOneOut::leave(int k) {
   const Eigen::Index m = information_.cols();
-  const auto out = blocks_.block(std::size_t(k));
-  const Eigen::MatrixXd rest = information_ - out.transpose() * out;
+  const Eigen::MatrixXd rest = swapped(k, -1);
   Eigen::LLT<Eigen::MatrixXd> factor(rest);
-  if (!std::isfinite(value_) || !regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
+  if (!std::isfinite(value_) || !is_regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
   without_ = interest_log_det(factor, nuisance_);
   tile(factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m)));
 }
@@ -97,7 +92,7 @@ double LeaveOneOut::gain(int j) {
 
 double LeaveOneOut::exact(int k, int j) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(swapped(k, j));
-  return regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+  return is_regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
 }
 
 }  // namespace posewright

@@ -91,9 +91,9 @@ bool fits(Quantity quantity, const std::string& unit) {
 
 /// Calls use(index, value) for every parameter that a written value is meant for; later entries come later.
 template <class Use>
-void for_each_value(const Names& names, const Problem& problem, const std::vector<VariantSpec::Tolerance>& values,
+void for_each_value(const Names& names, const Problem& problem, const std::vector<PatternValue>& values,
                     const std::vector<Parameter>& parameters, const char* what, const Use& use) {
-  for (const VariantSpec::Tolerance& value : values) {
+  for (const PatternValue& value : values) {
     bool used = false;
     for (const int i : names.find(value.pattern)) {
       if (!fits(value.quantity, parameters[std::size_t(i)].unit)) continue;
@@ -167,6 +167,28 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
     throw InputError(problem.at(variant.line), "variant '" + variant.name + "' leaves no parameter of interest free",
                      "name some under parameters that are neither nuisance nor fixed");
   return columns;
+}
+
+std::vector<std::optional<double>> values_by_pattern(const VariantColumns& columns,
+                                                     const std::vector<PatternValue>& values, const Problem& problem,
+                                                     const char* what) {
+  std::vector<std::optional<double>> result(columns.parameters.size());
+  for (const PatternValue& value : values) {
+    bool used = false;
+    for (std::size_t j = 0; j < result.size(); ++j) {
+      const Parameter& p = columns.parameters[j];
+      if (!matches(value.pattern.value, p.name) || !fits(value.quantity, p.unit)) continue;
+      result[j] = value.value;
+      used = true;
+    }
+    if (used) continue;
+    std::string names;
+    for (const Parameter& p : columns.parameters) names += (names.empty() ? "parameters: " : ", ") + p.name;
+    throw InputError(
+        problem.at(value.pattern.line),
+        std::string(what) + " of '" + value.pattern.value + "' fits no identified parameter, or not its unit", names);
+  }
+  return result;
 }
 
 VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept) {

@@ -15,30 +15,64 @@ Json criterion_json(const Plan& plan) {
           {"log_det", plan.log_det},
           {"log_det_full", plan.log_det_full},
           {"indices", {{"o1", o.o1}, {"o2", o.o2}, {"o3", o.o3}, {"o4", o.o4}, {"o5", o.o5}}},
-          {"scaling", "tolerance"},
-          {"prior", plan.prior ? "tolerance" : "none"}};
+          {"scaling", plan.scaling},
+          {"prior", plan.prior ? "tolerance" : "none"},
+          {"reserve", plan.reserve}};
 }
 
-Json certificate_json(const Certificate& c) {
+/// Whether Φ is a log det, so that a bound of it is one of the plan's log_det.
+bool is_determinant(const Plan& plan) { return plan.criterion == "o1" || plan.criterion == "ds"; }
+
+Json certificate_json(const Plan& plan) {
+  const Certificate& c = plan.certificate;
   if (!c.proved) return {{"candidates", nullptr}, {"workspace", nullptr}};
-  return {{"candidates",
-           {{"efficiency", c.efficiency},
-            {"log_det_bound", c.log_det_bound},
-            {"max_sensitivity_ratio", c.max_sensitivity_ratio},
-            {"count", c.count},
-            {"repeats", c.repeats ? "allow" : "forbid"}}},
-          // A bound over the continuous workspace has not been computed: no number is better than a made-up one.
-          {"workspace", nullptr}};
+  Json candidates = {{"efficiency", c.efficiency}, {"bound", c.bound}};
+  if (is_determinant(plan)) candidates["log_det_bound"] = c.bound;
+  candidates["max_sensitivity_ratio"] = c.max_sensitivity_ratio;
+  candidates["count"] = c.count;
+  candidates["repeats"] = c.repeats;
+  candidates["optimal"] = plan.proved_optimal;
+  Json workspace = nullptr;
+  if (c.workspace)
+    workspace = {{"efficiency", c.workspace->efficiency},
+                 {"bound", c.workspace->bound},
+                 {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
+                 {"method", c.workspace->method}};
+  return {{"candidates", candidates}, {"workspace", workspace}};
+}
+
+Json variants_json(const Plan& plan) {
+  Json json = Json::array();
+  for (const VariantResult& v : plan.variants)
+    json.push_back({{"name", v.name},
+                    {"weight", v.weight},
+                    {"log_det", v.log_det},
+                    {"log_det_bound", v.bound},
+                    {"efficiency", v.efficiency}});
+  return json;
+}
+
+Json curve_json(const Plan& plan) {
+  Json json = Json::array();
+  for (const CurvePoint& point : plan.curve)
+    json.push_back({{"poses", point.poses},
+                    {"log_det", point.log_det},
+                    {"rho0", point.rho0 ? Json(*point.rho0) : Json(nullptr)},
+                    {"largest_sigma_ratio", point.worst_sigma ? Json(*point.worst_sigma) : Json(nullptr)},
+                    {"enough", point.enough}});
+  return json;
 }
 
 Json parameter_json(const PlannedParameter& p) {
-  Json json = {{"name", p.label.name},
+  Json json = Json::object();
+  if (!p.variant.empty()) json["variant"] = p.variant;
+  json.update({{"name", p.label.name},
                {"unit", p.label.unit},
                {"role", p.label.role == Role::interest ? "interest" : "nuisance"},
                {"nominal", p.label.nominal},
                {"tolerance", p.label.tolerance},
                {"sigma", p.sigma ? Json(*p.sigma) : Json(nullptr)},
-               {"identifiable", p.sigma.has_value()}};
+               {"identifiable", p.sigma.has_value()}});
   if (p.sigma) json["worth_identifying"] = *p.sigma < p.label.tolerance;
   if (!p.dropped_because.empty()) json["dropped_because"] = p.dropped_because;
   return json;
@@ -51,7 +85,8 @@ Json tool_pose_json(const Eigen::Isometry3d& X) {
 }
 
 Json pose_json(const PlannedPose& pose) {
-  Json json = {{"id", pose.id}, {"candidate", pose.candidate}};
+  Json json = {{"id", pose.id}, {"candidate", pose.candidate ? Json(*pose.candidate) : Json(nullptr)}};
+  if (pose.measured) json["measured"] = true;
   if (!pose.configuration.empty()) {
     Json values = Json::array(), names = Json::array(), units = Json::array();
     for (const NamedValue& v : pose.configuration) {
@@ -72,6 +107,7 @@ Json pose_json(const PlannedPose& pose) {
   }
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
   json["contribution"] = pose.contribution;
+  if (!pose.measured) json["efficiency_without"] = pose.without;
   return json;
 }
 
@@ -81,6 +117,14 @@ Json statistics_json(const PlanStatistics& s) {
   Json json = {{"candidates_drawn", s.drawn}, {"candidates_feasible", s.feasible},
                {"rejected", rejected},        {"exchanges", s.exchanges},
                {"restarts", s.restarts},      {"seconds", s.seconds}};
+  if (!s.stages.empty()) {
+    json["stages"] = Json::array();
+    for (const PlanStage& stage : s.stages)
+      json["stages"].push_back({{"name", stage.name},
+                                {"value", stage.value},
+                                {"efficiency", stage.efficiency ? Json(*stage.efficiency) : Json(nullptr)},
+                                {"seconds", stage.seconds}});
+  }
   if (s.poses_on_boundary) json["poses_on_boundary"] = *s.poses_on_boundary;
   if (s.coordinates_on_limits) json["coordinates_on_limits"] = *s.coordinates_on_limits;
   return json;
@@ -94,9 +138,12 @@ std::string plan_json(const Plan& plan) {
                {"seed", plan.seed},
                {"problem", {{"file", plan.problem_file}, {"sha256", plan.problem_sha256}}}};
   if (!plan.variant.empty()) json["variant"] = plan.variant;
+  json["method"] = plan.method;
   json["interrupted"] = plan.interrupted;
   json["criterion"] = criterion_json(plan);
-  json["certificate"] = certificate_json(plan.certificate);
+  json["certificate"] = certificate_json(plan);
+  if (!plan.variants.empty()) json["variants"] = variants_json(plan);
+  if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();
   for (const PlannedParameter& p : plan.parameters) json["parameters"].push_back(parameter_json(p));
   json["accuracy"] = {{"rho0", plan.rho0 ? Json(*plan.rho0) : Json(nullptr)}, {"test_poses", plan.test_errors}};

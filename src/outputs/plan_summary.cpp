@@ -15,8 +15,11 @@ std::string headline(const Plan& plan) {
   const auto nuisance = std::count_if(plan.parameters.begin(), plan.parameters.end(), [](const PlannedParameter& p) {
     return p.sigma.has_value() && p.label.role == Role::nuisance;
   });
-  std::string text = fmt::format("{} poses", plan.poses.size());
-  if (!plan.variant.empty()) text += fmt::format(" for variant {}", plan.variant);
+  const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
+  std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
+  if (measured > 0) text += fmt::format(" beside {} that are measured already,", measured);
+  if (!plan.variant.empty())
+    text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);
   text += fmt::format(": {} parameters", kept - nuisance);
   if (nuisance > 0) text += fmt::format(" and {} nuisance parameters", nuisance);
   if (plan.interrupted) text += " (search interrupted: best plan so far)";
@@ -26,28 +29,85 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
+/// Rounded down: a certificate must not promise more than was proved.
+std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
+
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved)
     return fmt::format("No bound is computed for criterion {}: how near the best plan this is, is not proved.\n",
                        plan.criterion);
-  // Rounded down: a certificate must not promise more than was proved.
-  const double percent = std::floor(c.efficiency * 1e4) / 100;
-  return fmt::format("At least {:.2f} % as informative as any plan of {} of these {} candidates{}.\n", percent,
-                     plan.poses.size(), c.count, c.repeats ? ", repeats allowed" : " without repeats");
+  const bool determinant = plan.criterion == "o1" || plan.criterion == "ds";
+  const std::string as = determinant ? "as informative as" : fmt::format("as good by criterion {} as", plan.criterion);
+  const auto poses = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return !p.measured; });
+  const std::string policy = c.repeats == "forbid"  ? " without repeats"
+                             : c.repeats == "allow" ? ", repeats allowed"
+                                                    : fmt::format(", each at most {} times", c.repeats);
+  std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}.\n", percent(c.efficiency), as,
+                                 poses, c.count, policy);
+  if (plan.proved_optimal) text += "No plan of these candidates is better: every other one is ruled out.\n";
+  if (c.workspace)
+    text +=
+        fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof).\n",
+                    percent(c.workspace->efficiency));
+  return text;
+}
+
+std::string variants_text(const Plan& plan) {
+  if (plan.variants.empty()) return {};
+  using A = Table::Align;
+  Table table({"variant", "weight", "log det", "bound", "efficiency"},
+              {A::left, A::right, A::right, A::right, A::right});
+  for (const VariantResult& v : plan.variants)
+    table.row({v.name, fmt::format("{:g}", v.weight), fmt::format("{:.4f}", v.log_det), fmt::format("{:.4f}", v.bound),
+               percent(v.efficiency)});
+  return table.text();
+}
+
+std::string curve_text(const Plan& plan) {
+  if (plan.curve.empty()) return {};
+  using A = Table::Align;
+  Table table({"poses", "log det", "predicted error", "σ/required", "enough"},
+              {A::right, A::right, A::right, A::right, A::left});
+  for (const CurvePoint& point : plan.curve)
+    table.row({std::to_string(point.poses), fmt::format("{:.4f}", point.log_det),
+               point.rho0 ? shown_value(*point.rho0, "m") : "",
+               point.worst_sigma ? fmt::format("{:.3f}", *point.worst_sigma) : "", point.enough ? "yes" : "no"});
+  return "Smallest number of poses that reaches what is required:\n" + table.text();
+}
+
+/// What a lost pose costs: the one that hurts most.
+std::string reserve_text(const Plan& plan) {
+  const PlannedPose* worst = nullptr;
+  for (const PlannedPose& pose : plan.poses)
+    if (!pose.measured && (worst == nullptr || pose.without < worst->without)) worst = &pose;
+  if (worst == nullptr) return {};
+  if (worst->without <= 0) return fmt::format("Without pose {} not all parameters can be identified.\n", worst->id);
+  return fmt::format("If one pose fails, at least {} of the plan is left (pose {} would be missed most).\n",
+                     percent(worst->without), worst->id);
+}
+
+std::string stages_text(const Plan& plan) {
+  if (plan.statistics.stages.empty()) return {};
+  std::string text = "Stages:";
+  for (const PlanStage& stage : plan.statistics.stages)
+    text += fmt::format("{} {} {:.4f}{}", &stage == &plan.statistics.stages.front() ? "" : ",", stage.name, stage.value,
+                        stage.efficiency ? fmt::format(" ({:.2f} %)", 100 * *stage.efficiency) : "");
+  return text + "\n";
 }
 
 std::string indices_text(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
   std::string text = fmt::format("log det {:.6f}", plan.log_det);
-  text += plan.certificate.proved ? fmt::format(" (bound {:.6f})\n", plan.certificate.log_det_bound) : "\n";
+  const bool bounded = plan.certificate.proved && (plan.criterion == "o1" || plan.criterion == "ds");
+  text += bounded ? fmt::format(" (bound {:.6f})\n", plan.certificate.bound) : "\n";
   if (plan.rho0)
     text +=
         fmt::format("Predicted position error after calibration: {} (root mean square over {} test poses, worst {})\n",
                     shown_value(*plan.rho0, "m"), plan.test_errors.size(),
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
-  text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  (columns scaled by tolerance)\n", o.o1,
-                      o.o2, o.o3, o.o4, o.o5);
+  text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
+                      plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.criterion.starts_with("test_pose") && plan.test_errors.size() == 1)
     text += "A single test pose: the plan crowds around it and tells little of other places; give several.\n";
   if (plan.condition > 1e6)
@@ -63,11 +123,14 @@ std::string verdict(const PlannedParameter& p) {
 
 std::string parameter_table(const Plan& plan) {
   using A = Table::Align;
+  const auto name = [](const PlannedParameter& p) {
+    return p.variant.empty() ? p.label.name : p.variant + ": " + p.label.name;
+  };
   Table table({"parameter", "nominal", "tolerance", "predicted σ", "σ/tolerance", ""},
               {A::left, A::right, A::right, A::right, A::right, A::left});
   for (const PlannedParameter& p : plan.parameters)
     if (p.sigma)
-      table.row({p.label.name, shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
+      table.row({name(p), shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
                  shown_value(*p.sigma, p.label.unit), fmt::format("{:.3f}", *p.sigma / p.label.tolerance), verdict(p)});
   return table.text();
 }
@@ -96,9 +159,10 @@ std::string candidates_text(const Plan& plan) {
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + indices_text(plan) + "\n" + parameter_table(plan) +
-         dropped_text(plan) + "\n" + candidates_text(plan) +
-         fmt::format("Search: {} restarts, {} exchanges, {:.1f} s\n", plan.statistics.restarts,
+  return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) + variants_text(plan) +
+         curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
+         stages_text(plan) +
+         fmt::format("Search ({}): {} restarts, {} exchanges, {:.1f} s\n", plan.method, plan.statistics.restarts,
                      plan.statistics.exchanges, plan.statistics.seconds);
 }
 

@@ -25,6 +25,7 @@ std::string poses_csv(const Plan& plan) {
   if (!first.station.empty()) text += ",station";
   text += "\n";
   for (const PlannedPose& pose : plan.poses) {
+    if (pose.measured) continue;
     text += std::to_string(pose.id);
     for (const NamedValue& v : pose.configuration) text += fmt::format(",{}", v.value);
     for (const NamedValue& v : pose.actuators) text += fmt::format(",{}", v.value);

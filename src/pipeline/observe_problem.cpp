@@ -48,7 +48,7 @@ Observation observe(const Study& study, const Problem& problem, const VariantSpe
   if (int(kept.selected.size()) == kept.nuisance) return result;
   const BlockArray kept_pool = build_blocks(*study.model, kept.selected, study.configurations, options.threads);
   result.indices = evaluate(kept_pool, kept.parameters).indices;
-  result.smallest_poses = smallest_number_of_poses(study, kept, options.threads);
+  result.smallest_poses = smallest_number_of_poses({study.model.get(), &study.configurations}, kept, options.threads);
   add_practical(result, kept_pool, problem, options, monitor);
   return result;
 }

@@ -1,159 +1,175 @@
 #include "posewright/pipeline/plan_problem.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
-#include "posewright/planning/evaluate.hpp"
-#include "search.hpp"
-#include "study.hpp"
-#include "test_points.hpp"
+#include "fill_plan.hpp"
+#include "judgement.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/support/error.hpp"
+#include "preparation.hpp"
+#include "study_space.hpp"
 
 namespace posewright {
 namespace {
 
-/// Options over the problem file's design block.
-struct Settings {
-  std::string criterion, method;
-  int poses, candidates;
-  bool prior;
-  SearchRequest request;
+// Nobody measures more in one go; a requirement that needs more is out of reach.
+constexpr int most_poses = 2000;
+
+/// A prepared problem and plans of it.
+class Planning {
+ public:
+  Planning(const Problem& problem, const PlanOptions& options, const Monitor& monitor)
+      : problem_(problem),
+        settings_(settings_of(problem, options)),
+        monitor_(monitor),
+        prepared_(prepare(problem, settings_, monitor)) {}
+
+  const Settings& settings() const { return settings_; }
+
+  Plan plan(int poses) {
+    SearchRequest request;
+    request.criterion = settings_.criterion;
+    request.method = settings_.method;
+    request.poses = poses;
+    request.repeats = settings_.repeats;
+    request.reserve = settings_.reserve;
+    request.planner = settings_.planner;
+    if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
+    request.make_space = [this](const Eigen::MatrixXd& R) { return space(R); };
+    const SearchResult found = search(search_parts(prepared_, settings_.planner.threads), request, monitor_);
+    return assemble(found);
+  }
+
+  /// Doubles the number of poses until everything required is reached, then halves the interval.
+  Plan smallest() {
+    std::vector<CurvePoint> curve;
+    int enough = 0, too_few = fewest() - 1;
+    Plan best;
+    for (int poses = too_few + 1; enough == 0; poses = std::min(2 * poses, limit())) {
+      best = plan(poses);
+      curve.push_back(judge_requirement(best));
+      if (curve.back().enough) enough = poses;
+      else if (poses == limit() || best.interrupted) fail(curve);
+      else too_few = poses;
+    }
+    while (enough - too_few > 1 && !monitor_.should_stop()) {
+      const int middle = (enough + too_few) / 2;
+      Plan trial = plan(middle);
+      curve.push_back(judge_requirement(trial));
+      if (curve.back().enough) {
+        enough = middle;
+        best = std::move(trial);
+      } else {
+        too_few = middle;
+      }
+    }
+    std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.poses < b.poses; });
+    best.curve = std::move(curve);
+    best.interrupted = best.interrupted || enough - too_few > 1;
+    return best;
+  }
+
+ private:
+  std::unique_ptr<ConfigurationSpace> space(const Eigen::MatrixXd& R) const {
+    std::vector<SpacePart> parts;
+    for (const PreparedVariant& v : prepared_.variants)
+      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
+    return make_configuration_space(std::move(parts), prepared_.configurations, prepared_.spacing, R);
+  }
+
+  int limit() const {
+    if (settings_.repeats.most > 1) return most_poses;
+    return std::min<int>(most_poses, int(prepared_.configurations.count()));
+  }
+
+  int fewest() const {
+    int most = 1;
+    for (const PreparedVariant& v : prepared_.variants) {
+      if (v.prior.size() > 0) continue;
+      const StudyView study{v.model.get(), &prepared_.configurations};
+      const auto number = smallest_number_of_poses(study, v.columns(), settings_.planner.threads);
+      if (!number) throw CannotDo("the candidates do not determine all parameters; more candidates are needed");
+      most = std::max(most, *number);
+    }
+    return most;
+  }
+
+  CurvePoint judge_requirement(const Plan& plan) const {
+    const RequirementSpec& require = problem_.design.require;
+    CurvePoint point{
+        int(std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return !p.measured; })),
+        plan.log_det, plan.rho0, std::nullopt, true};
+    if (require.accuracy) point.enough = *plan.rho0 <= *require.accuracy;
+    if (require.sigma.empty()) return point;
+    const VariantColumns& columns = prepared_.first().columns();
+    const auto wanted = values_by_pattern(columns, require.sigma, problem_, "the required σ");
+    point.worst_sigma = 0.0;
+    for (std::size_t j = 0; j < wanted.size(); ++j)
+      for (const PlannedParameter& p : plan.parameters)
+        if (wanted[j] && p.sigma && p.label.name == columns.parameters[j].name)
+          point.worst_sigma = std::max(*point.worst_sigma, *p.sigma / *wanted[j]);
+    point.enough = point.enough && *point.worst_sigma <= 1.0;
+    return point;
+  }
+
+  [[noreturn]] void fail(const std::vector<CurvePoint>& curve) const {
+    const CurvePoint& last = curve.back();
+    std::string text = fmt::format("what design: require asks for is not reached with {} poses", last.poses);
+    if (last.rho0 && problem_.design.require.accuracy)
+      text += fmt::format("; accuracy {:.4g} mm, required {:.4g} mm", 1e3 * *last.rho0,
+                          1e3 * *problem_.design.require.accuracy);
+    if (last.worst_sigma) text += fmt::format("; largest σ {:.3g} times the required one", *last.worst_sigma);
+    throw CannotDo(text);
+  }
+
+  Plan assemble(const SearchResult& found) const {
+    // Judged from the configurations that will be written, not from anything the search kept.
+    Configurations chosen;
+    chosen.dimension = prepared_.configurations.dimension;
+    const std::size_t n = prepared_.configurations.count();
+    for (const int i : found.design.members)
+      append(chosen, std::size_t(i) < n ? prepared_.configurations[std::size_t(i)]
+                                        : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    const Judgement judgement = judge(prepared_, chosen, settings_);
+    Plan plan;
+    plan.seed = settings_.planner.seed;
+    plan.problem_file = problem_.file.string();
+    plan.problem_sha256 = problem_.sha256;
+    plan.method = settings_.method;
+    fill_judgement(plan, judgement, prepared_, settings_);
+    const CriterionValue value = criterion_value(settings_.criterion, judgement, prepared_, found.references);
+    plan.criterion_value = value.shown;
+    plan.certificate = found.certificate;
+    certify(plan.certificate, value.phi, found.degree);
+    fill_variants(plan, judgement, prepared_, found.references);
+    fill_poses(plan, prepared_, chosen, found, judgement);
+    plan.statistics.drawn = prepared_.configurations.drawn;
+    plan.statistics.feasible = long(n);
+    plan.statistics.rejected = prepared_.configurations.rejected;
+    plan.statistics.exchanges = found.design.exchanges;
+    plan.statistics.restarts = found.design.restarts;
+    plan.statistics.stages = found.stages;
+    plan.proved_optimal = found.design.optimal;
+    plan.interrupted = found.stopped;
+    return plan;
+  }
+
+  const Problem& problem_;
+  Settings settings_;
+  const Monitor& monitor_;
+  Preparation prepared_;
 };
-
-Settings settings_of(const Problem& problem, const PlanOptions& options) {
-  const DesignSpec& design = problem.design;
-  Settings s;
-  s.criterion = options.criterion.empty() ? design.criterion.value : options.criterion;
-  s.method = options.method.empty() ? design.method.value : options.method;
-  require_known(s.criterion, s.method, options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{},
-                options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
-  if (!options.poses && !design.poses)
-    throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
-  s.poses = options.poses ? *options.poses : design.poses->value;
-  s.candidates = options.candidates.value_or(design.candidates.value);
-  s.prior = options.prior.value_or(design.prior);
-  s.request = {s.criterion, s.method, s.poses, 0, options.repeats.value_or(design.repeats), {}, {}, {}, {}};
-  s.request.planner.restarts = options.restarts.value_or(design.restarts.value);
-  s.request.planner.seed = options.seed;
-  s.request.planner.threads = options.threads;
-  return s;
-}
-
-Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
-  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
-  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
-    tolerance[Eigen::Index(j)] = columns.parameters[j].tolerance;
-  return tolerance;
-}
-
-std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::span<const double> values) {
-  std::vector<NamedValue> result;
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (!coordinates[i].choice()) result.push_back({coordinates[i].name, coordinates[i].unit, values[i]});
-  return result;
-}
-
-/// What a choice among named things says at q, e.g. the load case; empty where there is no such coordinate.
-std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const Coordinate& c = coordinates[i];
-    if (!c.choice() || c.name != name) continue;
-    const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
-    return c.labels[std::size_t(at)];
-  }
-  return {};
-}
-
-void fill_poses(Plan& plan, const Study& study, const Design& design, const Evaluation& evaluation) {
-  double on_boundary = 0, on_limits = 0;
-  for (std::size_t i = 0; i < design.members.size(); ++i) {
-    const auto q = study.configurations[std::size_t(design.members[i])];
-    PlannedPose pose;
-    pose.id = int(i) + 1;
-    pose.candidate = design.members[i];
-    pose.configuration = named(study.model->coordinates(), q);
-    pose.load_case = chosen_label(study.model->coordinates(), q, "load_case");
-    pose.station = chosen_label(study.model->coordinates(), q, "station");
-    std::vector<double> actuators(study.model->actuators().size());
-    if (study.model->actuator_values(q, actuators)) pose.actuators = named(study.model->actuators(), actuators);
-    pose.tool_pose = study.model->tool_pose(q);
-    pose.contribution = evaluation.contribution[Eigen::Index(i)];
-    plan.poses.push_back(std::move(pose));
-    on_boundary += study.workspace->on_boundary(q) ? 1 : 0;
-    on_limits += study.workspace->share_of_coordinates_on_limits(q);
-  }
-  plan.statistics.poses_on_boundary = on_boundary / double(design.members.size());
-  plan.statistics.coordinates_on_limits = on_limits / double(design.members.size());
-}
-
-void fill_parameters(Plan& plan, const ResolvedColumns& resolved, const Evaluation& evaluation) {
-  const VariantColumns& columns = resolved.columns;
-  for (const Role role : {Role::interest, Role::nuisance})
-    for (std::size_t j = 0; j < columns.parameters.size(); ++j)
-      if (columns.parameters[j].role == role)
-        plan.parameters.push_back({columns.parameters[j], evaluation.sigma[Eigen::Index(j)], ""});
-  for (std::size_t j = 0; j < resolved.dropped.size(); ++j)
-    plan.parameters.push_back({resolved.dropped[j], std::nullopt, resolved.reasons[j]});
-}
 
 }  // namespace
 
 Plan plan_problem(const Problem& problem, const PlanOptions& options, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  Settings settings = settings_of(problem, options);
-  const VariantSpec& variant = find_variant(problem, options.variant);
-  SamplingOptions sampling;
-  sampling.count = std::size_t(settings.candidates);
-  sampling.seed = options.seed;
-  sampling.threads = options.threads;
-  const Study study = make_study(problem, variant, sampling, monitor);
-  const ResolvedColumns resolved = resolve_columns(study, problem, variant, settings.prior, options.threads);
-  const VariantColumns& columns = resolved.columns;
-  settings.request.scale = tolerances_of(columns);
-  settings.request.test_points = test_points_of(problem, variant, *study.model, columns, options.seed);
-  if (settings.prior) settings.request.prior_sigma = tolerances_of(columns);
-  else require_enough_poses(study, columns, settings.poses, options.threads);
-
-  settings.request.nuisance = columns.nuisance;
-  SearchResult found = search(build_blocks(*study.model, columns.selected, study.configurations, options.threads),
-                              settings.request, monitor);
-
-  // Judged from the configurations that will be written, not from anything the search kept.
-  Configurations chosen;
-  chosen.dimension = study.configurations.dimension;
-  for (const int i : found.design.members) {
-    const auto q = study.configurations[std::size_t(i)];
-    chosen.values.insert(chosen.values.end(), q.begin(), q.end());
-  }
-  const Evaluation evaluation = evaluate(build_blocks(*study.model, columns.selected, chosen, options.threads),
-                                         columns.parameters, settings.prior);
-
-  Plan plan;
-  plan.seed = options.seed;
-  plan.problem_file = problem.file.string();
-  plan.problem_sha256 = problem.sha256;
-  plan.variant = columns.name;
-  plan.criterion = settings.criterion;
-  plan.prior = settings.prior;
-  if (!settings.request.test_points.empty())
-    plan.rho0 = predicted_error(settings.request.test_points, evaluation.covariance, plan.test_errors);
-  plan.criterion_value = criterion_value(plan, evaluation, settings.request);
-  plan.log_det = evaluation.log_det;
-  plan.log_det_full = evaluation.log_det_full;
-  plan.indices = evaluation.indices;
-  plan.condition = evaluation.condition;
-  plan.certificate = found.certificate;
-  certify(plan.certificate, plan.log_det, int(columns.selected.size()) - columns.nuisance);
-  fill_parameters(plan, resolved, evaluation);
-  plan.statistics = {study.configurations.drawn,
-                     long(study.configurations.count()),
-                     study.configurations.rejected,
-                     found.design.exchanges,
-                     found.design.restarts,
-                     0.0,
-                     {},
-                     {}};
-  fill_poses(plan, study, found.design, evaluation);
-  plan.interrupted = found.stopped;
+  Planning planning(problem, options, monitor);
+  Plan plan = planning.settings().poses > 0 ? planning.plan(planning.settings().poses) : planning.smallest();
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

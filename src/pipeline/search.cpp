@@ -1,24 +1,144 @@
 #include "search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "planners/registry.hpp"
+#include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/criterion/reserve.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
-Certificate certificate_of(const ApproximateDesign& approximate, const SearchRequest& request, std::size_t count,
-                           int interest, double offset) {
-  Certificate certificate;
-  certificate.log_det_bound = approximate.log_det_bound_for(request.poses, interest) + offset;
-  certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
-  certificate.count = count;
-  certificate.repeats = request.repeats == Repeats::allow;
-  return certificate;
+/// All parts as one problem: whitened blocks, columns side by side, rows below each other.
+struct Joined {
+  BlockArray blocks;
+  Eigen::MatrixXd R, prior;  // prior in whitened coordinates; empty: none
+  int nuisance = 0;
+  CriterionData data;
+  std::vector<double> offsets;  // log det raw − whitened, of each part
+  std::vector<double> references;
+};
+
+ApproximateDesignOptions bound_options(const SearchRequest& request, const Eigen::MatrixXd& prior) {
+  ApproximateDesignOptions options;
+  options.cap = std::min(1.0, double(request.repeats.most) / request.poses);
+  if (prior.size() > 0) options.prior = prior / double(request.poses);
+  options.threads = request.planner.threads;
+  return options;
+}
+
+/// What the best plan for this part alone could reach: the measure of its efficiency.
+double reference_of(const SearchPart& part, const Eigen::MatrixXd& prior, const SearchRequest& request,
+                    const Monitor& monitor) {
+  return solve_approximate_design(part.blocks, LogDetFunction(part.nuisance, part.blocks.columns()),
+                                  bound_options(request, prior), monitor)
+      .bound_for(request.poses);
+}
+
+BlockArray side_by_side(const std::vector<SearchPart>& parts) {
+  int rows = 0, columns = 0;
+  for (const SearchPart& part : parts) {
+    rows += part.blocks.rows();
+    columns += part.blocks.columns();
+  }
+  BlockArray joined(parts.front().blocks.count(), rows, columns);
+  for (std::size_t i = 0; i < joined.count(); ++i) {
+    Eigen::Index row = 0, column = 0;
+    for (const SearchPart& part : parts) {
+      joined.block(i).block(row, column, part.blocks.rows(), part.blocks.columns()) = part.blocks.block(i);
+      row += part.blocks.rows();
+      column += part.blocks.columns();
+    }
+  }
+  return joined;
+}
+
+Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool several, const Monitor& monitor) {
+  Joined joined;
+  Eigen::Index m = 0;
+  for (const SearchPart& part : parts) m += part.blocks.columns();
+  joined.R = Eigen::MatrixXd::Zero(m, m);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(m, m);
+  joined.data.scale.resize(m);
+  Eigen::Index first = 0;
+  for (SearchPart& part : parts) {
+    const Eigen::Index c = part.blocks.columns();
+    const Eigen::MatrixXd per_pose =
+        part.prior.size() > 0 ? Eigen::MatrixXd(part.prior / double(request.poses)) : Eigen::MatrixXd();
+    const Whitening whitening = whiten(part.blocks, per_pose);
+    joined.R.block(first, first, c, c) = whitening.R;
+    joined.offsets.push_back(whitening.log_det_offset(part.nuisance));
+    Eigen::MatrixXd own;
+    if (part.prior.size() > 0) own = whitening.prior * double(request.poses);
+    if (own.size() > 0) prior.block(first, first, c, c) = own;
+    joined.data.scale.segment(first, c) = part.scale;
+    if (several) {
+      const double reference = reference_of(part, own, request, monitor);
+      joined.references.push_back(reference + joined.offsets.back());
+      joined.data.variants.push_back({int(first), int(c), part.nuisance, part.weight, reference});
+    }
+    first += c;
+  }
+  if (parts.front().prior.size() > 0) joined.prior = prior;
+  joined.data.R = joined.R;
+  joined.data.test_points = parts.front().test_points;
+  if (!several) joined.nuisance = joined.data.nuisance = parts.front().nuisance;
+  joined.blocks = parts.size() == 1 ? std::move(parts.front().blocks) : side_by_side(parts);
+  return joined;
+}
+
+void require_choice(const SearchRequest& request, std::size_t candidates) {
+  if (double(request.poses) <= double(candidates) * request.repeats.most) return;
+  throw CannotDo(fmt::format(
+      "{} poses cannot be chosen from {} candidates{}", request.poses, candidates,
+      request.repeats.most == 1 ? " without repeats" : fmt::format(", each at most {} times", request.repeats.most)));
+}
+
+std::vector<double> without_each(const Joined& joined, const Design& design, const ConfigurationSpace* space,
+                                 const InformationFunction& function) {
+  const auto n = joined.blocks.count();
+  BlockArray chosen(design.members.size(), joined.blocks.rows(), joined.blocks.columns());
+  const auto probe = space != nullptr ? space->probe() : nullptr;
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    const auto member = std::size_t(design.members[i]);
+    if (member < n) chosen.block(i) = joined.blocks.block(member);
+    else probe->block(design.added[member - n], chosen.row(i, 0), chosen.stride());
+  }
+  Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
+  if (joined.prior.size() > 0) M += joined.prior;
+  const double whole = function.value(M), degree = function.degree() > 0 ? function.degree() : 1.0;
+  std::vector<double> result;
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    const auto block = chosen.block(i);
+    result.push_back(std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / degree)));
+  }
+  return result;
+}
+
+/// Raw blocks of the chosen candidates, each part's own.
+std::vector<BlockArray> raw_blocks(const Joined& joined, const std::vector<std::pair<int, int>>& shapes,
+                                   const Design& design) {
+  std::vector<int> members;
+  for (const int i : design.members)
+    if (std::size_t(i) < joined.blocks.count()) members.push_back(i);
+  const BlockArray white = joined.blocks.subset(members);
+  std::vector<BlockArray> result;
+  Eigen::Index row = 0, column = 0;
+  for (const auto& [r, m] : shapes) {
+    BlockArray raw(members.size(), r, m);
+    for (std::size_t i = 0; i < raw.count(); ++i)
+      raw.block(i) = white.block(i).block(row, column, r, m) * joined.R.block(column, column, m, m);
+    row += r;
+    column += m;
+    result.push_back(std::move(raw));
+  }
+  return result;
 }
 
 }  // namespace
@@ -31,78 +151,85 @@ void require_known(const std::string& criterion, const std::string& method, cons
     throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
 }
 
-SearchResult search(BlockArray blocks, const SearchRequest& request, const Monitor& monitor) {
-  const int interest = blocks.columns() - request.nuisance;
-  const bool repeats = request.repeats == Repeats::allow;
-  if (!repeats && std::size_t(request.poses) > blocks.count())
-    throw CannotDo(std::to_string(request.poses) + " poses without repeats cannot be chosen from " +
-                   std::to_string(blocks.count()) + " candidates");
-  const Eigen::MatrixXd raw_prior = request.prior_sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-  const Whitening whitening = whiten(blocks, raw_prior / double(request.poses));
-  const Eigen::MatrixXd prior = whitening.prior * double(request.poses);
-  ApproximateDesignOptions bound_options;
-  bound_options.cap = repeats ? 1.0 : 1.0 / request.poses;
-  bound_options.prior = whitening.prior;
-  ApproximateDesign approximate = solve_approximate_design(blocks, request.nuisance, bound_options, monitor);
+std::string repeats_text(Repeats repeats) {
+  if (repeats.most == 1) return "forbid";
+  return repeats.most == Repeats::any_number ? "allow" : std::to_string(repeats.most);
+}
 
-  const BoundKind kind = find_criterion(request.criterion)->bound;
-  if (kind != BoundKind::log_det) approximate.sensitivity.clear();
-  const auto criterion =
-      make_criterion(request.criterion, {whitening.R, request.scale, request.nuisance, request.test_points});
-  const auto planner = make_planner(request.method);
+SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  require_choice(request, parts.front().blocks.count());
+  std::vector<std::pair<int, int>> shapes;
+  for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  const auto criterion = entry.make(joined.data);
+  const InformationFunction& function = criterion->function();
+  const double degree = function.degree();
+  // Criteria without a bound take their starts from the determinant's weights.
+  const LogDetFunction log_det(joined.nuisance, joined.blocks.columns());
+  ApproximateDesign approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
+                                                           bound_options(request, joined.prior), monitor);
+  if (degree == 0) approximate.sensitivity.clear();
+  const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
+  std::optional<WorkspaceBound> workspace;
+  if (space != nullptr && degree > 0 && !monitor.should_stop()) {
+    WorkspaceBoundOptions options;
+    options.prior = bound_options(request, joined.prior).prior;
+    options.seed = request.planner.seed;
+    options.threads = request.planner.threads;
+    workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
+  }
+
   DesignTask task;
-  task.candidates = {&blocks, request.nuisance, repeats ? request.poses : 1, prior.size() > 0 ? &prior : nullptr};
-  task.criterion = criterion.get();
+  const int repeats = std::min(request.repeats.most, request.poses);
+  task.candidates = {&joined.blocks, joined.nuisance, repeats, joined.prior.size() > 0 ? &joined.prior : nullptr,
+                     request.spacing};
+  const ReserveCriterion reserve(*criterion);
+  task.criterion = request.reserve ? &reserve : criterion.get();
   task.poses = request.poses;
   task.approximate = &approximate;
-  if (kind == BoundKind::log_det) task.bound = approximate.log_det_bound_for(request.poses, interest);
+  if (degree > 0) task.bound = approximate.bound_for(request.poses);
+  task.space = space.get();
+  task.workspace = workspace ? &*workspace : nullptr;
 
   SearchResult result;
+  result.degree = degree;
   Monitor shifted;
   shifted.interrupted = monitor.interrupted;
   shifted.deadline = monitor.deadline;
   // People see the log det that will be in the plan, not that of whitened coordinates.
-  const double shown_offset = kind == BoundKind::log_det ? whitening.log_det_offset(request.nuisance) : 0.0;
-  shifted.on_progress = [&, offset = shown_offset](Progress progress) {
+  const double offset = entry.determinant ? joined.offsets.front() : 0.0;
+  shifted.on_progress = [&](Progress progress) {
     if (progress.best) *progress.best += offset;
     if (progress.bound) *progress.bound += offset;
     monitor.report(progress);
   };
-  result.design = planner->plan(task, request.planner, shifted);
+  result.design = make_planner(request.method)->plan(task, request.planner, shifted);
   result.stopped = approximate.stopped || result.design.stopped;
-  result.certificate =
-      certificate_of(approximate, request, blocks.count(), interest, whitening.log_det_offset(request.nuisance));
-  // Weights that are optimal for the determinant bound nothing else.
-  result.certificate.proved = kind == BoundKind::log_det;
-  result.chosen = blocks.subset(result.design.members);
-  for (std::size_t i = 0; i < result.chosen.count(); ++i) {
-    auto block = result.chosen.block(i);
-    block = (block * whitening.R).eval();
-  }
+  result.references = joined.references;
+  result.certificate.proved = degree > 0;
+  result.certificate.bound = (degree > 0 ? approximate.bound_for(request.poses) : 0.0) + offset;
+  result.certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
+  result.certificate.count = joined.blocks.count();
+  result.certificate.repeats = repeats_text(request.repeats);
+  if (workspace)
+    result.certificate.workspace = {0.0, workspace->bound_for(request.poses) + offset, workspace->max_ratio,
+                                    fmt::format("largest d(q) of {} local searches ({}); not a proof",
+                                                workspace->searches, space->is_box() ? "SLSQP" : "SBPLX")};
+  for (const SearchStage& stage : result.design.stages)
+    result.stages.push_back({stage.name, stage.value + offset,
+                             task.bound ? std::optional(std::exp((stage.value - *task.bound) / degree)) : std::nullopt,
+                             stage.seconds});
+  result.without = without_each(joined, result.design, space.get(), function);
+  result.chosen = raw_blocks(joined, shapes, result.design);
   return result;
 }
 
-double criterion_value(const Plan& plan, const Evaluation& evaluation, const SearchRequest& request) {
-  const ObservabilityIndices& o = evaluation.indices;
-  if (plan.criterion == "ds") return evaluation.log_det;
-  if (plan.criterion == "o2") return o.o2;
-  if (plan.criterion == "o3") return o.o3;
-  if (plan.criterion == "o4") return o.o4;
-  if (plan.criterion == "o5") return o.o5;
-  if (plan.criterion == "a") {
-    const Eigen::Index interest = evaluation.sigma.size() - request.nuisance;
-    return -(evaluation.sigma.array() / request.scale.array()).tail(interest).square().sum();
-  }
-  if (plan.criterion == "test_pose") return -*plan.rho0 * *plan.rho0;
-  if (plan.criterion == "test_pose_max") {
-    const double worst = *std::max_element(plan.test_errors.begin(), plan.test_errors.end());
-    return -worst * worst;
-  }
-  return o.o1;
-}
-
-void certify(Certificate& certificate, double log_det, int interest) {
-  certificate.efficiency = std::min(1.0, std::exp((log_det - certificate.log_det_bound) / interest));
+void certify(Certificate& certificate, double phi, double degree) {
+  if (!certificate.proved) return;
+  certificate.efficiency = std::min(1.0, std::exp((phi - certificate.bound) / degree));
+  if (certificate.workspace)
+    certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
 }
 
 }  // namespace posewright

@@ -1,32 +1,48 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/outputs/plan.hpp"
 #include "posewright/planning/design_task.hpp"
-#include "posewright/planning/evaluate.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+/// Candidates as one variant sees them.
+struct SearchPart {
+  BlockArray blocks;  ///< raw
+  int nuisance = 0;
+  double weight = 1.0;      ///< for criteria over several variants
+  Eigen::VectorXd scale{};  ///< unit of every column for criteria that depend on it
+  std::vector<TestPoint> test_points{};
+  Eigen::MatrixXd prior{};  ///< information that is there before, raw (m × m); empty: none
+};
 
 /// The part of planning that is the same for a robot's blocks and for a user's.
 struct SearchRequest {
   std::string criterion, method;
   int poses = 0;
-  int nuisance = 0;
-  Repeats repeats = Repeats::forbid;
+  Repeats repeats;
+  bool reserve = false;
   PlannerOptions planner;
-  Eigen::VectorXd scale{};  ///< unit of every column for criteria that depend on it, raw units
-  std::vector<TestPoint> test_points{};
-  Eigen::VectorXd prior_sigma{};  ///< 1σ known before of every column, raw units; empty: nothing
+  const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance
+  /// Configurations behind the blocks, for the whitening R of all columns; empty: there are only blocks.
+  std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> make_space{};
 };
 
 struct SearchResult {
   Design design;
-  BlockArray chosen;        ///< raw blocks of the design's members, in their order
-  Certificate certificate;  ///< efficiency still to be filled from an evaluation, see certify()
+  std::vector<BlockArray> chosen;  ///< raw blocks of the design's members that are candidates, for each part
+  Certificate certificate;         ///< efficiencies still to be filled from an evaluation, see certify()
+  double degree = 0.0;             ///< of Φ; 0: no bound
+  /// Bound of the log det of every part, raw units; only where there are several.
+  std::vector<double> references{};
+  std::vector<double> without{};  ///< per member: e^{(Φ(S∖i) − Φ(S))/h}, 0 where it is indispensable
+  std::vector<PlanStage> stages{};
   bool stopped = false;
 };
 
@@ -34,14 +50,14 @@ struct SearchResult {
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
                    const SourcePlace& method_place);
 
-/// Whitens `blocks` in place, solves for the bound, searches. Memory: the blocks and a few vectors of their number.
-SearchResult search(BlockArray blocks, const SearchRequest& request, const Monitor& monitor);
+/// Whitens, solves for the bounds, searches. One part, unless the criterion is over several variants. Memory: the
+/// blocks and a few vectors of their number.
+SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
 
-/// The criterion in its own terms (docs/plan-file.md), from the evaluation of the written poses and the plan's test
-/// errors.
-double criterion_value(const Plan& plan, const Evaluation& evaluation, const SearchRequest& request);
+/// Efficiencies of a plan whose Φ is `phi`; the last step so that they rest on the evaluation's number.
+void certify(Certificate& certificate, double phi, double degree);
 
-/// Efficiency of a plan of this log det against the bound; the last step so that it rests on the evaluation's number.
-void certify(Certificate& certificate, double log_det, int interest);
+/// forbid, allow or the number.
+std::string repeats_text(Repeats repeats);
 
 }  // namespace posewright

@@ -2,7 +2,9 @@
 
 #include <chrono>
 
+#include "judgement.hpp"
 #include "posewright/blocks/read_blocks.hpp"
+#include "posewright/criterion/registry.hpp"
 #include "posewright/planning/evaluate.hpp"
 #include "search.hpp"
 
@@ -27,45 +29,65 @@ void require_enough(const BlockFile& file, const SelectOptions& options) {
                    " poses are needed");
 }
 
+void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation, const SearchResult& found) {
+  plan.log_det = evaluation.log_det;
+  plan.log_det_full = evaluation.log_det_full;
+  plan.indices = evaluation.indices;
+  plan.condition = evaluation.condition;
+  plan.certificate = found.certificate;
+  const CriterionValue value = criterion_value(options.criterion, evaluation, options.nuisance);
+  plan.criterion_value = value.shown;
+  certify(plan.certificate, value.phi, found.degree);
+  for (std::size_t i = 0; i < found.design.members.size(); ++i) {
+    PlannedPose pose;
+    pose.id = int(i) + 1;
+    pose.candidate = found.design.members[i];
+    pose.contribution = evaluation.contribution[Eigen::Index(i)];
+    pose.without = found.without[i];
+    plan.poses.push_back(std::move(pose));
+  }
+  plan.statistics.stages = found.stages;
+  plan.proved_optimal = found.design.optimal;
+}
+
 }  // namespace
 
 Plan select_blocks(const std::filesystem::path& path, const SelectOptions& options, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_known(options.criterion, options.method, {}, {});
+  if (options.criterion.starts_with("test_pose") || find_criterion(options.criterion)->several_variants)
+    throw InputError({}, "criterion '" + options.criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
   Plan plan;
   plan.seed = options.seed;
   plan.criterion = options.criterion;
+  plan.method = options.method;
+  plan.scaling = "none";
+  plan.reserve = options.reserve;
   BlockFile file = read_blocks(path, options.rows);
   plan.problem_file = path.string();
   plan.problem_sha256 = file.sha256;
   require_enough(file, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
-  SearchRequest request{
-      options.criterion, options.method, options.poses, options.nuisance, options.repeats, {}, {}, {}, {}};
+  SearchRequest request;
+  request.criterion = options.criterion;
+  request.method = options.method;
+  request.poses = options.poses;
+  request.repeats = options.repeats;
+  request.reserve = options.reserve;
   request.planner.restarts = options.restarts;
-  request.scale = Eigen::VectorXd::Ones(Eigen::Index(parameters.size()));
   request.planner.seed = options.seed;
   request.planner.threads = options.threads;
-  SearchResult found = search(std::move(file.blocks), request, monitor);
+  std::vector<SearchPart> parts(1);
+  parts.front().blocks = std::move(file.blocks);
+  parts.front().nuisance = options.nuisance;
+  parts.front().scale = Eigen::VectorXd::Ones(Eigen::Index(parameters.size()));
+  const SearchResult found = search(std::move(parts), request, monitor);
 
-  const Evaluation evaluation = evaluate(found.chosen, parameters);
-  plan.log_det = evaluation.log_det;
-  plan.criterion_value = criterion_value(plan, evaluation, request);
-  plan.log_det_full = evaluation.log_det_full;
-  plan.indices = evaluation.indices;
-  plan.condition = evaluation.condition;
-  plan.certificate = found.certificate;
-  certify(plan.certificate, plan.log_det, int(parameters.size()) - options.nuisance);
+  const Evaluation evaluation = evaluate(found.chosen.front(), parameters);
+  fill(plan, options, evaluation, found);
   for (std::size_t j = 0; j < parameters.size(); ++j)
-    plan.parameters.push_back({parameters[j], evaluation.sigma[Eigen::Index(j)], ""});
-  for (std::size_t i = 0; i < found.design.members.size(); ++i) {
-    PlannedPose pose;
-    pose.id = int(i) + 1;
-    pose.candidate = found.design.members[i];
-    pose.contribution = evaluation.contribution[Eigen::Index(i)];
-    plan.poses.push_back(std::move(pose));
-  }
+    plan.parameters.push_back({parameters[j], "", evaluation.sigma[Eigen::Index(j)], ""});
   plan.interrupted = found.stopped;
   plan.statistics.exchanges = found.design.exchanges;
   plan.statistics.restarts = found.design.restarts;

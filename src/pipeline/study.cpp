@@ -60,12 +60,12 @@ Configurations thinned(const Configurations& configurations, std::size_t count) 
   return result;
 }
 
-ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, bool prior,
+ResolvedColumns resolve_columns(const StudyView& study, const Problem& problem, const VariantSpec& variant, bool prior,
                                 int threads) {
   ResolvedColumns resolved;
   VariantColumns all = select_columns(*study.model, problem, variant);
   const BlockArray sample =
-      build_blocks(*study.model, all.selected, thinned(study.configurations, structural_sample), threads);
+      build_blocks(*study.model, all.selected, thinned(*study.configurations, structural_sample), threads);
   if (!all.automatic) {
     const Identifiability found = identifiability(sample, all.parameters, exact_options());
     // With fewer rows than columns nothing can be said yet; require_enough_poses() says it.
@@ -95,10 +95,10 @@ namespace {
 /// Configurations that tell as much as so few can, and their blocks.
 class Fewest {
  public:
-  Fewest(const Study& study, const VariantColumns& columns, int threads)
+  Fewest(const StudyView& study, const VariantColumns& columns, int threads)
       : parameters_(columns.parameters),
         sample_(
-            build_blocks(*study.model, columns.selected, thinned(study.configurations, structural_sample), threads)),
+            build_blocks(*study.model, columns.selected, thinned(*study.configurations, structural_sample), threads)),
         order_(most_independent(sample_, columns.parameters)) {}
 
   /// Structure of the best `poses` of them; a few more than bring new rows cost nothing.
@@ -124,11 +124,11 @@ class Fewest {
 
 }  // namespace
 
-std::optional<int> smallest_number_of_poses(const Study& study, const VariantColumns& columns, int threads) {
+std::optional<int> smallest_number_of_poses(const StudyView& study, const VariantColumns& columns, int threads) {
   return Fewest(study, columns, threads).number();
 }
 
-void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads) {
+void require_enough_poses(const StudyView& study, const VariantColumns& columns, int poses, int threads) {
   const Fewest fewest(study, columns, threads);
   const Identifiability found = fewest.of(poses);
   if (found.dependencies.empty()) return;

@@ -21,6 +21,12 @@ struct Study {
   Configurations configurations;
 };
 
+/// What is asked about columns: a model and configurations of it.
+struct StudyView {
+  const IdentificationModel* model;
+  const Configurations* configurations;
+};
+
 /// The robot as one variant sees it.
 Study make_study(const Problem& problem, const VariantSpec& variant, const SamplingOptions& options,
                  const Monitor& monitor);
@@ -38,15 +44,15 @@ struct ResolvedColumns {
 /// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
 /// they are independent, unless a prior tells them apart. Throws CannotDo with the equations where they are
 /// not.
-ResolvedColumns resolve_columns(const Study& study, const Problem& problem, const VariantSpec& variant, bool prior,
+ResolvedColumns resolve_columns(const StudyView& study, const Problem& problem, const VariantSpec& variant, bool prior,
                                 int threads);
 
 /// Smallest number of configurations that determines all columns, by choosing each for what it adds; empty where the
 /// candidates do not suffice.
-std::optional<int> smallest_number_of_poses(const Study& study, const VariantColumns& columns, int threads);
+std::optional<int> smallest_number_of_poses(const StudyView& study, const VariantColumns& columns, int threads);
 
 /// Throws CannotDo where `poses` well-chosen configurations leave parameters undetermined: names the shortfall, the
 /// parameters and the number of poses that suffices.
-void require_enough_poses(const Study& study, const VariantColumns& columns, int poses, int threads);
+void require_enough_poses(const StudyView& study, const VariantColumns& columns, int poses, int threads);
 
 }  // namespace posewright

@@ -1,18 +1,13 @@
 #include "test_points.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/workspace/candidates.hpp"
-#include "posewright/workspace/workspace.hpp"
+#include "test_configurations.hpp"
 
 namespace posewright {
 namespace {
-
-// Test poses must not be candidates of the same draw.
-constexpr std::uint64_t other_stream = 0x7e57;
 
 /// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
 Problem with_pose_seen(Problem problem) {
@@ -21,49 +16,6 @@ Problem with_pose_seen(Problem problem) {
   problem.measurement = {};
   problem.measurement.instrument = pose;
   return problem;
-}
-
-std::vector<double> configuration_of(const std::vector<Measured>& written, const std::vector<Coordinate>& coordinates,
-                                     const SourcePlace& place) {
-  std::vector<double> q;
-  for (const Coordinate& c : coordinates) {
-    if (c.choice()) {
-      q.push_back(c.values.front());
-      continue;
-    }
-    if (q.size() == written.size())
-      throw InputError(place, "a test pose has " + std::to_string(written.size()) + " values",
-                       "one for each coordinate of the robot is needed");
-    const Measured& value = written[q.size()];
-    const Quantity own = c.unit == "m" ? Quantity::length : Quantity::angle;
-    if (value.quantity != Quantity::number && value.quantity != own)
-      throw InputError(place, "a test pose has the wrong unit for '" + c.name + "'",
-                       "allowed: " + allowed_units({own}));
-    q.push_back(value.value);
-  }
-  const auto choices = std::count_if(coordinates.begin(), coordinates.end(), [](const auto& c) { return c.choice(); });
-  if (written.size() != coordinates.size() - std::size_t(choices))
-    throw InputError(place, "a test pose has " + std::to_string(written.size()) + " values",
-                     std::to_string(coordinates.size() - std::size_t(choices)) + " coordinates are needed");
-  return q;
-}
-
-/// Where the test poses are: as written, or evenly through the workspace.
-std::vector<std::vector<double>> configurations(const Problem& seen, const IdentificationModel& model,
-                                                std::uint64_t seed) {
-  const TestPosesSpec& spec = *seen.design.test_poses;
-  std::vector<std::vector<double>> result;
-  for (const auto& written : spec.at)
-    result.push_back(configuration_of(written, model.coordinates(), seen.at(spec.line)));
-  if (spec.random == 0) return result;
-  const Workspace workspace(model, seen);
-  SamplingOptions options;
-  options.count = 2 * std::size_t(spec.random);  // the first half are interior points
-  options.seed = seed ^ other_stream;
-  const Configurations drawn = sample_configurations(workspace, options, Monitor{});
-  for (std::size_t i = 0; i < std::min(drawn.count(), std::size_t(spec.random)); ++i)
-    result.emplace_back(drawn[i].begin(), drawn[i].end());
-  return result;
 }
 
 }  // namespace
@@ -89,7 +41,8 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
       }
   }
   Linearisation scratch;
-  for (const std::vector<double>& q : configurations(seen, *position, seed)) {
+  const TestConfigurations places = test_configurations(seen, *position, seed);
+  for (const std::vector<double>& q : places.configurations) {
     if (!position->linearise(q, {}, selected, scratch))
       throw InputError(problem.at(spec.line), "a test pose is out of reach", "configurations that the robot can take");
     TestPoint point{Eigen::MatrixXd::Zero(3, Eigen::Index(columns.selected.size())), 1.0};
@@ -98,7 +51,7 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
       const auto column = scratch.G.col(Eigen::Index(c));
       point.A.col(where[c]) = column.head<3>() + Eigen::Vector3d(column.tail<3>()).cross(from_tip);
     }
-    if (!spec.weights.empty()) point.weight = spec.weights[points.size()];
+    if (!places.weights.empty()) point.weight = places.weights[points.size()];
     points.push_back(std::move(point));
   }
   return points;

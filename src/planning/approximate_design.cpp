@@ -25,11 +25,6 @@ std::vector<int> largest(const std::vector<double>& value, std::vector<int> amon
   return among;
 }
 
-double mean_of_largest(std::vector<double> value, std::size_t count) {
-  std::nth_element(value.begin(), value.begin() + std::ptrdiff_t(count) - 1, value.end(), std::greater<>());
-  return std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(count), 0.0) / double(count);
-}
-
 /// The rounding of the pass behind the bound, generously.
 double with_margin(double bound) {
   return bound + 1e3 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(bound));
@@ -79,40 +74,44 @@ std::vector<int> next_working_set(const RestrictedDesign& restricted, const std:
 }
 
 /// cap = 1/n: the only feasible weights.
-ApproximateDesign all_alike(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd& prior) {
+ApproximateDesign all_alike(const BlockArray& blocks, const InformationFunction& function,
+                            const ApproximateDesignOptions& options) {
   const auto n = blocks.count();
-  RestrictedDesign restricted(blocks, nuisance, 1.0, prior);
+  RestrictedDesign restricted(blocks, function, 1.0, options.prior);
   ApproximateDesign result;
   result.support.resize(n);
   std::iota(result.support.begin(), result.support.end(), 0);
   result.weights.assign(n, 1.0 / double(n));
   if (!restricted.set_candidates(result.support))
     throw CannotDo("the parameters cannot be identified from these candidates: the information is singular");
-  sensitivities(blocks, nuisance, restricted.inverse_factor(), result.sensitivity);
-  result.log_det = restricted.log_det();
-  result.log_det_bound = with_margin(result.log_det);
+  sensitivities(blocks, restricted.factor(), options.threads, result.sensitivity);
+  result.value = restricted.value();
+  result.bound = with_margin(result.value);
+  result.degree = function.degree();
+  result.factor = restricted.factor();
   result.rounds = 1;
   return result;
 }
 
 }  // namespace
 
-double ApproximateDesign::log_det_bound_for(int poses, int interest) const {
-  return log_det_bound + interest * std::log(double(poses));
-}
+double ApproximateDesign::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
 
-ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisance,
+ApproximateDesign solve_approximate_design(const BlockArray& blocks, const InformationFunction& function,
                                            const ApproximateDesignOptions& options, const Monitor& monitor) {
   const std::size_t n = blocks.count();
-  const int m = blocks.columns(), interest = m - nuisance;
-  const auto top = std::size_t(std::lround(1 / options.cap));
+  const int m = blocks.columns();
+  const double degree = function.degree();
+  if (!(degree > 0)) throw std::invalid_argument("approximate design: the criterion has no bound");
+  // As many candidates as it takes to hold all weight.
+  const auto top = std::size_t(std::ceil(1 / options.cap - 1e-9));
   if (n == 0 || top > n)
     throw std::invalid_argument("approximate design: the cap times the number of candidates is below 1");
   const std::size_t start = std::max<std::size_t>({std::size_t(6 * m), 4 * top, 50});
   const std::size_t room = std::max<std::size_t>(std::size_t(3 * m), 2 * top);
 
-  if (top == n) return all_alike(blocks, nuisance, options.prior);
-  RestrictedDesign restricted(blocks, nuisance, options.cap, options.prior);
+  if (std::abs(options.cap * double(n) - 1) < 1e-12) return all_alike(blocks, function, options);
+  RestrictedDesign restricted(blocks, function, options.cap, options.prior);
   std::size_t size = start;
   while (!restricted.set_candidates(first_working_set(blocks, size))) {
     if (size >= n)
@@ -120,21 +119,23 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, int nuisanc
     size *= 4;
   }
   ApproximateDesign result;
-  result.log_det_bound = std::numeric_limits<double>::infinity();
+  result.degree = degree;
+  result.bound = std::numeric_limits<double>::infinity();
   std::vector<double> d(n);
   double gap = 1.0;
   int unchanged = 0;
   for (int round = 1;; ++round) {
     result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)));
-    sensitivities(blocks, nuisance, restricted.inverse_factor(), d);
-    const double ratio = std::max(1.0, (mean_of_largest(d, top) + restricted.prior_sensitivity()) / interest);
-    const double bound = with_margin(restricted.log_det() + interest * std::log(ratio));
+    sensitivities(blocks, restricted.factor(), options.threads, d);
+    const double ratio = std::max(1.0, (best_mean(d, options.cap) + restricted.prior_sensitivity()) / degree);
+    const double bound = with_margin(restricted.value() + degree * std::log(ratio));
     gap = ratio - 1;
-    monitor.report({"certificate", double(round), 0, {}, {}, std::exp(-(bound - restricted.log_det()) / interest)});
-    if (bound <= result.log_det_bound) {
-      result.log_det = restricted.log_det();
+    monitor.report({"certificate", double(round), 0, {}, {}, std::exp(-(bound - restricted.value()) / degree)});
+    if (bound <= result.bound) {
+      result.value = restricted.value();
       result.max_sensitivity_ratio = ratio;
-      result.log_det_bound = bound;
+      result.bound = bound;
+      result.factor = restricted.factor();
       result.price = restricted.price();
       result.sensitivity = d;
       result.support = restricted.candidates();

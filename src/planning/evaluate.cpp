@@ -21,7 +21,8 @@ void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& p
 
 }  // namespace
 
-Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior) {
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior,
+                    const Eigen::VectorXd& scale) {
   const auto m = Eigen::Index(chosen.columns());
   const Eigen::Index measured = chosen.all().rows();
   Eigen::MatrixXd g(measured + (prior ? m : 0), m);
@@ -48,8 +49,9 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
   result.sigma = tolerance.array() * inverse.rowwise().norm().array();
   result.covariance = tolerance.asDiagonal() * inverse * inverse.transpose() * tolerance.asDiagonal();
-  result.singular_values =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(r.bottomRightCorner(m - nuisance, m - nuisance)).singularValues();
+  Eigen::MatrixXd scaled = r.bottomRightCorner(m - nuisance, m - nuisance);
+  if (scale.size() > 0) scaled *= scale.cwiseQuotient(tolerance).tail(m - nuisance).asDiagonal();
+  result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(scaled).singularValues();
   result.indices = observability_indices(result.singular_values, int(chosen.count()));
   result.condition = result.indices.o2 > 0 ? 1 / result.indices.o2 : std::numeric_limits<double>::infinity();
 

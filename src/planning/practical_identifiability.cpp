@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "posewright/criterion/determinant.hpp"
 #include "posewright/planning/approximate_design.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/support/error.hpp"
@@ -30,7 +31,8 @@ Eigen::MatrixXd best_information(const BlockArray& pool, const std::vector<Param
   ApproximateDesignOptions options;
   options.cap = std::max(1.0 / double(pool.count()), 1.0 / poses);
   options.tolerance = design_tolerance;
-  const ApproximateDesign design = solve_approximate_design(blocks, nuisance, options, monitor);
+  const ApproximateDesign design =
+      solve_approximate_design(blocks, LogDetFunction(nuisance, blocks.columns()), options, monitor);
   const auto m = Eigen::Index(parameters.size());
   Eigen::VectorXd tolerance(m);
   for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;

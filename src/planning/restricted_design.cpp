@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <unordered_map>
-
-#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
 constexpr int max_newton_steps = 80;
-// Ratio of Cholesky pivots below which the information of whitened blocks counts as singular.
-constexpr double singular_pivot = 1e-7;
+constexpr int max_halvings = 20;
 // Fraction of the way to the boundary that a step may go.
 constexpr double boundary_fraction = 0.995;
 // Each step aims at this share of the present products weight × multiplier.
@@ -27,8 +26,19 @@ double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& dx) {
 
 }  // namespace
 
-RestrictedDesign::RestrictedDesign(const BlockArray& blocks, int nuisance, double cap, const Eigen::MatrixXd& prior)
-    : blocks_(blocks), nuisance_(nuisance), interest_(blocks.columns() - nuisance), cap_(cap), prior_(prior) {}
+double best_mean(std::vector<double> value, double cap) {
+  const auto whole = std::min(std::size_t(std::floor(1 / cap + 1e-9)), value.size());
+  const bool part = whole < value.size() && 1 - double(whole) * cap > 1e-12;
+  const auto count = std::ptrdiff_t(whole + (part ? 1 : 0));
+  std::nth_element(value.begin(), value.begin() + count - 1, value.end(), std::greater<>());
+  const double sum = std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(whole), 0.0);
+  if (!part) return sum / double(whole);
+  return cap * sum + (1 - double(whole) * cap) * value[whole];
+}
+
+RestrictedDesign::RestrictedDesign(const BlockArray& blocks, const InformationFunction& function, double cap,
+                                   const Eigen::MatrixXd& prior)
+    : blocks_(blocks), function_(function), degree_(function.degree()), cap_(cap), prior_(prior) {}
 
 bool RestrictedDesign::set_candidates(const std::vector<int>& candidates) {
   std::unordered_map<int, double> old;
@@ -50,69 +60,41 @@ bool RestrictedDesign::set_candidates(const std::vector<int>& candidates) {
     start = (1 - mix) * start.array() + mix * uniform;
   }
   w_ = start;
-  if (!factorise()) return false;
-  lambda_ = interest_;
+  rows_ = stacked();
+  if (!expand()) return false;
+  lambda_ = degree_;
   // Multipliers start no larger than the sensitivities they balance.
-  const double mu = 0.1 * interest_ * (capped() ? std::min(uniform, (cap_ - w_.array()).minCoeff()) : uniform);
-  z_ = (mu / w_.array()).max(1e-3 * interest_);
+  const double mu = 0.1 * degree_ * (capped() ? std::min(uniform, (cap_ - w_.array()).minCoeff()) : uniform);
+  z_ = (mu / w_.array()).max(1e-3 * degree_);
   y_ = capped() ? Eigen::VectorXd(mu / (cap_ - w_.array())) : Eigen::VectorXd::Zero(s);
   return true;
 }
 
-bool RestrictedDesign::factorise() {
-  const int m = blocks_.columns(), r = blocks_.rows();
-  const auto s = Eigen::Index(candidates_.size());
-  BlockArray::RowMatrix rows(s * r, m);
-  for (Eigen::Index i = 0; i < s; ++i)
-    rows.middleRows(i * r, r) = blocks_.block(std::size_t(candidates_[std::size_t(i)]));
-  BlockArray::RowMatrix scaled(s * r, m);
-  for (Eigen::Index i = 0; i < s; ++i) scaled.middleRows(i * r, r) = std::sqrt(w_[i]) * rows.middleRows(i * r, r);
-  Eigen::MatrixXd information = prior_.size() > 0 ? prior_ : Eigen::MatrixXd::Zero(m, m);
-  information.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  if (factor.info() != Eigen::Success ||
-      !(factor.matrixLLT().diagonal().minCoeff() > singular_pivot * factor.matrixLLT().diagonal().maxCoeff()))
-    return false;
-  log_det_ = 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
-  inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
-  if (prior_.size() > 0)
-    prior_sensitivity_ = (inverse_factor_ * prior_ * inverse_factor_.transpose()).diagonal().tail(interest_).sum();
-  rotated_.noalias() = rows * inverse_factor_.transpose();
-  // Leading entries of L⁻¹x are the nuisance block's own: d_i is what the interest entries add.
-  d_.resize(s);
-  for (Eigen::Index i = 0; i < s; ++i) d_[i] = rotated_.middleRows(i * r, r).rightCols(interest_).squaredNorm();
-  return true;
+BlockArray::RowMatrix RestrictedDesign::stacked() const {
+  const int r = blocks_.rows();
+  BlockArray::RowMatrix rows(Eigen::Index(candidates_.size()) * r, blocks_.columns());
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    rows.middleRows(Eigen::Index(i) * r, r) = blocks_.block(std::size_t(candidates_[i]));
+  return rows;
 }
 
-void RestrictedDesign::fill_hessian() {
+/// Φ's expansion and d at the present weights; false (and nothing changed) where M is singular.
+bool RestrictedDesign::expand() {
   const int m = blocks_.columns(), r = blocks_.rows();
   const auto s = Eigen::Index(candidates_.size());
-  if (r == 1) {
-    const Eigen::MatrixXd all = rotated_ * rotated_.transpose();
-    hessian_ = all.cwiseAbs2();
-    if (nuisance_ > 0) {
-      const Eigen::MatrixXd part = rotated_.leftCols(nuisance_) * rotated_.leftCols(nuisance_).transpose();
-      hessian_ -= part.cwiseAbs2();
-    }
-    return;
-  }
-  // ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩: rows of symmetric products, without the entries that are nuisance on both sides.
-  const Eigen::Index pairs = Eigen::Index(m) * (m + 1) / 2 - Eigen::Index(nuisance_) * (nuisance_ + 1) / 2;
-  BlockArray::RowMatrix products(s, pairs);
-  Eigen::MatrixXd square(m, m);
-  for (Eigen::Index i = 0; i < s; ++i) {
-    const auto zi = rotated_.middleRows(i * r, r);
-    square.noalias() = zi.transpose() * zi;
-    Eigen::Index k = 0;
-    for (int b = nuisance_; b < m; ++b) {
-      for (int a = 0; a < b; ++a) products(i, k++) = std::sqrt(2.0) * square(a, b);
-      products(i, k++) = square(b, b);
-    }
-  }
-  hessian_.resize(s, s);
-  hessian_.setZero();
-  hessian_.selfadjointView<Eigen::Lower>().rankUpdate(products);
-  hessian_.triangularView<Eigen::StrictlyUpper>() = hessian_.transpose();
+  BlockArray::RowMatrix scaled(rows_.rows(), m);
+  for (Eigen::Index i = 0; i < s; ++i) scaled.middleRows(i * r, r) = std::sqrt(w_[i]) * rows_.middleRows(i * r, r);
+  Eigen::MatrixXd information = prior_.size() > 0 ? prior_ : Eigen::MatrixXd::Zero(m, m);
+  information.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
+  information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
+  auto expansion = function_.expand(information);
+  if (expansion == nullptr) return false;
+  expansion_ = std::move(expansion);
+  if (prior_.size() > 0) prior_sensitivity_ = (expansion_->factor.transpose() * prior_ * expansion_->factor).trace();
+  const BlockArray::RowMatrix rotated = rows_ * expansion_->factor.triangularView<Eigen::Upper>();
+  d_.resize(s);
+  for (Eigen::Index i = 0; i < s; ++i) d_[i] = rotated.middleRows(i * r, r).squaredNorm();
+  return true;
 }
 
 double RestrictedDesign::complementarity() const {
@@ -122,18 +104,13 @@ double RestrictedDesign::complementarity() const {
 }
 
 double RestrictedDesign::gap() const {
-  if (!capped()) return (d_.maxCoeff() + prior_sensitivity_) / interest_ - 1;
-  // Best feasible mean sensitivity on the working set: fill the largest up to the cap.
-  std::vector<double> sorted(d_.data(), d_.data() + d_.size());
-  const auto top = std::min<std::size_t>(sorted.size(), std::size_t(std::lround(1 / cap_)));
-  std::partial_sort(sorted.begin(), sorted.begin() + std::ptrdiff_t(top), sorted.end(), std::greater<>());
-  double sum = 0;
-  for (std::size_t i = 0; i < top; ++i) sum += sorted[i];
-  return (sum / double(top) + prior_sensitivity_) / interest_ - 1;
+  if (!capped()) return (d_.maxCoeff() + prior_sensitivity_) / degree_ - 1;
+  return (best_mean({d_.data(), d_.data() + d_.size()}, cap_) + prior_sensitivity_) / degree_ - 1;
 }
 
-void RestrictedDesign::newton_step(double mu) {
-  fill_hessian();
+/// False where no step leaves M regular.
+bool RestrictedDesign::newton_step(double mu) {
+  expansion_->curvature(rows_, blocks_.rows(), hessian_);
   const Eigen::ArrayXd room = cap_ - w_.array();
   Eigen::ArrayXd diagonal = z_.array() / w_.array();
   Eigen::ArrayXd right = d_.array() - lambda_ + mu / w_.array();
@@ -155,10 +132,21 @@ void RestrictedDesign::newton_step(double mu) {
     primal = std::min(primal, step_to_boundary(room.matrix(), -dw));
     dual = std::min(dual, step_to_boundary(y_, dy));
   }
-  w_ += primal * dw;
+  // Criteria that need not know all parameters have optima at singular M: go as near as M stays regular.
+  const Eigen::VectorXd before = w_;
+  w_ = before + primal * dw;
+  for (int halving = 0; !expand(); ++halving) {
+    if (halving == max_halvings) {
+      w_ = before;
+      return false;
+    }
+    primal *= 0.5;
+    w_ = before + primal * dw;
+  }
   z_ += dual * dz;
   lambda_ += dual * d_lambda;
   if (capped()) y_ += dual * dy;
+  return true;
 }
 
 int RestrictedDesign::solve(double target) {
@@ -166,10 +154,8 @@ int RestrictedDesign::solve(double target) {
   for (int step = 0; step < max_newton_steps; ++step) {
     // Once the sum of all products weight × multiplier is far below the target, rounding decides the rest.
     const double products = complementarity();
-    if (gap() <= target || products < 1e-3 * target * interest_) return step;
-    newton_step(centring * products / (sides * double(w_.size())));
-    if (!factorise())
-      throw CannotDo("the optimal weights leave the information singular: some parameter is not needed");
+    if (gap() <= target || products < 1e-3 * target * degree_) return step;
+    if (!newton_step(centring * products / (sides * double(w_.size())))) return step;
   }
   return max_newton_steps;
 }

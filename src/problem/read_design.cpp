@@ -10,60 +10,113 @@ namespace posewright {
 namespace {
 
 using yaml::Section;
+using yaml::Sign;
 using yaml::Value;
 
-Located<std::string> read_variant_name(const Value& value, const std::vector<VariantSpec>& variants) {
-  Located<std::string> name = value.located_text();
+void require_variant(const Value& value, const std::string& name, const std::vector<VariantSpec>& variants) {
   std::string names;
   for (const VariantSpec& variant : variants) {
-    if (variant.name == name.value) return name;
+    if (variant.name == name) return;
     names += (names.empty() ? "" : ", ") + variant.name;
   }
-  value.fail("is " + in_quotes(name.value), "allowed: " + names);
+  value.fail("is " + in_quotes(name), "allowed: " + names);
 }
 
-TestPosesSpec read_test_poses(const Value& value) {
-  const Section section(value);
-  section.allow({"at", "random", "weights", "point"});
-  TestPosesSpec spec;
-  spec.line = value.line();
-  if (section.has("at") == section.has("random"))
-    value.fail("needs one of at, random", "a list of configurations or a number");
-  if (const Value* random = section.find("random")) spec.random = random->integer(1, 100000);
-  if (const Value* at = section.find("at"))
-    for (const Value& pose : at->items("a list of configurations is expected")) {
-      spec.at.emplace_back();
-      for (const Value& number : pose.items("a list of numbers is expected"))
-        spec.at.back().push_back(number.measured({Quantity::angle, Quantity::length}));
+/// A list of names, or names with weights.
+std::vector<DesignSpec::Weighted> read_several(const Value& value, const std::vector<VariantSpec>& variants) {
+  std::vector<DesignSpec::Weighted> result;
+  if (value.is_mapping()) {
+    for (const yaml::Entry& entry : Section(value).entries()) {
+      require_variant(entry.value, entry.key.value, variants);
+      result.push_back({entry.key, entry.value.number(Quantity::number, Sign::positive)});
     }
-  if (section.has("at") && spec.at.empty()) value.fail("is empty", "at least one configuration is needed");
-  if (const Value* weights = section.find("weights"))
-    for (const Value& weight : weights->items(spec.at.size(), "one weight for each configuration is expected"))
-      spec.weights.push_back(weight.number(Quantity::number, yaml::Sign::positive));
-  if (const Value* point = section.find("point")) spec.point = point->vector(Quantity::length);
-  return spec;
+  } else {
+    for (const Value& item : value.items("a list of variants, or variants with weights, is expected")) {
+      require_variant(item, item.text(), variants);
+      const auto same = [&](const DesignSpec::Weighted& other) { return other.name.value == item.text(); };
+      if (std::any_of(result.begin(), result.end(), same)) item.fail("is named twice", "each variant once");
+      result.push_back({item.located_text(), 1.0});
+    }
+  }
+  if (result.empty()) value.fail("is empty", "at least one variant is needed");
+  return result;
+}
+
+Repeats read_repeats(const Value& value) {
+  const std::string text = value.text("forbid, allow or a number is expected");
+  if (text == "forbid") return {1};
+  if (text == "allow") return {Repeats::any_number};
+  if (text.find_first_not_of("0123456789") != std::string::npos)
+    value.fail("is " + in_quotes(text), "allowed: forbid, allow, or how often a pose may be measured");
+  return {value.integer(1, 1000000)};
+}
+
+DesignSpec::MinimumDistance read_minimum_distance(const Value& value) {
+  const Section section(value);
+  section.allow({"angle", "length"});
+  DesignSpec::MinimumDistance distance;
+  if (const Value* angle = section.find("angle")) distance.angle = angle->number(Quantity::angle, Sign::positive);
+  if (const Value* length = section.find("length")) distance.length = length->number(Quantity::length, Sign::positive);
+  if (!section.has("angle") && !section.has("length")) value.fail("is empty", "allowed: angle, length");
+  return distance;
+}
+
+RequirementSpec read_requirement(const Value& value) {
+  const Section section(value);
+  section.allow({"accuracy", "sigma"});
+  RequirementSpec require;
+  require.line = value.line();
+  if (const Value* accuracy = section.find("accuracy"))
+    require.accuracy = accuracy->number(Quantity::length, Sign::positive);
+  if (const Value* sigma = section.find("sigma")) require.sigma = read_pattern_values(*sigma, Sign::positive);
+  if (!require.accuracy && require.sigma.empty()) value.fail("is empty", "allowed: accuracy, sigma");
+  return require;
 }
 
 Located<int> read_count(const Value& value, int upper) { return {value.integer(1, upper), value.line()}; }
 
+void read_poses(const Value& value, DesignSpec& design) {
+  design.smallest = value.is_scalar() && value.text("a number or auto is expected") == "auto";
+  if (!design.smallest) design.poses = read_count(value, std::numeric_limits<int>::max());
+}
+
+/// What is maximised.
+void read_aim(const Section& section, const std::vector<VariantSpec>& variants, const std::filesystem::path& folder,
+              DesignSpec& design) {
+  if (const Value* variant = section.find("variant")) {
+    design.variant = variant->located_text();
+    require_variant(*variant, design.variant->value, variants);
+  }
+  if (const Value* several = section.find("variants")) design.variants = read_several(*several, variants);
+  if (const Value* criterion = section.find("criterion")) design.criterion = criterion->located_text();
+  if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses, folder);
+  if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
+  if (const Value* reserve = section.find("reserve")) design.reserve = reserve->choice({"yes", "no"}) == "yes";
+  if (const Value* scaling = section.find("scaling")) {
+    const std::string word = scaling->choice({"tolerance", "norm", "none"});
+    design.scaling = word == "norm" ? Scaling::norm : word == "none" ? Scaling::none : Scaling::tolerance;
+  }
+  if (const Value* require = section.find("require")) design.require = read_requirement(*require);
+}
+
 }  // namespace
 
-DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& variants) {
+DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& variants,
+                       const std::filesystem::path& folder) {
   const Section section(value);
-  section.allow(
-      {"variant", "criterion", "method", "poses", "candidates", "restarts", "repeats", "prior", "test_poses"});
+  section.allow({"variant", "variants", "criterion", "method", "poses", "require", "candidates", "restarts", "repeats",
+                 "minimum_distance", "scaling", "prior", "reserve", "measured", "test_poses"});
   DesignSpec design;
   design.line = value.line();
-  if (const Value* variant = section.find("variant")) design.variant = read_variant_name(*variant, variants);
-  if (const Value* criterion = section.find("criterion")) design.criterion = criterion->located_text();
+  read_aim(section, variants, folder, design);
   if (const Value* method = section.find("method")) design.method = method->located_text();
-  if (const Value* poses = section.find("poses")) design.poses = read_count(*poses, std::numeric_limits<int>::max());
+  if (const Value* poses = section.find("poses")) read_poses(*poses, design);
   if (const Value* candidates = section.find("candidates")) design.candidates = read_count(*candidates, 10'000'000);
   if (const Value* restarts = section.find("restarts")) design.restarts = read_count(*restarts, 1'000'000);
-  if (const Value* repeats = section.find("repeats"))
-    design.repeats = repeats->choice({"forbid", "allow"}) == "allow" ? Repeats::allow : Repeats::forbid;
-  if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses);
-  if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
+  if (const Value* repeats = section.find("repeats")) design.repeats = read_repeats(*repeats);
+  if (const Value* distance = section.find("minimum_distance"))
+    design.minimum_distance = read_minimum_distance(*distance);
+  if (const Value* measured = section.find("measured")) design.measured = folder / measured->text("a file is expected");
   return design;
 }
 

@@ -1,11 +1,22 @@
 #include "sections.hpp"
 
 namespace posewright {
-namespace {
 
 using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
+
+std::vector<PatternValue> read_pattern_values(const Value& value, Sign sign) {
+  std::vector<PatternValue> values;
+  for (const yaml::Entry& entry : Section(value).entries()) {
+    const Measured measured = entry.value.measured(
+        {Quantity::length, Quantity::angle, Quantity::force, Quantity::compliance, Quantity::stiffness}, sign);
+    values.push_back({entry.key, measured.value, measured.quantity});
+  }
+  return values;
+}
+
+namespace {
 
 void read_parameters(const Value& value, VariantSpec& variant) {
   using Convention = VariantSpec::Convention;
@@ -28,16 +39,6 @@ void read_parameters(const Value& value, VariantSpec& variant) {
   if (names.empty()) value.fail("is empty", expected);
 }
 
-std::vector<VariantSpec::Tolerance> read_values(const Value& value, Sign sign) {
-  std::vector<VariantSpec::Tolerance> values;
-  for (const yaml::Entry& entry : Section(value).entries()) {
-    const Measured measured = entry.value.measured(
-        {Quantity::length, Quantity::angle, Quantity::force, Quantity::compliance, Quantity::stiffness}, sign);
-    values.push_back({entry.key, measured.value, measured.quantity});
-  }
-  return values;
-}
-
 VariantSpec read_variant(const Located<std::string>& name, const Value& value) {
   const Section section(value);
   section.allow({"parameters", "nuisance", "fixed", "tolerance", "nominal"});
@@ -47,8 +48,9 @@ VariantSpec read_variant(const Located<std::string>& name, const Value& value) {
   read_parameters(section.at("parameters"), variant);
   if (const Value* nuisance = section.find("nuisance")) variant.nuisance = nuisance->texts();
   if (const Value* fixed = section.find("fixed")) variant.fixed = fixed->texts();
-  if (const Value* tolerance = section.find("tolerance")) variant.tolerance = read_values(*tolerance, Sign::positive);
-  if (const Value* nominal = section.find("nominal")) variant.nominal = read_values(*nominal, Sign::any);
+  if (const Value* tolerance = section.find("tolerance"))
+    variant.tolerance = read_pattern_values(*tolerance, Sign::positive);
+  if (const Value* nominal = section.find("nominal")) variant.nominal = read_pattern_values(*nominal, Sign::any);
   return variant;
 }
 

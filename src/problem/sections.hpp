@@ -31,13 +31,18 @@ FiveBarSpec read_five_bar(const yaml::Section& robot);
 DeltaSpec read_delta(const yaml::Section& robot);
 CompensatorGeometrySpec read_compensator_geometry(const yaml::Section& robot);
 
+/// {GLOB: value with unit}.
+std::vector<PatternValue> read_pattern_values(const yaml::Value& value, yaml::Sign sign);
+
 std::vector<VariantSpec> read_variants(const yaml::Value& value);
 
 /// The kind of robot decides which keys there are.
 WorkspaceSpec read_workspace(const yaml::Value& value, const RobotSpec& robot);
 
-/// Throws where the design names none of the variants.
-DesignSpec read_design(const yaml::Value& value, const std::vector<VariantSpec>& variants);
+/// Throws where the design names none of the variants. `folder` is what paths are relative to.
+DesignSpec read_design(const yaml::Value& value, const std::vector<VariantSpec>& variants,
+                       const std::filesystem::path& folder);
+TestPosesSpec read_test_poses(const yaml::Value& value, const std::filesystem::path& folder);
 
 /// {position, rpy}, both optional and zero by default.
 Placement read_placement(const yaml::Section& section);

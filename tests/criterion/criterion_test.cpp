@@ -126,7 +126,7 @@ TEST(InverseInformation, TracesStayTrueOverManySwaps) {
   Random random(9, 1);
   for (int i = 0; i < 40; ++i) {
     const int p = random.index(10), enter = 10 + random.index(70);
-    if (!inverse.swap(members[std::size_t(p)], enter)) ASSERT_TRUE(inverse.refresh(members, 0));
+    if (!inverse.change(members[std::size_t(p)], enter)) ASSERT_TRUE(inverse.refresh(members, 0));
     else members[std::size_t(p)] = enter;
   }
   InverseInformation fresh(blocks, 9, nullptr);

@@ -35,7 +35,7 @@ TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
   options.restarts = 1;
   const Plan plan = plan_problem(problem, options, Monitor{});
   EXPECT_EQ(int(plan.poses.size()), problem.design.poses->value);
-  EXPECT_LE(plan.log_det, plan.certificate.log_det_bound);
+  EXPECT_LE(plan.log_det, plan.certificate.bound);
   EXPECT_GT(plan.certificate.efficiency, 0.8);
   for (const PlannedParameter& p : plan.parameters) {
     if (p.sigma) {

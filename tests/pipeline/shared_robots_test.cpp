@@ -42,7 +42,7 @@ TEST_P(SharedRobots, AutomaticSubsetHas4RPlus6ParametersAndAPlanIsFound) {
   const Plan plan = plan_problem(problem, {}, Monitor{});
   EXPECT_EQ(plan.poses.size(), 20U);
   EXPECT_GT(plan.certificate.efficiency, 0.8);
-  EXPECT_LE(plan.log_det, plan.certificate.log_det_bound);
+  EXPECT_LE(plan.log_det, plan.certificate.bound);
   for (const PlannedParameter& p : plan.parameters) EXPECT_EQ(p.sigma.has_value(), p.dropped_because.empty());
 }
 

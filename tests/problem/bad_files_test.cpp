@@ -173,7 +173,8 @@ const BadFile rest[] = {
     {"CandidatesExponent", arm, "20000", "2e4", 36, "is '2e4'; a whole number"},
     {"RestartsOverflow", arm, "restarts: 7", "restarts: 99999999999", 37,
      "a whole number from 1 to 1000000 is expected"},
-    {"RepeatsWord", arm, "repeats: allow", "repeats: yes", 38, "design.repeats is 'yes'; allowed: forbid, allow"},
+    {"RepeatsWord", arm, "repeats: allow", "repeats: yes", 38,
+     "design.repeats is 'yes'; allowed: forbid, allow, or how often"},
     {"LineBreakInName", arm, "criterion: o3", "criterion: \"o\\n3\"", 33, "is 'o\\x0a3'; control characters"},
     {"LineBreakInKey", arm, "criterion: o3", "\"o\\n3\": 1", 33, "is 'o\\x0a3'; control characters"},
 };
@@ -190,8 +191,9 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
     FAIL() << "was accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "bad.yaml:36: unknown key 'candidate'; allowed: variant, criterion, method, poses, candidates, "
-                 "restarts, repeats, prior, test_poses");
+                 "bad.yaml:36: unknown key 'candidate'; allowed: variant, variants, criterion, method, poses, "
+                 "require, candidates, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
+                 "test_poses");
   }
 }
 

@@ -130,7 +130,7 @@ TEST(ReadProblem, DesignIsReadFieldByField) {
   EXPECT_EQ(design.poses->line, 35);
   EXPECT_EQ(design.candidates.value, 20000);
   EXPECT_EQ(design.restarts.value, 7);
-  EXPECT_EQ(design.repeats, Repeats::allow);
+  EXPECT_EQ(design.repeats, Repeats{Repeats::any_number});
 }
 
 TEST(ReadProblem, SixPusIsReadFieldByField) {
@@ -193,7 +193,7 @@ variants: {all: {parameters: auto}}
   EXPECT_FALSE(problem.design.variant.has_value());
   EXPECT_FALSE(problem.design.poses.has_value());
   EXPECT_EQ(problem.design.criterion.value, "o1");
-  EXPECT_EQ(problem.design.repeats, Repeats::forbid);
+  EXPECT_EQ(problem.design.repeats, Repeats{1});
 }
 
 TEST(ReadProblem, AnchorsWindowsLineEndsAndByteOrderMarkAreAccepted) {

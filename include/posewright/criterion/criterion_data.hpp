@@ -11,12 +11,21 @@ struct TestPoint {
   double weight = 1.0;  ///< > 0
 };
 
+/// One of several variants that a plan serves at once: its columns in the blocks.
+struct VariantGroup {
+  int first = 0, columns = 0;
+  int nuisance = 0;        ///< its leading columns that are nuisance
+  double weight = 1.0;     ///< > 0, for compound
+  double reference = 0.0;  ///< log det of its interest information that no plan of as many poses exceeds, whitened
+};
+
 /// What criteria need beyond the blocks. Blocks are whitened, J = J_raw R⁻¹, so M_raw = Rᵀ M R.
 struct CriterionData {
   Eigen::MatrixXd R;                     ///< m × m, upper triangular; see planning/whiten.hpp
   Eigen::VectorXd scale;                 ///< unit of every parameter (its tolerance, …), raw coordinates
   int nuisance = 0;                      ///< leading nuisance columns
   std::vector<TestPoint> test_points{};  ///< for test_pose, test_pose_max
+  std::vector<VariantGroup> variants{};  ///< for compound, maximin
 
   /// R · diag(scale): M in units of `scale` is Cᵀ M C.
   Eigen::MatrixXd to_scaled() const { return R * scale.asDiagonal(); }

@@ -18,6 +18,7 @@ class LeaveOneOut {
 
   /// Σ JᵀJ over the members. Returns false where it is singular.
   bool set_members(const std::vector<int>& members);
+  /// −1 for nobody, here and below.
   void exchange(int leave, int enter);
   /// ln det S(M) now; −∞ where singular.
   double value() const { return value_; }

@@ -9,14 +9,13 @@
 
 namespace posewright {
 
-/// How a criterion is bounded over all designs (planning/approximate_design.hpp).
-enum class BoundKind { log_det, trace, none };
-
 /// One row a criterion: the name users write and what it maximises.
 struct CriterionEntry {
   std::string name;
   std::string summary;
-  BoundKind bound;
+  /// determinant: what `log_det` in a plan says; scaled: its value depends on the scale of the columns.
+  bool determinant, scaled;
+  bool several_variants;  ///< needs CriterionData::variants
   /// Throws CannotDo where the data lack what it needs.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
 };

@@ -13,11 +13,10 @@ namespace posewright {
 void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
                         std::vector<double>& d);
 
-/// d_i = tr(J_i M⁻¹ J_iᵀ) − tr(J_i,n M_nn⁻¹ J_i,nᵀ) of every candidate: what a unit of weight on i adds to the log det
-/// of the interest information. One pass over the blocks, O(n r m²/2).
-/// @param inverse_factor  L⁻¹ of M = L Lᵀ, nuisance columns first
-/// @param d               resized to blocks.count()
-void sensitivities(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd& inverse_factor,
-                   std::vector<double>& d);
+/// d_i = tr(J_i S J_iᵀ) of every candidate for S = T Tᵀ: what a unit of weight on i adds to Φ (see Expansion). One pass
+/// over the blocks, O(n r m²/2), on `threads` threads (0 = all).
+/// @param T  m × m, upper triangular
+/// @param d  resized to blocks.count()
+void sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T, int threads, std::vector<double>& d);
 
 }  // namespace posewright

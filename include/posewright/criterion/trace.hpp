@@ -1,33 +1,49 @@
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "posewright/criterion/criterion.hpp"
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/criterion/information_function.hpp"
 
 namespace posewright {
 
-/// L of the criteria Φ = −ln tr(L M⁻¹) in whitened coordinates, symmetric positive semidefinite (m × m).
-/// `a`: the variances of the parameters of interest in units of `scale`, L = Σ e_j e_jᵀ.
-Eigen::MatrixXd variance_weights(const CriterionData& data);
-/// `test_pose`: the mean squared position error at the test points, L = Σ_t w_t A_tᵀA_t / Σ w_t.
+/// A of the criteria Φ = −ln tr(A M⁻¹ Aᵀ) in whitened coordinates (k × m).
+/// `a`: the parameters of interest in units of `scale`; φ is the sum of their variances.
+Eigen::MatrixXd variance_rows(const CriterionData& data);
+/// `test_pose`: rows √(w_t/Σw) A_t; φ is the mean squared position error at the test points.
 /// Throws CannotDo where there are no test points.
-Eigen::MatrixXd test_point_weights(const CriterionData& data);
+Eigen::MatrixXd test_point_rows(const CriterionData& data);
 
-/// Φ = −ln φ, φ = tr(L M⁻¹), with exact rank-r swaps: with V = M⁻¹, B = V L V, U = [J_enter; J_leave] and S = diag(I,
-/// −I),
-///   φ(now) − φ(after) = tr((S + U V Uᵀ)⁻¹ U B Uᵀ)   (Sherman–Morrison–Woodbury).
-/// 1/φ is concave in M, so Φ is, and candidates are skipped without loss where (tr J_j B J_jᵀ − tr J_k B J_kᵀ)/φ is
-/// below the best found. The logarithm makes gains independent of units. A-optimality: Chernoff (1953); test poses: Wu,
-/// Klimchik et al. (2013).
+/// Φ = −ln φ, φ = tr(A M⁻¹ Aᵀ). 1/φ is concave and of degree one in M, so degree() is 1 and an efficiency is a ratio of
+/// variances. S = V AᵀA V / φ with V = M⁻¹. A-optimality: Chernoff (1953); test poses: Wu, Klimchik et al. (2013).
+class TraceFunction : public InformationFunction {
+ public:
+  explicit TraceFunction(Eigen::MatrixXd A) : A_(std::move(A)) {}
+  double value(const Eigen::MatrixXd& information) const override;
+  Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;
+  bool concave() const override { return true; }
+  double degree() const override { return 1.0; }
+  std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override;
+  const Eigen::MatrixXd& A() const { return A_; }
+
+ private:
+  Eigen::MatrixXd A_;
+};
+
+/// The same with exact rank-r swaps (src/criterion/trace_state.cpp). The logarithm makes gains independent of units.
 class TraceCriterion : public Criterion {
  public:
-  TraceCriterion(std::string name, Eigen::MatrixXd L);
+  TraceCriterion(std::string name, Eigen::MatrixXd A) : name_(std::move(name)), function_(std::move(A)) {}
   std::string name() const override { return name_; }
+  const InformationFunction& function() const override { return function_; }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override;
 
  private:
   std::string name_;
-  Eigen::MatrixXd L_;
+  TraceFunction function_;
 };
 
 /// `test_pose_max`: Φ = −ln max_t tr(A_t M⁻¹ A_tᵀ), concave. Throws CannotDo where there are no test points.

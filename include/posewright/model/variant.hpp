@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
 
 /// Sets the nominal values that the variant names. Throws InputError as select_columns() does.
 void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+
+/// For every column the value of the last pattern that matches its name, if any. Throws InputError as
+/// select_columns() does.
+std::vector<std::optional<double>> values_by_pattern(const VariantColumns& columns,
+                                                     const std::vector<PatternValue>& values, const Problem& problem,
+                                                     const char* what);
 
 /// The columns that `kept` (ascending indices into columns) names.
 VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept);

@@ -21,28 +21,63 @@ struct NamedValue {
 
 struct PlannedPose {
   int id = 0;                                  ///< 1, 2, … in measuring order
-  int candidate = 0;                           ///< zero-based index in the candidate set
+  std::optional<int> candidate;                ///< zero-based index in the candidate set; none: found between them
+  bool measured = false;                       ///< was there before: not to be measured again
   std::vector<NamedValue> configuration;       ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;           ///< of a parallel robot
   std::string load_case, station;              ///< empty where the problem has none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   double contribution = 0.0;                   ///< share of all information, sums to 1 over the plan
+  /// Efficiency of the plan without this pose relative to the plan, in [0, 1]; 0: it cannot do without.
+  double without = 1.0;
 };
 
 struct PlannedParameter {
   Parameter label;
+  std::string variant;          ///< empty where the plan serves one
   std::optional<double> sigma;  ///< predicted 1σ after calibration, SI; none where not identifiable
   std::string dropped_because;  ///< equation among kept parameters; empty where it is kept
 };
 
-/// What is proved about a plan over its candidates.
+/// What is proved about a plan over its candidates, and what a search says over the whole workspace. Bounds are of Φ,
+/// what the search maximises: log det, −ln of a variance, or ln of an efficiency (docs/theory.md).
 struct Certificate {
-  bool proved = true;                  ///< false: no bound is computed for this criterion, the rest says nothing
-  double efficiency = 0.0;             ///< lower bound of (det M / det M*)^{1/s}, in (0, 1]
-  double log_det_bound = 0.0;          ///< no plan of as many of these candidates exceeds it; same scale as log_det
+  bool proved = true;                  ///< false: the criterion has no bound, the rest says nothing
+  double efficiency = 0.0;             ///< lower bound of what the plan reaches of the best, in (0, 1]
+  double bound = 0.0;                  ///< no plan of as many of these candidates exceeds it
   double max_sensitivity_ratio = 1.0;  ///< how near the weights behind the bound are to their own optimum
   std::size_t count = 0;               ///< candidates
-  bool repeats = false;                ///< whether the bound allows repeats
+  std::string repeats = "forbid";      ///< what the bound allows: forbid, allow or a number
+  struct Workspace {
+    double efficiency = 0.0, bound = 0.0, max_sensitivity_ratio = 1.0;
+    std::string method;  ///< how the largest sensitivity was sought
+  };
+  std::optional<Workspace> workspace;
+};
+
+/// One variant of a plan that serves several.
+struct VariantResult {
+  std::string name;
+  double weight = 1.0;
+  double log_det = 0.0;     ///< of its interest information
+  double bound = 0.0;       ///< that no plan of as many of these candidates exceeds
+  double efficiency = 0.0;  ///< of this plan for it, against that bound
+};
+
+/// What plans of other sizes would reach.
+struct CurvePoint {
+  int poses = 0;
+  double log_det = 0.0;
+  std::optional<double> rho0;         ///< m
+  std::optional<double> worst_sigma;  ///< largest σ / required σ
+  bool enough = false;                ///< whether everything required is reached
+};
+
+struct PlanStage {
+  std::string name;
+  double value = 0.0;                ///< Φ of the best so far
+  std::optional<double> efficiency;  ///< of it against the candidates' bound; may exceed 1 between the candidates
+  double seconds = 0.0;
 };
 
 struct PlanStatistics {
@@ -53,6 +88,7 @@ struct PlanStatistics {
   double seconds = 0.0;
   std::optional<double> poses_on_boundary;      ///< share of poses on the boundary of the feasible set
   std::optional<double> coordinates_on_limits;  ///< share of coordinates on a limit
+  std::vector<PlanStage> stages{};
 };
 
 /// Everything that is written about a plan.
@@ -60,7 +96,9 @@ struct Plan {
   std::uint64_t seed = 0;
   std::string problem_file, problem_sha256;
   std::string variant;  ///< empty for a plan from bare blocks
-  std::string criterion = "o1";
+  std::string criterion = "o1", method = "exchange", scaling = "tolerance";
+  bool reserve = false;          ///< searched for what is left without the pose that hurts most
+  bool proved_optimal = false;   ///< no plan of these candidates is better
   double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)
   std::optional<double> rho0;    ///< predicted position error at the test poses, root of the weighted mean square, m
   std::vector<double> test_errors{};  ///< the same at each test pose, m
@@ -69,6 +107,8 @@ struct Plan {
   ObservabilityIndices indices;
   double condition = 0.0;
   Certificate certificate;
+  std::vector<VariantResult> variants{};     ///< of a plan for several
+  std::vector<CurvePoint> curve{};           ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;  ///< interest first, then nuisance, then dropped ones
   std::vector<PlannedPose> poses;
   PlanStatistics statistics;

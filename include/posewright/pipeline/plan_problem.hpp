@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -14,8 +15,12 @@ namespace posewright {
 struct PlanOptions {
   std::string variant, criterion, method;  ///< empty = as in the file
   std::optional<int> poses, candidates, restarts;
+  bool smallest = false;  ///< the smallest number of poses that reaches design: require
   std::optional<Repeats> repeats;
-  std::optional<bool> prior;  ///< count tolerances as prior knowledge
+  std::optional<Scaling> scaling;
+  std::optional<bool> prior;      ///< count tolerances as prior knowledge
+  bool reserve = false;           ///< maximise what is left when the pose that hurts most is lost
+  std::filesystem::path augment;  ///< poses that are measured already; empty = as in the file
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

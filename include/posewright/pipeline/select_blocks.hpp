@@ -18,7 +18,8 @@ struct SelectOptions {
   std::string criterion = "o1", method = "exchange";
   int nuisance = 0;  ///< how many leading columns are nuisance
   int restarts = 10;
-  Repeats repeats = Repeats::forbid;
+  Repeats repeats;
+  bool reserve = false;  ///< maximise what is left when the block that hurts most is lost
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -7,18 +7,24 @@
 
 #include "posewright/criterion/criterion.hpp"
 #include "posewright/planning/approximate_design.hpp"
+#include "posewright/planning/configuration_space.hpp"
+#include "posewright/planning/workspace_bound.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {
 
-/// All that a planner sees: candidates as whitened blocks, the criterion, the budget. Nothing of robots.
+/// What planners work on: candidates, the criterion, the budget. Nothing of robots.
 struct DesignTask {
   CandidateView candidates;
   const Criterion* criterion = nullptr;
   int poses = 0;  ///< N, at most what the repeat policy allows
   /// May be null; a source of good starts, and of promising candidates where its sensitivities are there.
   const ApproximateDesign* approximate = nullptr;
-  std::optional<double> bound{};  ///< no design exceeds it (Φ, whitened coordinates); for progress
+  std::optional<double> bound{};  ///< no design exceeds it (Φ, whitened coordinates)
+  /// May be null: then there is nothing beyond the candidates.
+  const ConfigurationSpace* space = nullptr;
+  /// May be null; its support are configurations worth having.
+  const WorkspaceBound* workspace = nullptr;
 };
 
 struct PlannerOptions {
@@ -28,13 +34,25 @@ struct PlannerOptions {
   int threads = 0;  ///< 0 = all
 };
 
+/// What a part of a search reached.
+struct SearchStage {
+  std::string name;
+  double value = 0.0;  ///< Φ of the best design so far, whitened coordinates
+  double seconds = 0.0;
+};
+
 /// The best exact design found.
 struct Design {
-  std::vector<int> members;  ///< N candidate indices, ascending; equal ones only where repeats are allowed
-  double value = 0.0;        ///< Φ from a fresh factorisation, whitened coordinates
-  int restarts = 0;          ///< carried out
-  long exchanges = 0;        ///< accepted over all restarts
-  bool stopped = false;      ///< by the monitor, before all restarts were done
+  /// N candidate indices, ascending; equal ones only where repeats are allowed. Indices from the number of candidates
+  /// on are those of `added`.
+  std::vector<int> members;
+  std::vector<std::vector<double>> added{};  ///< configurations that were no candidates
+  double value = 0.0;                        ///< Φ from a fresh factorisation, whitened coordinates
+  int restarts = 0;                          ///< carried out
+  long exchanges = 0;                        ///< accepted over all restarts
+  bool stopped = false;                      ///< by the monitor, before all was done
+  bool optimal = false;                      ///< proved: no design of these candidates is better by more than 1e-9
+  std::vector<SearchStage> stages{};
 };
 
 /// A search algorithm over sets of N candidates. Works for every criterion.
@@ -42,7 +60,7 @@ class Planner {
  public:
   virtual ~Planner() = default;
   virtual std::string name() const = 0;
-  /// Checks the task, runs the search. At least one restart is carried out however early the monitor stops.
+  /// Checks the task, runs the search. At least one start is carried out however early the monitor stops.
   /// Throws std::invalid_argument on a task that contradicts itself, CannotDo where every start stays singular.
   Design plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const;
 

@@ -11,23 +11,24 @@ namespace posewright {
 
 /// What a given set of poses is worth. The same code judges a plan, a user's list and a random baseline.
 struct Evaluation {
-  double log_det = 0.0;       ///< of the interest information (nuisance eliminated), raw blocks, SI
-  double log_det_full = 0.0;  ///< of Σ JᵢᵀJᵢ, nuisance columns included
-  Eigen::VectorXd sigma;      ///< predicted 1σ of every parameter, in the columns' order and SI units
-  Eigen::VectorXd
-      singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled by tolerance; descending
-  ObservabilityIndices indices;  ///< O1 … O5 from singular_values
-  Eigen::VectorXd contribution;  ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
-                                 ///< with the prior's
-  double condition = 0.0;        ///< σ1/σm
-  Eigen::MatrixXd covariance;    ///< M⁻¹, raw coordinates (SI)
+  double log_det = 0.0;             ///< of the interest information (nuisance eliminated), raw blocks, SI
+  double log_det_full = 0.0;        ///< of Σ JᵢᵀJᵢ, nuisance columns included
+  Eigen::VectorXd sigma;            ///< predicted 1σ of every parameter, in the columns' order and SI units
+  Eigen::VectorXd singular_values;  ///< of G for the interest columns, nuisance eliminated, scaled; descending
+  ObservabilityIndices indices;     ///< O1 … O5 from singular_values
+  Eigen::VectorXd contribution;     ///< per pose: tr(J M⁻¹ Jᵀ) / m, its share of what is known; sums to 1
+                                    ///< with the prior's
+  double condition = 0.0;           ///< σ1/σm
+  Eigen::MatrixXd covariance;       ///< M⁻¹, raw coordinates (SI)
 };
 
 /// By Householder QR of the stacked rows; no inverse of M is formed.
 /// @param chosen      raw blocks of the chosen poses, nuisance columns first
 /// @param parameters  labels of the columns; role nuisance for exactly the leading ones, tolerance > 0
 /// @param prior       count every tolerance as one more measurement of its parameter: M = GᵀG + diag(1/tolerance²)
+/// @param scale       what columns are multiplied by for the singular values and indices; empty: their tolerances
 /// Throws CannotDo where G is rank deficient (fewer independent rows than parameters), naming a parameter.
-Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior = false);
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior = false,
+                    const Eigen::VectorXd& scale = {});
 
 }  // namespace posewright

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/problem/design_specs.hpp"
 #include "posewright/problem/measurement_specs.hpp"
 #include "posewright/problem/robot_specs.hpp"
 #include "posewright/problem/units.hpp"
@@ -22,13 +23,8 @@ struct VariantSpec {
   std::vector<Located<std::string>> parameters;  ///< names or globs (* and ?), of interest
   std::vector<Located<std::string>> nuisance;    ///< names or globs
   std::vector<Located<std::string>> fixed;       ///< names or globs taken out again
-  struct Tolerance {
-    Located<std::string> pattern;
-    double value = 0.0;                    ///< SI
-    Quantity quantity = Quantity::number;  ///< what the written unit measures; number: none was written
-  };
-  std::vector<Tolerance> tolerance;  ///< later entries win
-  std::vector<Tolerance> nominal;    ///< values that this variant is linearised at, in place of the robot's
+  std::vector<PatternValue> tolerance;           ///< later entries win
+  std::vector<PatternValue> nominal;             ///< values that this variant is linearised at, in place of the robot's
   int line = 0;
 };
 
@@ -43,30 +39,6 @@ struct WorkspaceSpec {
   double joint_margin = 0.0;             ///< rad, kept from both ends of revolute limits
   double joint_margin_length = 0.0;      ///< m, the same for prismatic joints
   std::vector<CoordinateLimits> limits;  ///< `joints: limits:` or `pose:` of a platform
-};
-
-enum class Repeats { forbid, allow };
-
-/// Configurations where accuracy after compensation matters.
-struct TestPosesSpec {
-  std::vector<std::vector<Measured>> at;            ///< values of the robot's coordinates, or
-  int random = 0;                                   ///< so many, evenly through the workspace
-  std::vector<double> weights;                      ///< one for each of `at`; empty: all 1
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame: whose position counts
-  int line = 0;
-};
-
-struct DesignSpec {
-  std::optional<Located<std::string>> variant;  ///< default: the first
-  Located<std::string> criterion{"o1", 0};
-  Located<std::string> method{"exchange", 0};
-  std::optional<Located<int>> poses;
-  Located<int> candidates{10000, 0};
-  Located<int> restarts{10, 0};
-  Repeats repeats = Repeats::forbid;
-  bool prior = false;  ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
-  std::optional<TestPosesSpec> test_poses;
-  int line = 0;
 };
 
 /// A whole problem file.

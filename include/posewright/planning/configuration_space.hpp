@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "posewright/criterion/spacing.hpp"
+
+namespace posewright {
+
+/// Where candidates come from: the feasible set and the block of any configuration in it. Planners that look beyond the
+/// candidates see this and nothing of robots.
+class ConfigurationSpace {
+ public:
+  struct Axis {
+    double lower = 0.0, upper = 0.0;
+    bool continuous = true;  ///< false: a choice; keeps the value that a start has
+  };
+  /// Evaluations of one thread.
+  class Probe {
+   public:
+    virtual ~Probe() = default;
+    virtual bool feasible(std::span<const double> q) = 0;
+    /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False
+    /// where q has none.
+    virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
+  };
+
+  virtual ~ConfigurationSpace() = default;
+  virtual const std::vector<Axis>& axes() const = 0;
+  /// Whether every configuration within the axes' limits is feasible.
+  virtual bool is_box() const = 0;
+  /// How far apart poses must be that are no candidates (no points in it): the task's spacing, or, where poses may not
+  /// repeat, what counts as a repeat. An empty unit: no distance is kept.
+  virtual const Spacing& spacing() const = 0;
+  /// Configuration of a candidate of the task.
+  virtual std::span<const double> candidate(int index) const = 0;
+  virtual std::unique_ptr<Probe> probe() const = 0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "posewright/criterion/information_function.hpp"
+#include "posewright/planning/approximate_design.hpp"
+#include "posewright/planning/configuration_space.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+struct WorkspaceBoundOptions {
+  int starts = 32;          ///< local searches a round, from the candidates of largest d and spread ones
+  int rounds = 10;          ///< at most: new configurations enter, the weights are solved again
+  double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
+  int evaluations = 400;    ///< of one local search
+  Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+/// Optimal weights over the whole workspace, as far as a search can tell.
+struct WorkspaceBound {
+  double bound = 0.0;      ///< Φ(w) + h ln(max d / h): an upper bound if max_sensitivity is the true maximum of d
+  double value = 0.0;      ///< Φ(w)
+  double degree = 0.0;     ///< h
+  double max_ratio = 1.0;  ///< largest d found over h
+  int searches = 0;        ///< local searches carried out
+  std::vector<std::vector<double>> support;  ///< configurations with weight that were no candidates
+  bool stopped = false;
+
+  double bound_for(int poses) const;
+};
+
+/// Column generation: optimal weights on the candidates and the configurations found so far, then multi-start local
+/// maximisation of d(q) = ‖J(q) T‖², winners enter, until none exceeds. Repeats are allowed (in a continuum two poses
+/// may be as near as one likes). Starts are deterministic; the number of threads does not matter.
+/// @param blocks  candidates
+/// @param design  optimal weights on them: those with weight or large d take part
+WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign& design,
+                               const InformationFunction& function, const ConfigurationSpace& space,
+                               const WorkspaceBoundOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

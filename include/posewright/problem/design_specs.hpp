@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/problem/units.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+/// How often one configuration may be measured. In files and on the command line: forbid, allow, or a number.
+struct Repeats {
+  int most = 1;
+  static constexpr int any_number = std::numeric_limits<int>::max();
+  friend bool operator==(Repeats, Repeats) = default;
+};
+
+/// What the columns are divided by where a criterion or an index depends on it.
+enum class Scaling { tolerance, norm, none };
+
+/// A value for the parameters that a glob matches, as in variants: tolerance.
+struct PatternValue {
+  Located<std::string> pattern;
+  double value = 0.0;                    ///< SI
+  Quantity quantity = Quantity::number;  ///< what the written unit measures; number: none was written
+};
+
+/// Configurations where accuracy after compensation matters. One of `at`, `random`, `file`, `grid`.
+struct TestPosesSpec {
+  std::vector<std::vector<Measured>> at;  ///< values of the robot's coordinates, or
+  int random = 0;                         ///< so many, evenly through the workspace
+  std::filesystem::path file;             ///< CSV of coordinates or of points x, y, z, maybe with weights
+  struct Grid {                           ///< points of a box in the measurement frame
+    Eigen::Vector3d lower, upper;         ///< m
+    std::array<int, 3> counts{1, 1, 1};
+  };
+  std::optional<Grid> grid;
+  std::vector<double> weights;                      ///< one for each of `at`; empty: all 1
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame: whose position counts
+  int line = 0;
+};
+
+/// What a plan of `poses: auto` must reach.
+struct RequirementSpec {
+  std::optional<double> accuracy;   ///< ρ0 at the test poses, m
+  std::vector<PatternValue> sigma;  ///< 1σ of parameters
+  int line = 0;
+};
+
+struct DesignSpec {
+  std::optional<Located<std::string>> variant;  ///< default: the first
+  struct Weighted {
+    Located<std::string> name;
+    double weight = 1.0;
+  };
+  std::vector<Weighted> variants;  ///< for criteria over several variants
+  Located<std::string> criterion{"o1", 0};
+  Located<std::string> method{"exchange", 0};
+  std::optional<Located<int>> poses;
+  bool smallest = false;  ///< poses: auto
+  RequirementSpec require;
+  Located<int> candidates{10000, 0};
+  Located<int> restarts{10, 0};
+  Repeats repeats;
+  /// Two poses differ in at least one coordinate by this much: rad and m; 0: no distance is asked of that kind.
+  struct MinimumDistance {
+    double angle = 0.0, length = 0.0;
+  };
+  std::optional<MinimumDistance> minimum_distance;
+  Scaling scaling = Scaling::tolerance;
+  bool prior = false;    ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
+  bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
+  std::optional<std::filesystem::path> measured;  ///< poses that are measured already or fixed: new ones come to them
+  std::optional<TestPosesSpec> test_poses;
+  int line = 0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,251 @@
+#include "continuous.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlopt.hpp>
+
+#include "exchange.hpp"
+#include "posewright/criterion/information_function.hpp"
+#include "posewright/planning/ascent.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr int evaluations_per_pose = 300;
+constexpr int most_rounds = 20;
+// A round that gains less than this of Φ is the last.
+constexpr double round_gain = 1e-6;
+constexpr int joint_evaluations = 200;
+// MMA's own work grows with the square of the number of coordinates.
+constexpr std::size_t most_joint_coordinates = 500;
+constexpr double difference_step = 1e-5;
+
+Eigen::MatrixXd information_of(const DesignTask& task, const BlockArray& blocks) {
+  const auto all = blocks.all();
+  Eigen::MatrixXd M = all.transpose() * all;
+  if (task.candidates.prior != nullptr) M += *task.candidates.prior;
+  return M;
+}
+
+/// Φ of the others and one block.
+class OnePose : public BlockObjective {
+ public:
+  OnePose(const InformationFunction& function, Eigen::MatrixXd rest) : function_(function), rest_(std::move(rest)) {}
+  double value(const BlockArray::ConstMap& J) override {
+    sum_ = rest_;
+    sum_.noalias() += J.transpose() * J;
+    return function_.value(sum_);
+  }
+  const Eigen::MatrixXd& gradient(const BlockArray::ConstMap& J) override {
+    sum_ = rest_;
+    sum_.noalias() += J.transpose() * J;
+    gradient_ = function_.gradient(sum_);
+    return gradient_;
+  }
+
+ private:
+  const InformationFunction& function_;
+  Eigen::MatrixXd rest_, sum_, gradient_;
+};
+
+bool is_apart(const DesignTask& task, const PoseSet& poses, std::size_t i, std::span<const double> q) {
+  if (task.space->spacing().unit.size() == 0) return true;
+  for (std::size_t j = 0; j < poses.configurations.size(); ++j)
+    if (j != i && task.space->spacing().too_near(poses.configurations[j], q)) return false;
+  return true;
+}
+
+/// All poses at once on the unit box.
+class Joint {
+ public:
+  Joint(const DesignTask& task, const PoseSet& poses)
+      : task_(task), axes_(task.space->axes()), probe_(task.space->probe()), start_(poses), now_(poses), best_(poses) {
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+      if (axes_[k].continuous && axes_[k].upper > axes_[k].lower) moving_.push_back(k);
+  }
+
+  std::size_t size() const { return moving_.size() * start_.configurations.size(); }
+  std::vector<double> unit() const {
+    std::vector<double> u;
+    for (const auto& q : start_.configurations)
+      for (const std::size_t k : moving_)
+        u.push_back(std::clamp((q[k] - axes_[k].lower) / (axes_[k].upper - axes_[k].lower), 0.0, 1.0));
+    return u;
+  }
+  const PoseSet& best() const { return best_; }
+
+  double operator()(const std::vector<double>& u, std::vector<double>& gradient) {
+    const double bad = start_.value - 1 - std::abs(start_.value);
+    std::fill(gradient.begin(), gradient.end(), 0.0);
+    if (!place(u)) return bad;
+    const Eigen::MatrixXd M = information_of(task_, now_.blocks);
+    now_.value = task_.criterion->function().value(M);
+    if (!std::isfinite(now_.value)) return bad;
+    if (now_.value > best_.value && valid()) keep();
+    if (!gradient.empty()) differentiate(task_.criterion->function().gradient(M), gradient);
+    return now_.value;
+  }
+
+ private:
+  bool place(const std::vector<double>& u) {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < now_.configurations.size(); ++i) {
+      auto& q = now_.configurations[i];
+      for (const std::size_t k : moving_) {
+        const double x = u[at++];
+        q[k] = x >= 1.0 ? axes_[k].upper
+                        : std::max(axes_[k].lower, axes_[k].lower + x * (axes_[k].upper - axes_[k].lower));
+      }
+      if (!probe_->block(q, now_.blocks.row(i, 0), now_.blocks.stride())) return false;
+    }
+    return true;
+  }
+
+  bool valid() {
+    for (std::size_t i = 0; i < now_.configurations.size(); ++i)
+      if (!probe_->feasible(now_.configurations[i]) || !is_apart(task_, now_, i, now_.configurations[i])) return false;
+    return true;
+  }
+
+  void keep() {
+    best_.configurations = now_.configurations;
+    best_.value = now_.value;
+    std::copy_n(now_.blocks.data(), now_.blocks.count() * std::size_t(now_.blocks.rows() * now_.blocks.stride()),
+                best_.blocks.data());
+  }
+
+  void differentiate(const Eigen::MatrixXd& S, std::vector<double>& gradient) {
+    ProbedBlock low(now_.blocks.rows(), now_.blocks.columns()), high(now_.blocks.rows(), now_.blocks.columns());
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < now_.configurations.size(); ++i) {
+      const BlockArray::RowMatrix slope = 2 * now_.blocks.block(i) * S;
+      std::vector<double> near = now_.configurations[i];
+      for (const std::size_t k : moving_) {
+        const double width = axes_[k].upper - axes_[k].lower, q = near[k];
+        const double up = std::min(axes_[k].upper, q + difference_step * width);
+        const double down = std::max(axes_[k].lower, q - difference_step * width);
+        near[k] = up;
+        const bool there = high.at(*probe_, near);
+        near[k] = down;
+        const bool here = low.at(*probe_, near);
+        near[k] = q;
+        gradient[at++] = there && here ? slope.cwiseProduct(high.map() - low.map()).sum() / (up - down) * width : 0.0;
+      }
+    }
+  }
+
+  struct Copy : PoseSet {
+    explicit Copy(const PoseSet& other) {
+      configurations = other.configurations;
+      candidates = other.candidates;
+      value = other.value;
+      std::vector<int> all(other.blocks.count());
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = int(i);
+      blocks = other.blocks.subset(all);
+    }
+  };
+
+  const DesignTask& task_;
+  const std::vector<ConfigurationSpace::Axis>& axes_;
+  std::unique_ptr<ConfigurationSpace::Probe> probe_;
+  Copy start_, now_, best_;
+  std::vector<std::size_t> moving_;
+};
+
+double call(const std::vector<double>& u, std::vector<double>& gradient, void* data) {
+  return (*static_cast<Joint*>(data))(u, gradient);
+}
+
+bool improve_jointly(const DesignTask& task, PoseSet& poses) {
+  Joint joint(task, poses);
+  if (joint.size() == 0 || joint.size() > most_joint_coordinates) return false;
+  nlopt::opt method(nlopt::LD_MMA, unsigned(joint.size()));
+  method.set_lower_bounds(0.0);
+  method.set_upper_bounds(1.0);
+  method.set_max_objective(call, &joint);
+  method.set_xtol_abs(1e-8);
+  method.set_maxeval(joint_evaluations);
+  std::vector<double> u = joint.unit();
+  double value = 0.0;
+  try {
+    method.optimize(u, value);
+  } catch (const nlopt::roundoff_limited&) {
+    // The best design seen stands.
+  } catch (const std::runtime_error&) {
+    // NLopt's "generic failure": the same.
+  }
+  if (!(joint.best().value > poses.value)) return false;
+  for (std::size_t i = 0; i < poses.configurations.size(); ++i)
+    if (joint.best().configurations[i] != poses.configurations[i]) poses.candidates[i] = -1;
+  poses.configurations = joint.best().configurations;
+  poses.value = joint.best().value;
+  std::copy_n(joint.best().blocks.data(),
+              poses.blocks.count() * std::size_t(poses.blocks.rows() * poses.blocks.stride()), poses.blocks.data());
+  return true;
+}
+
+}  // namespace
+
+PoseSet pose_set_of(const DesignTask& task, const std::vector<int>& members) {
+  PoseSet poses;
+  poses.candidates = members;
+  poses.blocks = task.candidates.blocks->subset(members);
+  for (const int i : members)
+    poses.configurations.emplace_back(task.space->candidate(i).begin(), task.space->candidate(i).end());
+  poses.value = task.criterion->function().value(information_of(task, poses.blocks));
+  return poses;
+}
+
+void write_to(Design& design, const PoseSet& poses, std::size_t candidates) {
+  design.members.clear();
+  design.added.clear();
+  for (std::size_t i = 0; i < poses.configurations.size(); ++i) {
+    if (poses.candidates[i] >= 0) {
+      design.members.push_back(poses.candidates[i]);
+      continue;
+    }
+    design.members.push_back(int(candidates + design.added.size()));
+    design.added.push_back(poses.configurations[i]);
+  }
+  design.value = poses.value;
+}
+
+long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
+  const auto probe = task.space->probe();
+  const int r = poses.blocks.rows(), m = poses.blocks.columns();
+  long moves = 0;
+  for (int round = 0; round < most_rounds && !monitor.should_stop(); ++round) {
+    const double before = poses.value;
+    for (std::size_t i = 0; i < poses.configurations.size() && !monitor.should_stop(); ++i) {
+      const auto block = poses.blocks.block(i);
+      OnePose objective(task.criterion->function(), information_of(task, poses.blocks) - block.transpose() * block);
+      const AscentResult found =
+          ascend(*task.space, *probe, objective, r, m, poses.configurations[i], evaluations_per_pose,
+                 [&](std::span<const double> q) { return is_apart(task, poses, i, q); });
+      if (!(found.value > poses.value + 1e-12) || found.q == poses.configurations[i]) continue;
+      poses.configurations[i] = found.q;
+      poses.candidates[i] = -1;
+      poses.value = found.value;
+      probe->block(found.q, poses.blocks.row(i, 0), poses.blocks.stride());
+      ++moves;
+    }
+    monitor.report({"continuous", double(round + 1), double(most_rounds), poses.value, task.bound, {}});
+    if (poses.value - before < round_gain) break;
+  }
+  if (task.space->is_box() && !monitor.should_stop() && improve_jointly(task, poses)) ++moves;
+  return moves;
+}
+
+Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
+  if (task.space == nullptr)
+    throw CannotDo("continuous moves poses between the candidates: it needs a robot, not blocks");
+  Design design = ExchangePlanner().plan(task, options, monitor);
+  PoseSet poses = pose_set_of(task, design.members);
+  design.exchanges += improve(task, poses, monitor);
+  write_to(design, poses, task.candidates.blocks->count());
+  design.stopped = design.stopped || monitor.should_stop();
+  return design;
+}
+
+}  // namespace posewright

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/planning/design_task.hpp"
+
+namespace posewright {
+
+/// A design whose poses have left the candidates.
+struct PoseSet {
+  std::vector<std::vector<double>> configurations;
+  std::vector<int> candidates;  ///< −1: no candidate any more
+  BlockArray blocks;            ///< one a pose
+  double value = 0.0;           ///< Φ
+};
+PoseSet pose_set_of(const DesignTask& task, const std::vector<int>& members);
+/// As a design: poses that moved are `added`.
+void write_to(Design& design, const PoseSet& poses, std::size_t candidates);
+
+/// Moves the poses themselves: each in turn to a local maximum of Φ with the others fixed, until a round gains nothing;
+/// where the feasible set is a box, then all at once by MMA. Never leaves the feasible set, never returns less
+/// than it got, keeps poses apart where they may not repeat. Returns the number of moves accepted.
+long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor);
+
+/// The best design of `exchange`, improved. Throws CannotDo where the task has no configurations.
+class ContinuousPlanner : public Planner {
+ public:
+  std::string name() const override { return "continuous"; }
+
+ private:
+  Design do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const override;
+};
+
+}  // namespace posewright

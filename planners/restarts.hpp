@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "local_search.hpp"
+
+namespace posewright {
+
+/// One start: from (task, index, its own generator) to an outcome.
+using Search = std::function<Outcome(const DesignTask&, std::size_t, Random&, const Monitor&)>;
+
+/// Runs `restarts` starts in parallel on the promising candidates (ReducedTask), takes the best few through all
+/// candidates, returns the best. Start i depends on (seed, i) alone, results are reduced by (value, index): the number
+/// of threads does not matter. The first start always runs: whoever interrupts still gets a plan.
+Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
+                    const std::string& stage, const Search& search);
+
+/// Start i: rounded optimal weights, draws from them, uniform draws, in turn.
+std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random);
+
+}  // namespace posewright

@@ -1,0 +1,83 @@
+#include <cmath>
+#include <limits>
+
+#include "posewright/criterion/determinant.hpp"
+#include "regular.hpp"
+
+namespace posewright {
+namespace {
+
+class LogDetExpansion : public Expansion {
+ public:
+  LogDetExpansion(const Eigen::LLT<Eigen::MatrixXd>& llt, int nuisance) : nuisance_(nuisance) {
+    const Eigen::Index m = llt.rows();
+    value = 2 * llt.matrixLLT().diagonal().tail(m - nuisance).array().log().sum();
+    inverse_ = llt.matrixL().solve(Eigen::MatrixXd::Identity(m, m)).transpose();
+    factor = inverse_;
+    // The leading columns of L⁻ᵀ are the nuisance block's own inverse.
+    factor.leftCols(nuisance).setZero();
+  }
+
+  /// ‖Z_i Z_jᵀ‖²_F, Z = J L⁻ᵀ, less the same of the nuisance columns.
+  void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
+    const BlockArray::RowMatrix Z = rows * inverse_;
+    if (r == 1) {
+      const Eigen::MatrixXd all = Z * Z.transpose();
+      H = all.cwiseAbs2();
+      if (nuisance_ == 0) return;
+      const Eigen::MatrixXd part = Z.leftCols(nuisance_) * Z.leftCols(nuisance_).transpose();
+      H -= part.cwiseAbs2();
+      return;
+    }
+    const BlockArray::RowMatrix products = symmetric_products(Z, r);
+    H.setZero(products.rows(), products.rows());
+    H.selfadjointView<Eigen::Lower>().rankUpdate(products);
+    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+  }
+
+ private:
+  /// ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩: a row for each block's symmetric product, without what is nuisance on both
+  /// sides.
+  BlockArray::RowMatrix symmetric_products(const BlockArray::RowMatrix& Z, int r) const {
+    const Eigen::Index m = Z.cols(), s = Z.rows() / r;
+    const Eigen::Index pairs = m * (m + 1) / 2 - Eigen::Index(nuisance_) * (nuisance_ + 1) / 2;
+    BlockArray::RowMatrix products(s, pairs);
+    Eigen::MatrixXd square(m, m);
+    for (Eigen::Index i = 0; i < s; ++i) {
+      const auto zi = Z.middleRows(i * r, r);
+      square.noalias() = zi.transpose() * zi;
+      Eigen::Index k = 0;
+      for (Eigen::Index b = nuisance_; b < m; ++b) {
+        for (Eigen::Index a = 0; a < b; ++a) products(i, k++) = std::sqrt(2.0) * square(a, b);
+        products(i, k++) = square(b, b);
+      }
+    }
+    return products;
+  }
+
+  int nuisance_;
+  Eigen::MatrixXd inverse_;  // L⁻ᵀ
+};
+
+}  // namespace
+
+double LogDetFunction::value(const Eigen::MatrixXd& information) const {
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (!is_regular(factor)) return -std::numeric_limits<double>::infinity();
+  return 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
+}
+
+Eigen::MatrixXd LogDetFunction::gradient(const Eigen::MatrixXd& information) const {
+  const Eigen::Index m = information.rows();
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  const Eigen::MatrixXd inverse = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
+  return inverse.bottomRows(interest_).transpose() * inverse.bottomRows(interest_);
+}
+
+std::unique_ptr<Expansion> LogDetFunction::expand(const Eigen::MatrixXd& information) const {
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (!is_regular(factor)) return nullptr;
+  return std::make_unique<LogDetExpansion>(factor, nuisance_);
+}
+
+}  // namespace posewright

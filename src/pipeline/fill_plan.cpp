@@ -1,0 +1,111 @@
+#include "fill_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace posewright {
+namespace {
+
+std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::span<const double> values) {
+  std::vector<NamedValue> result;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (!coordinates[i].choice()) result.push_back({coordinates[i].name, coordinates[i].unit, values[i]});
+  return result;
+}
+
+/// What a choice among named things says at q, e.g. the load case; empty where there is no such coordinate.
+std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Coordinate& c = coordinates[i];
+    if (!c.choice() || c.name != name) continue;
+    const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
+    return c.labels[std::size_t(at)];
+  }
+  return {};
+}
+
+void fill_parameters(Plan& plan, const PreparedVariant& variant, const Evaluation& evaluation,
+                     const std::string& name) {
+  const VariantColumns& columns = variant.columns();
+  for (const Role role : {Role::interest, Role::nuisance})
+    for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+      if (columns.parameters[j].role == role)
+        plan.parameters.push_back({columns.parameters[j], name, evaluation.sigma[Eigen::Index(j)], ""});
+  for (std::size_t j = 0; j < variant.resolved.dropped.size(); ++j)
+    plan.parameters.push_back({variant.resolved.dropped[j], name, std::nullopt, variant.resolved.reasons[j]});
+}
+
+}  // namespace
+
+std::string scaling_text(Scaling scaling) {
+  if (scaling == Scaling::norm) return "norm";
+  return scaling == Scaling::none ? "none" : "tolerance";
+}
+
+PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q) {
+  PlannedPose pose;
+  pose.configuration = named(model.coordinates(), q);
+  pose.load_case = chosen_label(model.coordinates(), q, "load_case");
+  pose.station = chosen_label(model.coordinates(), q, "station");
+  std::vector<double> actuators(model.actuators().size());
+  if (model.actuator_values(q, actuators)) pose.actuators = named(model.actuators(), actuators);
+  pose.tool_pose = model.tool_pose(q);
+  return pose;
+}
+
+void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& prepared, const Settings& settings) {
+  const Evaluation& first = judgement.evaluations.front();
+  for (const PreparedVariant& variant : prepared.variants)
+    plan.variant += (plan.variant.empty() ? "" : " + ") + variant.spec->name;
+  plan.criterion = settings.criterion;
+  plan.scaling = scaling_text(settings.scaling);
+  plan.prior = settings.prior;
+  plan.reserve = settings.reserve;
+  plan.rho0 = judgement.rho0;
+  plan.test_errors = judgement.test_errors;
+  plan.log_det = first.log_det;
+  plan.log_det_full = first.log_det_full;
+  plan.indices = first.indices;
+  plan.condition = first.condition;
+  for (std::size_t v = 0; v < prepared.variants.size(); ++v)
+    fill_parameters(plan, prepared.variants[v], judgement.evaluations[v],
+                    prepared.variants.size() > 1 ? prepared.variants[v].spec->name : "");
+}
+
+void fill_variants(Plan& plan, const Judgement& judgement, const Preparation& prepared,
+                   const std::vector<double>& references) {
+  const std::vector<double> efficiency = log_efficiencies(judgement, prepared, references);
+  for (std::size_t v = 0; v < references.size(); ++v)
+    plan.variants.push_back({prepared.variants[v].spec->name, prepared.variants[v].weight,
+                             judgement.evaluations[v].log_det, references[v], std::min(1.0, std::exp(efficiency[v]))});
+}
+
+void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& chosen, const SearchResult& found,
+                const Judgement& judgement) {
+  const IdentificationModel& model = *prepared.first().model;
+  const Workspace& workspace = *prepared.first().workspace;
+  const Eigen::VectorXd& contribution = judgement.evaluations.front().contribution;
+  const std::size_t before = prepared.measured.count();
+  for (std::size_t i = 0; i < before + chosen.count(); ++i) {
+    const bool measured = i < before;
+    PlannedPose pose = pose_of(model, measured ? prepared.measured[i] : chosen[i - before]);
+    pose.id = int(i) + 1;
+    pose.measured = measured;
+    pose.contribution = contribution[Eigen::Index(i)];
+    if (!measured) {
+      const int member = found.design.members[i - before];
+      if (std::size_t(member) < prepared.configurations.count()) pose.candidate = member;
+      pose.without = found.without[i - before];
+    }
+    plan.poses.push_back(std::move(pose));
+  }
+  double on_boundary = 0, on_limits = 0;
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    on_boundary += workspace.on_boundary(chosen[i]) ? 1 : 0;
+    on_limits += workspace.share_of_coordinates_on_limits(chosen[i]);
+  }
+  plan.statistics.poses_on_boundary = on_boundary / double(chosen.count());
+  plan.statistics.coordinates_on_limits = on_limits / double(chosen.count());
+}
+
+}  // namespace posewright

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "judgement.hpp"
+#include "posewright/outputs/plan.hpp"
+#include "preparation.hpp"
+#include "search.hpp"
+
+namespace posewright {
+
+/// What a judgement says of the whole: log det, indices, accuracy, parameters; names of variant and criterion.
+void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& prepared, const Settings& settings);
+
+/// Efficiency of every variant; nothing where the plan serves one.
+void fill_variants(Plan& plan, const Judgement& judgement, const Preparation& prepared,
+                   const std::vector<double>& references);
+
+/// Poses that are measured already, then the new ones, and how they lie in the workspace.
+void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& chosen, const SearchResult& found,
+                const Judgement& judgement);
+
+/// Configuration, actuators, labels and tool pose of q.
+PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
+
+std::string scaling_text(Scaling scaling);
+
+}  // namespace posewright

@@ -1,0 +1,131 @@
+#include "preparation.hpp"
+
+#include <algorithm>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/support/error.hpp"
+#include "read_poses.hpp"
+#include "study_space.hpp"
+#include "test_points.hpp"
+
+namespace posewright {
+namespace {
+
+void require_same_coordinates(const PreparedVariant& a, const PreparedVariant& b) {
+  const auto& x = a.workspace->coordinates();
+  const auto& y = b.workspace->coordinates();
+  const auto same = [](const Coordinate& c, const Coordinate& d) { return c.name == d.name && c.labels == d.labels; };
+  if (x.size() != y.size() || !std::equal(x.begin(), x.end(), y.begin(), same))
+    throw CannotDo("variants '" + a.spec->name + "' and '" + b.spec->name +
+                   "' have different coordinates: no pose can serve both");
+}
+
+/// Candidates of the first variant that all others can take.
+Configurations common(const std::vector<PreparedVariant>& variants, Configurations all) {
+  if (variants.size() == 1) return all;
+  Configurations kept;
+  kept.dimension = all.dimension;
+  kept.drawn = all.drawn;
+  kept.rejected = all.rejected;
+  long lost = 0;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const bool good = std::all_of(variants.begin() + 1, variants.end(),
+                                  [&](const PreparedVariant& v) { return v.workspace->violation(all[i]) < 0; });
+    if (good) append(kept, all[i]);
+    else ++lost;
+  }
+  if (lost > 0) kept.rejected.emplace_back("another variant's limits", lost);
+  if (kept.count() == 0) throw CannotDo("no configuration is feasible for all variants");
+  return kept;
+}
+
+Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
+  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    tolerance[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  return tolerance;
+}
+
+constexpr std::size_t norm_sample = 2000;
+
+/// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings, or 1.
+Eigen::VectorXd scale_of(const PreparedVariant& variant, const Configurations& configurations, Scaling scaling,
+                         int threads) {
+  const VariantColumns& columns = variant.columns();
+  if (scaling == Scaling::tolerance) return tolerances_of(columns);
+  const auto m = Eigen::Index(columns.selected.size());
+  if (scaling == Scaling::none) return Eigen::VectorXd::Ones(m);
+  const BlockArray sample =
+      build_blocks(*variant.model, columns.selected, thinned(configurations, norm_sample), threads);
+  return (sample.all().colwise().squaredNorm() / double(sample.count())).cwiseSqrt().cwiseInverse();
+}
+
+void resolve(Preparation& prepared, PreparedVariant& variant, const Problem& problem, const Settings& settings) {
+  const bool known_before = settings.prior || prepared.measured.count() > 0;
+  const StudyView study{variant.model.get(), &prepared.configurations};
+  variant.resolved = resolve_columns(study, problem, *variant.spec, known_before, settings.planner.threads);
+  const VariantColumns& columns = variant.columns();
+  variant.scale = scale_of(variant, prepared.configurations, settings.scaling, settings.planner.threads);
+  variant.test_points = test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed);
+  if (!known_before) {
+    if (settings.poses > 0) require_enough_poses(study, columns, settings.poses, settings.planner.threads);
+    return;
+  }
+  const auto m = Eigen::Index(columns.selected.size());
+  variant.prior = Eigen::MatrixXd::Zero(m, m);
+  if (settings.prior) variant.prior.diagonal() = tolerances_of(columns).cwiseAbs2().cwiseInverse();
+  if (prepared.measured.count() == 0) return;
+  const BlockArray blocks = build_blocks(*variant.model, columns.selected, prepared.measured, settings.planner.threads);
+  variant.prior += blocks.all().transpose() * blocks.all();
+}
+
+}  // namespace
+
+void append(Configurations& list, std::span<const double> q) {
+  list.values.insert(list.values.end(), q.begin(), q.end());
+}
+
+Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor) {
+  Preparation prepared;
+  for (const DesignSpec::Weighted& wanted : settings.variants) {
+    PreparedVariant variant;
+    variant.spec = &find_variant(problem, wanted.name.value);
+    variant.weight = wanted.weight;
+    variant.model = make_model(problem, *variant.spec);
+    variant.workspace = std::make_unique<Workspace>(*variant.model, problem);
+    prepared.variants.push_back(std::move(variant));
+    require_same_coordinates(prepared.first(), prepared.variants.back());
+  }
+  const std::vector<Coordinate>& coordinates = prepared.first().workspace->coordinates();
+  // Bad lists are told before the long work.
+  prepared.measured.dimension = int(coordinates.size());
+  if (!settings.measured.empty())
+    for (const auto& q : read_poses(settings.measured, coordinates).configurations) append(prepared.measured, q);
+  SamplingOptions sampling;
+  sampling.count = std::size_t(settings.candidates);
+  sampling.seed = settings.planner.seed;
+  sampling.threads = settings.planner.threads;
+  prepared.configurations =
+      common(prepared.variants, sample_configurations(*prepared.first().workspace, sampling, monitor));
+  for (PreparedVariant& variant : prepared.variants) resolve(prepared, variant, problem, settings);
+
+  prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
+  prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
+  if (prepared.has_minimum_distance) {
+    prepared.minimum_distance = prepared.spacing;
+    prepared.minimum_distance.points = Eigen::Map<const BlockArray::RowMatrix>(
+        prepared.configurations.values.data(), Eigen::Index(prepared.configurations.count()),
+        prepared.configurations.dimension);
+  }
+  return prepared;
+}
+
+std::vector<SearchPart> search_parts(const Preparation& prepared, int threads) {
+  std::vector<SearchPart> parts;
+  for (const PreparedVariant& variant : prepared.variants)
+    parts.push_back({build_blocks(*variant.model, variant.columns().selected, prepared.configurations, threads),
+                     variant.columns().nuisance, variant.weight, variant.scale, variant.test_points, variant.prior});
+  return parts;
+}
+
+}  // namespace posewright

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/pipeline/plan_problem.hpp"
+#include "search.hpp"
+#include "study.hpp"
+
+namespace posewright {
+
+/// Command line over the problem file's design block.
+struct Settings {
+  std::string criterion, method;
+  int poses = 0;  ///< 0: the smallest number that suffices
+  int candidates = 0;
+  bool prior = false, reserve = false;
+  Repeats repeats;
+  Scaling scaling = Scaling::tolerance;
+  std::vector<DesignSpec::Weighted> variants;  ///< at least one
+  std::filesystem::path measured;              ///< empty: none
+  PlannerOptions planner;
+};
+/// Throws InputError for what contradicts itself, with the line where it was written.
+Settings settings_of(const Problem& problem, const PlanOptions& options);
+
+/// One variant of a prepared problem.
+struct PreparedVariant {
+  const VariantSpec* spec = nullptr;
+  double weight = 1.0;
+  std::unique_ptr<IdentificationModel> model;
+  std::unique_ptr<Workspace> workspace;
+  ResolvedColumns resolved;
+  Eigen::VectorXd scale;  ///< unit of every column, by the scaling asked for
+  std::vector<TestPoint> test_points;
+  Eigen::MatrixXd prior;  ///< raw information known before (tolerances, poses measured already); empty: none
+
+  const VariantColumns& columns() const { return resolved.columns; }
+};
+
+/// A problem as planning needs it: variants, feasible configurations, poses that are there already.
+struct Preparation {
+  std::vector<PreparedVariant> variants;
+  Configurations configurations;
+  Configurations measured;
+  Spacing spacing;           ///< for configurations that are no candidates
+  Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
+  bool has_minimum_distance = false;
+
+  PreparedVariant& first() { return variants.front(); }
+  const PreparedVariant& first() const { return variants.front(); }
+};
+Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor);
+
+/// Raw blocks of the candidates for every variant, with what each search needs beside them.
+std::vector<SearchPart> search_parts(const Preparation& prepared, int threads);
+
+/// Configurations of the pool one after the other in a list of their own.
+void append(Configurations& list, std::span<const double> q);
+
+}  // namespace posewright

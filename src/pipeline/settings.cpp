@@ -1,0 +1,50 @@
+#include "posewright/criterion/registry.hpp"
+#include "preparation.hpp"
+
+namespace posewright {
+namespace {
+
+std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, const PlanOptions& options, bool several) {
+  const DesignSpec& design = problem.design;
+  if (!several) return {{{find_variant(problem, options.variant).name, 0}, 1.0}};
+  if (!options.variant.empty())
+    throw InputError({}, "--variant names one variant", "the criterion is over several: design: variants");
+  if (!design.variants.empty()) return design.variants;
+  std::vector<DesignSpec::Weighted> all;
+  for (const VariantSpec& variant : problem.variants) all.push_back({{variant.name, variant.line}, 1.0});
+  return all;
+}
+
+}  // namespace
+
+Settings settings_of(const Problem& problem, const PlanOptions& options) {
+  const DesignSpec& design = problem.design;
+  Settings s;
+  s.criterion = options.criterion.empty() ? design.criterion.value : options.criterion;
+  s.method = options.method.empty() ? design.method.value : options.method;
+  require_known(s.criterion, s.method, options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{},
+                options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
+  const bool smallest = options.poses ? false : options.smallest || design.smallest;
+  if (!options.poses && !design.poses && !smallest)
+    throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
+  if (!smallest) s.poses = options.poses ? *options.poses : design.poses->value;
+  if (smallest && !design.require.accuracy && design.require.sigma.empty())
+    throw InputError(problem.at(design.line), "poses: auto does not know what must be reached",
+                     "set design: require: accuracy or sigma");
+  if (smallest && design.require.accuracy && !design.test_poses)
+    throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
+                     "set design: test_poses");
+  s.candidates = options.candidates.value_or(design.candidates.value);
+  s.prior = options.prior.value_or(design.prior);
+  s.reserve = options.reserve || design.reserve;
+  s.repeats = options.repeats.value_or(design.repeats);
+  s.scaling = options.scaling.value_or(design.scaling);
+  s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
+  s.measured = !options.augment.empty() ? options.augment : design.measured.value_or(std::filesystem::path());
+  s.planner.restarts = options.restarts.value_or(design.restarts.value);
+  s.planner.seed = options.seed;
+  s.planner.threads = options.threads;
+  return s;
+}
+
+}  // namespace posewright

@@ -1,0 +1,111 @@
+#include "study_space.hpp"
+
+#include <limits>
+#include <numbers>
+
+#include "posewright/model/whitening.hpp"
+
+namespace posewright {
+namespace {
+
+// Two poses that differ by less than this share of every range count as one.
+constexpr double same_pose = 0.01;
+
+class StudyProbe : public ConfigurationSpace::Probe {
+ public:
+  StudyProbe(const std::vector<SpacePart>& parts, const Eigen::MatrixXd& R)
+      : parts_(parts), R_(R), scratch_(parts.size()) {
+    int rows = 0;
+    for (const SpacePart& part : parts) {
+      first_row_.push_back(rows);
+      rows += part.model->block_rows(part.selected);
+    }
+    raw_ = BlockArray::RowMatrix::Zero(rows, R.cols());
+  }
+
+  bool feasible(std::span<const double> q) override {
+    for (const SpacePart& part : parts_)
+      if (part.workspace->violation(q) >= 0) return false;
+    return true;
+  }
+
+  bool block(std::span<const double> q, double* rows, int stride) override {
+    Eigen::Index column = 0;
+    for (std::size_t v = 0; v < parts_.size(); ++v) {
+      const SpacePart& part = parts_[v];
+      if (!whitened_block(*part.model, q, {}, part.selected, scratch_[v], &raw_(first_row_[v], column),
+                          int(raw_.cols())))
+        return false;
+      column += Eigen::Index(part.selected.size());
+    }
+    white_ = raw_;
+    R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(white_);
+    if (!white_.allFinite()) return false;
+    BlockArray::Map(rows, white_.rows(), white_.cols(), Eigen::OuterStride<>(stride)) = white_;
+    return true;
+  }
+
+ private:
+  const std::vector<SpacePart>& parts_;
+  const Eigen::MatrixXd& R_;
+  std::vector<Linearisation> scratch_;
+  std::vector<int> first_row_;
+  BlockArray::RowMatrix raw_, white_;
+};
+
+class StudySpace : public ConfigurationSpace {
+ public:
+  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Spacing& spacing, Eigen::MatrixXd R)
+      : parts_(std::move(parts)), candidates_(candidates), spacing_(spacing), R_(std::move(R)) {
+    for (const Coordinate& c : parts_.front().workspace->coordinates())
+      axes_.push_back({c.lower, c.upper, !c.discrete()});
+    for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
+  }
+
+  const std::vector<Axis>& axes() const override { return axes_; }
+  bool is_box() const override { return box_; }
+  const Spacing& spacing() const override { return spacing_; }
+  std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
+  std::unique_ptr<Probe> probe() const override { return std::make_unique<StudyProbe>(parts_, R_); }
+
+ private:
+  std::vector<SpacePart> parts_;
+  const Configurations& candidates_;
+  Spacing spacing_;
+  Eigen::MatrixXd R_;
+  std::vector<Axis> axes_;
+  bool box_ = true;  // limits are the only check
+};
+
+}  // namespace
+
+std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
+                                                             const Configurations& candidates, const Spacing& spacing,
+                                                             Eigen::MatrixXd R) {
+  return std::make_unique<StudySpace>(std::move(parts), candidates, spacing, std::move(R));
+}
+
+Spacing spacing_of(const std::vector<Coordinate>& coordinates,
+                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats) {
+  Spacing spacing;
+  if (!distance && repeats.most > 1) return spacing;
+  const auto d = Eigen::Index(coordinates.size());
+  spacing.unit.resize(d);
+  spacing.period = Eigen::VectorXd::Zero(d);
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const Coordinate& c = coordinates[std::size_t(k)];
+    if (c.periodic) spacing.period[k] = 2 * std::numbers::pi;
+    if (c.discrete()) {
+      // Another load case or station is another pose, however small the step between the numbers.
+      spacing.unit[k] = 1e-12;
+    } else if (distance) {
+      const double asked = c.unit == "m" ? distance->length : distance->angle;
+      spacing.unit[k] = asked > 0 ? asked : std::numeric_limits<double>::infinity();
+    } else {
+      spacing.unit[k] = c.upper > c.lower ? same_pose * (c.upper - c.lower) : std::numeric_limits<double>::infinity();
+    }
+  }
+  return spacing;
+}
+
+}  // namespace posewright

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Configurations of the problem's test poses and their weights (empty: all 1): as written, from a file, evenly through
+/// the workspace, or reached for points of a box or a file.
+/// @param seen  the problem with an instrument that reads the tip's pose
+struct TestConfigurations {
+  std::vector<std::vector<double>> configurations;
+  std::vector<double> weights;
+};
+TestConfigurations test_configurations(const Problem& seen, const IdentificationModel& model, std::uint64_t seed);
+
+}  // namespace posewright

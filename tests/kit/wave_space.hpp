@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/planning/configuration_space.hpp"
+#include "posewright/support/random.hpp"
+
+namespace posewright {
+
+/// Smooth blocks over the unit box: entry (i, c) is a wave cos(a·q + b) with its own a and b. What a robot is to
+/// planners, without a robot. The oracle counts how often it was asked for a block outside the feasible set.
+class WaveSpace : public ConfigurationSpace {
+ public:
+  using Oracle = std::function<bool(std::span<const double>)>;
+
+  /// @param oracle  empty: the whole box is feasible
+  WaveSpace(int dimension, int rows, int columns, std::size_t candidates, std::uint64_t seed, Oracle oracle = {})
+      : rows_(rows), columns_(columns), oracle_(std::move(oracle)) {
+    Random random(seed, 7);
+    for (int i = 0; i < rows * columns * (dimension + 1); ++i) waves_.push_back(random.uniform(-4.0, 4.0));
+    axes_.assign(std::size_t(dimension), Axis{0.0, 1.0, true});
+    spacing_.unit = Eigen::VectorXd::Constant(dimension, 0.01);
+    spacing_.period = Eigen::VectorXd::Zero(dimension);
+    while (configurations_.size() < candidates) {
+      std::vector<double> q(static_cast<std::size_t>(dimension));
+      for (double& x : q) x = random.uniform();
+      if (!oracle_ || oracle_(q)) configurations_.push_back(q);
+    }
+    blocks_ = BlockArray(candidates, rows, columns);
+    for (std::size_t i = 0; i < candidates; ++i) write(configurations_[i], blocks_.row(i, 0), blocks_.stride());
+  }
+
+  const BlockArray& blocks() const { return blocks_; }
+  void allow_repeats() { spacing_.unit.resize(0); }
+
+  const std::vector<Axis>& axes() const override { return axes_; }
+  bool is_box() const override { return !oracle_; }
+  const Spacing& spacing() const override { return spacing_; }
+  std::span<const double> candidate(int index) const override { return configurations_[std::size_t(index)]; }
+
+  std::unique_ptr<Probe> probe() const override { return std::make_unique<WaveProbe>(*this); }
+
+  bool inside(std::span<const double> q) const {
+    for (const double x : q)
+      if (!(x >= 0 && x <= 1)) return false;
+    return !oracle_ || oracle_(q);
+  }
+
+ private:
+  class WaveProbe : public Probe {
+   public:
+    explicit WaveProbe(const WaveSpace& space) : space_(space) {}
+    bool feasible(std::span<const double> q) override { return space_.inside(q); }
+    bool block(std::span<const double> q, double* rows, int stride) override {
+      space_.write(q, rows, stride);
+      return true;
+    }
+
+   private:
+    const WaveSpace& space_;
+  };
+
+  void write(std::span<const double> q, double* rows, int stride) const {
+    const double* w = waves_.data();
+    for (int i = 0; i < rows_; ++i)
+      for (int c = 0; c < columns_; ++c) {
+        double phase = *w++;
+        for (const double x : q) phase += *w++ * x;
+        rows[i * stride + c] = std::cos(phase);
+      }
+  }
+
+  int rows_, columns_;
+  Oracle oracle_;
+  std::vector<double> waves_;
+  std::vector<Axis> axes_;
+  Spacing spacing_;
+  std::vector<std::vector<double>> configurations_;
+  BlockArray blocks_;
+};
+
+}  // namespace posewright

@@ -139,11 +139,10 @@ class Run {
     const Part part(monitor_, exchange_share);
     PlannerOptions options = options_;
     options.seed = seed;
-    const Design found =
-        run_restarts(task_, options, part.monitor(), "exchange",
-                     [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
-                       return exchange_search(task, start_of_restart(task, i, random), options.kicks, random, watch);
-                     });
+    const Design found = run_restarts(task_, options, part.monitor(), "exchange",
+                                      [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
+                                        return exchange_restart(task, i, options.kicks, random, watch);
+                                      });
     best_.restarts += found.restarts;
     take({found.members, found.value, found.exchanges, true});
     record("exchange");

@@ -19,6 +19,30 @@ Outcome exchange_search(const DesignTask& task, std::vector<int> start, int kick
   return best;
 }
 
+namespace {
+
+/// As many local optima from fresh starts as a chain of kicks has, for landscapes where chains get stuck.
+Outcome fresh_starts(const DesignTask& task, std::size_t restart, int count, Random& random, const Monitor& monitor) {
+  Outcome best;
+  for (int i = 0; i <= count && (i == 0 || !monitor.should_stop()); ++i) {
+    // The first is the restart's own; weights and uniform draws take turns after it.
+    const std::size_t kind = i == 0 ? restart : std::size_t(1 + i % 4 / 3);
+    Outcome found = exchange_search(task, start_of_restart(task, kind, random), 0, random, monitor);
+    found.exchanges += best.exchanges;
+    if (!best.done || found.value > best.value + smallest_gain) best = std::move(found);
+    else best.exchanges = found.exchanges;
+  }
+  return best;
+}
+
+}  // namespace
+
+Outcome exchange_restart(const DesignTask& task, std::size_t restart, int kicks, Random& random,
+                         const Monitor& monitor) {
+  if (restart % 2 == 1) return fresh_starts(task, restart, kicks, random, monitor);
+  return exchange_search(task, start_of_restart(task, restart, random), kicks, random, monitor);
+}
+
 Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(task, options, monitor, "exchange",
                       [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {

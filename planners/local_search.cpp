@@ -47,7 +47,9 @@ long settle(DesignState& state, const Monitor& monitor) {
 }
 
 void kick(DesignState& state, int candidates, Random& random) {
-  const auto count = std::min<std::size_t>(2 + std::size_t(random.index(4)), state.members().size());
+  // Measured on the instances of docs/benchmarks.md: kicks of two to five fall back to where they came from.
+  const auto half = std::max<std::size_t>(2, state.members().size() / 2);
+  const auto count = std::min({std::size_t(6 + random.index(8)), half, state.members().size()});
   for (std::size_t i = 0; i < count; ++i) {
     const int enter = random.index(candidates), position = random.index(int(state.members().size()));
     if (state.may_enter(enter)) state.apply(position, enter);

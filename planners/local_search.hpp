@@ -25,7 +25,7 @@ Outcome outcome_of(const DesignState& state, long exchanges);
 /// once (Fedorov 1972). Returns the number of accepted swaps.
 long settle(DesignState& state, const Monitor& monitor);
 
-/// Replaces two to five members by random candidates that may enter.
+/// Replaces six to thirteen members, at most half of them, by random candidates that may enter.
 void kick(DesignState& state, int candidates, Random& random);
 
 /// Puts the state back to `members` (as a multiset): what is missing takes the place of what is too much.

@@ -24,7 +24,9 @@ std::vector<int> promising(const DesignTask& task) {
   // Enough to choose from, whatever the threshold says; and no more than an exchange can compare quickly where
   // (almost) all candidates are alike, as the poses of an arm are.
   const int columns = task.candidates.blocks->columns();
-  const double limit = std::max(nth_largest(std::max(40 * columns, 20 * task.poses)),
+  // Blocks of several rows differ less from each other than rows do; with nuisance columns they need more again.
+  const int each = task.candidates.blocks->rows() > 1 && task.candidates.nuisance == 0 ? 20 : 40;
+  const double limit = std::max(nth_largest(std::max(each * columns, 20 * task.poses)),
                                 std::min(threshold, nth_largest(std::max(10 * task.poses, 200))));
   std::vector<int> kept;
   for (std::size_t i = 0; i < w.sensitivity.size(); ++i)

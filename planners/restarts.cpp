@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
+#include <utility>
 
 #include "posewright/support/parallel.hpp"
 #include "reduced_task.hpp"
@@ -13,29 +13,52 @@ namespace posewright {
 namespace {
 
 // How many of the reduced search's results are taken through all candidates.
-constexpr std::size_t finished = 3;
+constexpr std::size_t finished = 2;
+
+/// The best few outcomes so far and totals over all: what is kept does not depend on the order in which they come.
+class BestOutcomes {
+ public:
+  void add(std::size_t restart, Outcome outcome) {
+    ++count_;
+    exchanges_ += outcome.exchanges;
+    std::sort(outcome.members.begin(), outcome.members.end());
+    const auto before = [](const Entry& a, const Entry& b) {
+      return a.second.value != b.second.value ? a.second.value > b.second.value : a.first < b.first;
+    };
+    Entry entry{restart, std::move(outcome)};
+    // The same local optimum met again counts once.
+    const auto same = std::find_if(best_.begin(), best_.end(),
+                                   [&](const Entry& other) { return other.second.members == entry.second.members; });
+    if (same != best_.end() && before(*same, entry)) return;
+    if (same != best_.end()) best_.erase(same);
+    best_.insert(std::upper_bound(best_.begin(), best_.end(), entry, before), std::move(entry));
+    if (best_.size() > finished) best_.pop_back();
+  }
+
+  int count() const { return count_; }
+  long exchanges() const { return exchanges_; }
+  std::vector<Outcome> take() {
+    std::vector<Outcome> outcomes;
+    for (Entry& entry : best_) outcomes.push_back(std::move(entry.second));
+    return outcomes;
+  }
+
+ private:
+  using Entry = std::pair<std::size_t, Outcome>;
+  std::vector<Entry> best_;
+  int count_ = 0;
+  long exchanges_ = 0;
+};
 
 /// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
-/// whole task. Outcomes are in the order of restarts; equal values count once.
+/// whole task.
 void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
             const Monitor& monitor) {
-  std::vector<std::size_t> order(outcomes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return outcomes[a].value > outcomes[b].value; });
-  std::vector<std::size_t> best;
-  for (const std::size_t i : order)
-    if (outcomes[i].done && best.size() < finished &&
-        (best.empty() || outcomes[i].value < outcomes[best.back()].value - smallest_gain))
-      best.push_back(i);
-  std::vector<Outcome> result(best.size());
-  parallel_for(best.size(), threads, [&](std::size_t i, int) {
-    const Outcome& outcome = outcomes[best[i]];
-    const auto state = task.criterion->start(task.candidates, reduced.original(outcome.members));
+  parallel_for(outcomes.size(), threads, [&](std::size_t i, int) {
+    const auto state = task.criterion->start(task.candidates, reduced.original(outcomes[i].members));
     const long more = settle(*state, monitor);
-    result[i] = outcome_of(*state, outcome.exchanges + more);
+    outcomes[i] = outcome_of(*state, more);
   });
-  for (Outcome& outcome : outcomes) outcome.value = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < best.size(); ++i) outcomes[best[i]] = result[i];
 }
 
 }  // namespace
@@ -50,32 +73,32 @@ std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Ran
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search) {
   const ReducedTask reduced(task);
-  std::vector<Outcome> outcomes(std::size_t(options.restarts));
+  BestOutcomes best;
   std::mutex mutex;
   const double degree = task.criterion->function().degree();
   Progress progress{stage, 0, double(options.restarts), {}, task.bound, {}};
-  parallel_for(outcomes.size(), thread_count(options.threads), [&](std::size_t i, int) {
+  parallel_for(std::size_t(options.restarts), thread_count(options.threads), [&](std::size_t i, int) {
     if (i > 0 && monitor.should_stop()) return;
     Random random(options.seed, i);
-    outcomes[i] = search(reduced.task(), i, random, monitor);
+    Outcome outcome = search(reduced.task(), i, random, monitor);
     const std::scoped_lock lock(mutex);
     progress.done += 1;
-    progress.best = std::max(progress.best.value_or(outcomes[i].value), outcomes[i].value);
+    progress.best = std::max(progress.best.value_or(outcome.value), outcome.value);
+    best.add(i, std::move(outcome));
     if (progress.bound && degree > 0) progress.efficiency = std::exp((*progress.best - *progress.bound) / degree);
     monitor.report(progress);
   });
-  if (reduced.is_smaller()) finish(task, reduced, outcomes, thread_count(options.threads), monitor);
-
   Design design;
+  design.restarts = best.count();
+  design.exchanges = best.exchanges();
+  std::vector<Outcome> outcomes = best.take();
+  if (reduced.is_smaller()) finish(task, reduced, outcomes, thread_count(options.threads), monitor);
   design.value = -std::numeric_limits<double>::infinity();
   for (const Outcome& outcome : outcomes) {
-    if (!outcome.done) continue;
-    design.restarts += 1;
-    design.exchanges += outcome.exchanges;
-    if (design.members.empty() || outcome.value > design.value) {
-      design.value = outcome.value;
-      design.members = outcome.members;
-    }
+    if (reduced.is_smaller()) design.exchanges += outcome.exchanges;
+    if (!design.members.empty() && !(outcome.value > design.value)) continue;
+    design.value = outcome.value;
+    design.members = outcome.members;
   }
   design.stopped = monitor.should_stop() && design.restarts < options.restarts;
   return design;

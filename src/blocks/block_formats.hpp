@@ -9,7 +9,8 @@
 namespace posewright {
 
 bool is_npy(std::string_view bytes);
-BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
+/// Without holding the file in memory; fills in its hash.
+BlockFile read_npy(const std::filesystem::path& file, std::optional<int> rows);
 BlockFile parse_csv(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
 
 /// n from the number of table rows; throws where `rows` does not divide it or n or m is zero.

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -6,6 +8,8 @@
 #include <vector>
 
 #include "block_formats.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/sha256.hpp"
 
 // Format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html, versions 1.0 to 3.0.
 
@@ -52,17 +56,21 @@ std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& p
   return shape;
 }
 
-Header parse_header(std::string_view bytes, const SourcePlace& place) {
+/// Offset of the first number, from the first 12 bytes.
+std::size_t header_end(std::string_view bytes, const SourcePlace& place) {
   if (bytes.size() < 12) throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
   const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(bytes[i])); };
-  const bool short_length = byte(6) == 1;
-  const std::size_t length =
-      short_length ? byte(8) + 256 * byte(9) : byte(8) + 256 * (byte(9) + 256 * (byte(10) + 256 * byte(11)));
+  if (byte(6) == 1) return 10 + byte(8) + 256 * byte(9);
+  return 12 + byte(8) + 256 * (byte(9) + 256 * (byte(10) + 256 * byte(11)));
+}
+
+Header parse_header(std::string_view bytes, const SourcePlace& place) {
   Header header;
-  header.data = (short_length ? 10 : 12) + length;
+  header.data = header_end(bytes, place);
   if (header.data > bytes.size())
     throw InputError(place, "the .npy header is cut off", "save the array with numpy.save");
-  const std::string_view text = bytes.substr(header.data - length, length);
+  const std::size_t begin = bytes[6] == 1 ? 10 : 12;
+  const std::string_view text = bytes.substr(begin, header.data - begin);
   const std::string_view kind = value_of(text, "descr", place);
   if (kind.starts_with("'<f8'")) header.item = 8;
   else if (kind.starts_with("'<f4'")) header.item = 4;
@@ -92,8 +100,11 @@ static_assert(std::endian::native == std::endian::little, "number_at reads littl
 
 bool is_npy(std::string_view bytes) { return bytes.starts_with(magic); }
 
-BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place) {
-  const Header header = parse_header(bytes, place);
+namespace {
+
+/// n, r and m that the header announces; throws where the file does not hold as many numbers.
+std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, std::optional<int> rows,
+                                    const SourcePlace& place) {
   std::size_t n = 0, r = 1, m = 0;
   if (header.shape.size() == 3) {
     n = header.shape[0], r = header.shape[1], m = header.shape[2];
@@ -106,16 +117,37 @@ BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const Sourc
                      "n × r × m (3) or (n·r) × m (2) is needed");
   }
   if (n == 0 || r == 0 || m == 0) throw InputError(place, "has no blocks", "n, r and m must be at least 1");
-  const std::size_t available = (bytes.size() - header.data) / std::size_t(header.item);
+  const std::size_t available = (size - header.data) / std::size_t(header.item);
   if (r > 100000 || m > 100000 || available / r / m < n || available != n * r * m)
     throw InputError(place, "holds " + std::to_string(available) + " numbers",
                      std::to_string(n) + " × " + std::to_string(r) + " × " + std::to_string(m) + " are announced");
+  return {n, r, m};
+}
+
+}  // namespace
+
+BlockFile read_npy(const std::filesystem::path& path, std::optional<int> rows) {
+  const SourcePlace place{path.string(), 0};
+  FileReader reader(path);
+  Sha256 hash;
+  std::string head(12, '\0');
+  head.resize(reader.read(head.data(), head.size()));
+  const std::size_t header_size = std::min<std::size_t>(header_end(head, place), reader.size());
+  const std::size_t known = head.size();
+  head.resize(std::max(known, header_size));
+  head.resize(known + reader.read(head.data() + known, head.size() - known));
+  hash.add(head);
+  const Header header = parse_header(head, place);
+  const auto [n, r, m] = shape_of(header, reader.size(), rows, place);
   BlockFile file{BlockArray(n, int(r), int(m)), {}, {}};
-  const char* p = bytes.data() + header.data;
+  std::vector<char> line(m * std::size_t(header.item));
   for (std::size_t i = 0; i < n * r; ++i) {
+    if (reader.read(line.data(), line.size()) != line.size())
+      throw InputError(place, "is cut off", "it may have changed while it was read");
+    hash.add({line.data(), line.size()});
     double* row = file.blocks.row(i / r, int(i % r));
-    for (std::size_t j = 0; j < m; ++j, p += header.item) {
-      row[j] = number_at(p, header.item);
+    for (std::size_t j = 0; j < m; ++j) {
+      row[j] = number_at(line.data() + j * std::size_t(header.item), header.item);
       if (!std::isfinite(row[j]))
         throw InputError(place,
                          "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
@@ -123,6 +155,7 @@ BlockFile parse_npy(std::string_view bytes, std::optional<int> rows, const Sourc
                          "all numbers must be finite");
     }
   }
+  file.sha256 = hash.hex();
   return file;
 }
 

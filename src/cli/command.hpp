@@ -35,6 +35,7 @@ const std::vector<Command>& commands();
 Command plan_command();
 Command observe_command();
 Command select_command();
+Command evaluate_command();
 
 /// Options that every command has.
 struct CommonOptions {

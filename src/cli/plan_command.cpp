@@ -17,7 +17,7 @@ po::options_description options() {
       ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")  //
       ("variant", text("V"), "model variant (design: variant, else the first)")                      //
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())      //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())              //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                  //
       ("candidates", text("n"), "feasible configurations to choose from (10000)")                    //
       ("restarts", text("k"), "starts of the search (10)")                                           //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(

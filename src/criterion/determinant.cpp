@@ -38,24 +38,27 @@ double power(double base, int exponent) {
 class SwapGain {
  public:
   SwapGain(InverseInformation& inverse, int rows)
-      : inverse_(inverse),
-        rows_(rows),
-        d_k_(rows, rows),
-        c_(rows, rows),
-        d_j_(rows, rows),
-        b_(rows, rows),
-        work_(rows, rows) {}
+      : inverse_(inverse), rows_(rows), d_k_(rows, rows), c_(rows, rows), d_j_(rows, rows), work_(rows, rows) {}
+
+  /// Call whenever the inverse has changed: what is remembered of it is void.
+  void forget() { ++version_; }
 
   void leave(int k) {
     inverse_.project(k, y_);
     inverse_.cross(k, y_, d_k_);
+    d_leaving_ = inverse_.trace(k);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(d_k_);
     slack_ = 1 - eigen.eigenvalues().maxCoeff();
     regular_ = slack_ > indispensable;
+    half_ = y_;
     if (!regular_) return;
     const Eigen::VectorXd rest = 1 - eigen.eigenvalues().array();
     leave_log_det_ = rest.array().log().sum();
-    b_ = eigen.eigenvectors() * rest.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    // Rows V J_kᵀ (I − D_k)^{-1/2}: J_j times these, squared, is C (I − D_k)⁻¹ Cᵀ.
+    const Eigen::Index stride = inverse_.blocks().stride();
+    Eigen::Map<BlockArray::RowMatrix>(half_.data(), rows_, stride).noalias() =
+        (eigen.eigenvectors() * rest.cwiseSqrt().cwiseInverse().asDiagonal()).transpose() *
+        Eigen::Map<const BlockArray::RowMatrix>(y_.data(), rows_, stride);
   }
 
   /// ln det(I + D_j).
@@ -73,30 +76,32 @@ class SwapGain {
     return change < rows_ * std::log(indispensable) ? -infinity : change;
   }
 
-  /// exp(gain) is at most this, from tr D_j alone: D_j + C (I − D_k)⁻¹ Cᵀ ≼ D_j/(1 − λmax), and the geometric mean of
-  /// eigenvalues is at most the arithmetic; also at most det(I + D_j) since the swap cannot beat adding without
-  /// leaving.
-  double ratio_bound(double trace_j) const {
-    const double added = power(1 + trace_j / rows_, rows_);
-    if (!regular_) return added;
-    return std::min(added, std::exp(leave_log_det_) * power(1 + trace_j / (rows_ * slack_), rows_));
+  /// Next candidate from `first` on that may gain more than `wanted`, by bounds that cost r² dot products. With
+  /// A = D_j + C (I − D_k)⁻¹ Cᵀ: gain = ln det(I − D_k) + ln det(I + A) ≤ ln det(I − D_k) + r ln(1 + tr A/r), A ≼
+  /// D_j/(1 − λmax(D_k)), and no swap gains more than adding alone.
+  std::size_t next(std::size_t first, double wanted, const std::vector<unsigned char>& blocked) const {
+    const std::vector<double>& d = inverse_.traces();
+    const double alone = rows_ * std::expm1(wanted / rows_);
+    const double both = regular_ ? rows_ * std::expm1((wanted - leave_log_det_) / rows_) : 0.0;
+    // Φ is concave: no swap gains more than its derivative promises.
+    double least = std::max(d_leaving_ + wanted, alone);
+    if (regular_) least = std::max(least, slack_ * both);
+    const BlockArray& blocks = inverse_.blocks();
+    return kernels().next_block(blocks.data(), first, blocks.count(), rows_, blocks.stride(), half_.data(), rows_,
+                                d.data(), blocked.data(), least, regular_ ? both : -infinity);
   }
-  /// Sharper bound with the cross terms known.
-  double bound_with_cross(int j, double trace_j) {
-    inverse_.cross(j, y_, c_);
-    if (!regular_) return infinity;
-    work_.noalias() = c_ * b_;
-    return leave_log_det_ + rows_ * std::log1p((trace_j + work_.cwiseProduct(c_).sum()) / rows_);
-  }
-  /// Exact gain; call bound_with_cross(j) first.
+
+  /// Exact gain.
   double exact(int j) {
-    inverse_.own(j, d_j_);
+    own(j);
     if (regular_) {
-      work_.noalias() = c_ * b_ * c_.transpose();
+      inverse_.cross(j, half_, c_);
+      work_.noalias() = c_ * c_.transpose();
       work_ += d_j_;
       work_.diagonal().array() += 1;
       return leave_log_det_ + log_det_positive(work_, factor_);
     }
+    inverse_.cross(j, y_, c_);
     d_j_.diagonal().array() += 1;
     const double added = log_det_positive(d_j_, factor_);
     work_ = c_;
@@ -107,12 +112,38 @@ class SwapGain {
   }
 
  private:
+  /// D_j from the last time it was asked for since the inverse changed: near a local optimum every position asks for
+  /// the same few.
+  void own(int j) {
+    if (rows_ == 1) {
+      inverse_.own(j, d_j_);
+      return;
+    }
+    if (remembered_.empty()) {
+      remembered_.resize(remembered_count * std::size_t(rows_ * rows_));
+      whose_.assign(remembered_count, {-1, 0});
+    }
+    const std::size_t slot = std::size_t(j) % remembered_count;
+    Eigen::Map<Eigen::MatrixXd> kept(remembered_.data() + slot * std::size_t(rows_ * rows_), rows_, rows_);
+    if (whose_[slot] != std::pair{j, version_}) {
+      inverse_.own(j, d_j_);
+      kept = d_j_;
+      whose_[slot] = {j, version_};
+    } else {
+      d_j_ = kept;
+    }
+  }
+
+  static constexpr std::size_t remembered_count = 2048;
   InverseInformation& inverse_;
   int rows_;
-  std::vector<double> y_;
-  Eigen::MatrixXd d_k_, c_, d_j_, b_, work_;
+  long version_ = 0;
+  std::vector<double> remembered_;
+  std::vector<std::pair<int, long>> whose_;  // candidate and version of each slot
+  std::vector<double> y_, half_;
+  Eigen::MatrixXd d_k_, c_, d_j_, work_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  double slack_ = 0, leave_log_det_ = 0;
+  double slack_ = 0, leave_log_det_ = 0, d_leaving_ = 0;
   bool regular_ = true;
 };
 
@@ -149,6 +180,7 @@ class DeterminantState : public DesignState {
 
   bool refresh() override {
     since_refresh_ = 0;
+    gain_.forget();
     singular_ = !inverse_.refresh(members(), 0.0);
     if (singular_) inverse_.refresh(members(), start_ridge);
     return !singular_;
@@ -161,6 +193,7 @@ class DeterminantState : public DesignState {
   }
 
   void do_change(int leave, int enter) override {
+    gain_.forget();
     // A ridge is for starts; every change may be the one that makes it needless.
     if (singular_ || !inverse_.change(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
   }
@@ -176,18 +209,10 @@ class DeterminantState : public DesignState {
   Swap best_block(int k, double min_gain) {
     gain_.leave(k);
     Swap best{-1, min_gain};
-    double ratio = std::exp(min_gain);
-    const int n = static_cast<int>(blocks().count());
-    for (int j = 0; j < n; ++j) {
-      const double d = inverse_.trace(j);
-      // log det is concave: no swap gains more than its derivative promises.
-      if (d - inverse_.trace(k) <= best.gain || blocked()[std::size_t(j)] != 0) continue;
-      if (gain_.ratio_bound(d) <= ratio || gain_.bound_with_cross(j, d) <= best.gain) continue;
-      const double gain = gain_.exact(j);
-      if (gain > best.gain) {
-        best = {j, gain};
-        ratio = std::exp(gain);
-      }
+    const std::size_t n = blocks().count();
+    for (std::size_t j = gain_.next(0, min_gain, blocked()); j < n; j = gain_.next(j + 1, best.gain, blocked())) {
+      const double gain = gain_.exact(int(j));
+      if (gain > best.gain) best = {int(j), gain};
     }
     return best.enter < 0 ? Swap{} : best;
   }

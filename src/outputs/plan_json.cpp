@@ -30,6 +30,7 @@ Json certificate_json(const Plan& plan) {
   if (is_determinant(plan)) candidates["log_det_bound"] = c.bound;
   candidates["max_sensitivity_ratio"] = c.max_sensitivity_ratio;
   candidates["count"] = c.count;
+  candidates["found"] = c.found;
   candidates["repeats"] = c.repeats;
   candidates["optimal"] = plan.proved_optimal;
   Json workspace = nullptr;

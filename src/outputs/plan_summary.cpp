@@ -43,8 +43,9 @@ std::string certificate_text(const Plan& plan) {
   const std::string policy = c.repeats == "forbid"  ? " without repeats"
                              : c.repeats == "allow" ? ", repeats allowed"
                                                     : fmt::format(", each at most {} times", c.repeats);
-  std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}.\n", percent(c.efficiency), as,
-                                 poses, c.count, policy);
+  const std::string found = c.found > 0 ? fmt::format(" ({} found beyond those drawn)", c.found) : "";
+  std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}{}.\n", percent(c.efficiency),
+                                 as, poses, c.count, found, policy);
   if (plan.proved_optimal) text += "No plan of these candidates is better: every other one is ruled out.\n";
   if (c.workspace)
     text +=

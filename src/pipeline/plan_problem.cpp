@@ -11,7 +11,6 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/support/error.hpp"
 #include "preparation.hpp"
-#include "study_space.hpp"
 
 namespace posewright {
 namespace {
@@ -39,8 +38,9 @@ class Planning {
     request.reserve = settings_.reserve;
     request.planner = settings_.planner;
     if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
-    request.make_space = [this](const Eigen::MatrixXd& R) { return space(R); };
-    const SearchResult found = search(search_parts(prepared_, settings_.planner.threads), request, monitor_);
+    request.make_space = space_maker(prepared_);
+    const SearchResult found =
+        search(search_parts(prepared_, prepared_.configurations, settings_.planner.threads), request, monitor_);
     return assemble(found);
   }
 
@@ -74,13 +74,6 @@ class Planning {
   }
 
  private:
-  std::unique_ptr<ConfigurationSpace> space(const Eigen::MatrixXd& R) const {
-    std::vector<SpacePart> parts;
-    for (const PreparedVariant& v : prepared_.variants)
-      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
-    return make_configuration_space(std::move(parts), prepared_.configurations, prepared_.spacing, R);
-  }
-
   int limit() const {
     if (settings_.repeats.most > 1) return most_poses;
     return std::min<int>(most_poses, int(prepared_.configurations.count()));

@@ -120,10 +120,19 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   return prepared;
 }
 
-std::vector<SearchPart> search_parts(const Preparation& prepared, int threads) {
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared) {
+  return [&prepared](const Eigen::MatrixXd& R) {
+    std::vector<SpacePart> parts;
+    for (const PreparedVariant& v : prepared.variants)
+      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
+    return make_configuration_space(std::move(parts), prepared.configurations, prepared.spacing, R);
+  };
+}
+
+std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
   for (const PreparedVariant& variant : prepared.variants)
-    parts.push_back({build_blocks(*variant.model, variant.columns().selected, prepared.configurations, threads),
+    parts.push_back({build_blocks(*variant.model, variant.columns().selected, configurations, threads),
                      variant.columns().nuisance, variant.weight, variant.scale, variant.test_points, variant.prior});
   return parts;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,10 +54,13 @@ struct Preparation {
 };
 Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor);
 
-/// Raw blocks of the candidates for every variant, with what each search needs beside them.
-std::vector<SearchPart> search_parts(const Preparation& prepared, int threads);
+/// Raw blocks of the configurations for every variant, with what each search needs beside them.
+std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads);
 
-/// Configurations of the pool one after the other in a list of their own.
+/// The workspace of the problem for searches beyond the candidates; `prepared` must outlive what it makes.
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared);
+
+/// One configuration more.
 void append(Configurations& list, std::span<const double> q);
 
 }  // namespace posewright

@@ -9,6 +9,7 @@
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/reserve.hpp"
+#include "posewright/planning/extended_bound.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/support/error.hpp"
 
@@ -100,15 +101,22 @@ void require_choice(const SearchRequest& request, std::size_t candidates) {
       request.repeats.most == 1 ? " without repeats" : fmt::format(", each at most {} times", request.repeats.most)));
 }
 
-std::vector<double> without_each(const Joined& joined, const Design& design, const ConfigurationSpace* space,
+/// Whitened blocks of configurations that are no candidates.
+BlockArray blocks_at(const std::vector<std::vector<double>>& configurations, const ConfigurationSpace& space,
+                     const Joined& joined) {
+  BlockArray blocks(configurations.size(), joined.blocks.rows(), joined.blocks.columns());
+  const auto probe = space.probe();
+  for (std::size_t i = 0; i < blocks.count(); ++i) probe->block(configurations[i], blocks.row(i, 0), blocks.stride());
+  return blocks;
+}
+
+std::vector<double> without_each(const Joined& joined, const Design& design, const BlockArray& added,
                                  const InformationFunction& function) {
   const auto n = joined.blocks.count();
   BlockArray chosen(design.members.size(), joined.blocks.rows(), joined.blocks.columns());
-  const auto probe = space != nullptr ? space->probe() : nullptr;
   for (std::size_t i = 0; i < chosen.count(); ++i) {
     const auto member = std::size_t(design.members[i]);
-    if (member < n) chosen.block(i) = joined.blocks.block(member);
-    else probe->block(design.added[member - n], chosen.row(i, 0), chosen.stride());
+    chosen.block(i) = member < n ? joined.blocks.block(member) : added.block(member - n);
   }
   Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
   if (joined.prior.size() > 0) M += joined.prior;
@@ -141,6 +149,14 @@ std::vector<BlockArray> raw_blocks(const Joined& joined, const std::vector<std::
   return result;
 }
 
+void fill(Certificate& certificate, const ApproximateDesign& approximate, const Joined& joined,
+          const SearchRequest& request, double offset) {
+  certificate.bound = approximate.bound_for(request.poses) + offset;
+  certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
+  certificate.count = joined.blocks.count();
+  certificate.repeats = repeats_text(request.repeats);
+}
+
 }  // namespace
 
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
@@ -154,6 +170,22 @@ void require_known(const std::string& criterion, const std::string& method, cons
 std::string repeats_text(Repeats repeats) {
   if (repeats.most == 1) return "forbid";
   return repeats.most == Repeats::any_number ? "allow" : std::to_string(repeats.most);
+}
+
+Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  require_choice(request, parts.front().blocks.count());
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  const auto criterion = entry.make(joined.data);
+  Bound result;
+  result.degree = criterion->function().degree();
+  result.references = joined.references;
+  result.certificate.proved = result.degree > 0;
+  if (!result.certificate.proved) return result;
+  const ApproximateDesign approximate =
+      solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
+  fill(result.certificate, approximate, joined, request, entry.determinant ? joined.offsets.front() : 0.0);
+  return result;
 }
 
 SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
@@ -208,19 +240,32 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.stopped = approximate.stopped || result.design.stopped;
   result.references = joined.references;
   result.certificate.proved = degree > 0;
-  result.certificate.bound = (degree > 0 ? approximate.bound_for(request.poses) : 0.0) + offset;
-  result.certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
-  result.certificate.count = joined.blocks.count();
-  result.certificate.repeats = repeats_text(request.repeats);
+  BlockArray added;
+  if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
+  if (degree > 0) fill(result.certificate, approximate, joined, request, offset);
+  if (degree > 0 && !result.design.added.empty()) {
+    // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
+    // that optimal weights over the workspace use.
+    std::vector<std::vector<double>> found = result.design.added;
+    if (workspace) found.insert(found.end(), workspace->support.begin(), workspace->support.end());
+    const BlockArray more = blocks_at(found, *space, joined);
+    const ApproximateDesign extended =
+        extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
+    fill(result.certificate, extended, joined, request, offset);
+    result.certificate.count += more.count();
+    result.certificate.found = more.count();
+  }
   if (workspace)
     result.certificate.workspace = {0.0, workspace->bound_for(request.poses) + offset, workspace->max_ratio,
                                     fmt::format("largest d(q) of {} local searches ({}); not a proof",
                                                 workspace->searches, space->is_box() ? "SLSQP" : "SBPLX")};
   for (const SearchStage& stage : result.design.stages)
     result.stages.push_back({stage.name, stage.value + offset,
-                             task.bound ? std::optional(std::exp((stage.value - *task.bound) / degree)) : std::nullopt,
+                             degree > 0
+                                 ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / degree))
+                                 : std::nullopt,
                              stage.seconds});
-  result.without = without_each(joined, result.design, space.get(), function);
+  result.without = without_each(joined, result.design, added, function);
   result.chosen = raw_blocks(joined, shapes, result.design);
   return result;
 }

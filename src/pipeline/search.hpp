@@ -54,6 +54,14 @@ void require_known(const std::string& criterion, const std::string& method, cons
 /// blocks and a few vectors of their number.
 SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
 
+/// The bound alone: what no plan of as many of the candidates exceeds.
+struct Bound {
+  Certificate certificate;
+  double degree = 0.0;
+  std::vector<double> references{};
+};
+Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
+
 /// Efficiencies of a plan whose Φ is `phi`; the last step so that they rest on the evaluation's number.
 void certify(Certificate& certificate, double phi, double degree);
 

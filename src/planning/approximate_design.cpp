@@ -25,11 +25,6 @@ std::vector<int> largest(const std::vector<double>& value, std::vector<int> amon
   return among;
 }
 
-/// The rounding of the pass behind the bound, generously.
-double with_margin(double bound) {
-  return bound + 1e3 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(bound));
-}
-
 /// Longest rows plus a draw from every stretch of the array: the first are strong candidates, the second make M regular
 /// (an even stride would meet the period of a grid).
 std::vector<int> first_working_set(const BlockArray& blocks, std::size_t size) {

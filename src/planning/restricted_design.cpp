@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -34,6 +35,10 @@ double best_mean(std::vector<double> value, double cap) {
   const double sum = std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(whole), 0.0);
   if (!part) return sum / double(whole);
   return cap * sum + (1 - double(whole) * cap) * value[whole];
+}
+
+double with_margin(double bound) {
+  return bound + 1e3 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(bound));
 }
 
 RestrictedDesign::RestrictedDesign(const BlockArray& blocks, const InformationFunction& function, double cap,

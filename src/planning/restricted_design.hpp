@@ -12,6 +12,9 @@ namespace posewright {
 /// Largest Σ v_i value_i over 0 ≤ v ≤ cap, Σv = 1: the largest values, each up to the cap, the last one in part.
 double best_mean(std::vector<double> value, double cap);
 
+/// A bound with the rounding of the pass behind it, generously.
+double with_margin(double bound);
+
 /// Primal-dual interior-point method for the approximate design problem on a working set of candidates:
 ///   max Φ(M(w)),  Σw = 1,  0 ≤ w ≤ cap,
 /// with multipliers z ≥ 0 of w ≥ 0, y ≥ 0 of w ≤ cap and λ of Σw = 1. Optimality: d(w) − λ + z − y = 0. d and the

@@ -72,6 +72,21 @@ std::string read_file(const fs::path& file, std::uintmax_t limit) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+FileReader::FileReader(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
+  const SourcePlace place{file.string(), 0};
+  std::error_code code;
+  if (fs::is_directory(file, code)) throw InputError(place, "is a folder", "a file is needed");
+  if (!in_) throw InputError(place, std::string("cannot be read: ") + std::strerror(errno), "");
+  size_ = fs::file_size(file, code);
+  if (code) throw InputError(place, "is no ordinary file", "a file is needed");
+}
+
+std::size_t FileReader::read(char* to, std::size_t count) {
+  in_.read(to, std::streamsize(count));
+  if (in_.bad()) throw InputError({file_.string(), 0}, "cannot be read to its end", "");
+  return std::size_t(in_.gcount());
+}
+
 void write_file_atomically(const fs::path& file, std::string_view bytes) {
   if (fs::is_directory(file)) cannot_write(file, "is a folder");
   TemporaryFile temporary(file);

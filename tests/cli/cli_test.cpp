@@ -48,7 +48,7 @@ TEST(CommandLine, PlanWritesBothFilesAndASummary) {
       run_program(folder.path(), {"plan", telescope, "--candidates", "800", "-o", "p.json", "--poses-csv", "p.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("40 poses for variant rigid: 42 parameters"));
-  EXPECT_THAT(run.out, HasSubstr("as informative as any plan of 40 of these 800 candidates without repeats"));
+  EXPECT_THAT(run.out, HasSubstr("as informative as any plan of 40 of these"));
   EXPECT_THAT(run.out, HasSubstr("boundary of the feasible set"));
   EXPECT_EQ(run.err, "") << "no progress where stderr is no terminal";
   const auto json = nlohmann::json::parse(read_file(folder / "p.json"));

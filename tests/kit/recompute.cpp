@@ -59,7 +59,7 @@ WrittenPlan read_back(const std::string& text) {
   plan.log_det_bound = json.at("certificate").at("candidates").at("log_det_bound");
   plan.efficiency = json.at("certificate").at("candidates").at("efficiency");
   for (const auto& pose : json.at("poses")) {
-    plan.candidates.push_back(pose.at("candidate"));
+    plan.candidates.push_back(pose.at("candidate").is_null() ? -1 : pose.at("candidate").get<int>());
     if (pose.contains("configuration")) plan.poses.push_back(pose.at("configuration"));
   }
   return plan;

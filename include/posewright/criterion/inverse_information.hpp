@@ -19,6 +19,7 @@ class InverseInformation {
   double trace(int candidate) const { return d_[std::size_t(candidate)]; }
   const std::vector<double>& traces() const { return d_; }
   int columns() const { return columns_; }
+  const BlockArray& blocks() const { return blocks_; }
 
   /// Y = V J_candidateᵀ as r rows of `stride` doubles (zero beyond `columns`).
   void project(int candidate, std::vector<double>& y) const;

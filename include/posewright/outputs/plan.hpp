@@ -47,6 +47,7 @@ struct Certificate {
   double bound = 0.0;                  ///< no plan of as many of these candidates exceeds it
   double max_sensitivity_ratio = 1.0;  ///< how near the weights behind the bound are to their own optimum
   std::size_t count = 0;               ///< candidates
+  std::size_t found = 0;               ///< how many of them were found by searches, beyond those drawn
   std::string repeats = "forbid";      ///< what the bound allows: forbid, allow or a number
   struct Workspace {
     double efficiency = 0.0, bound = 0.0, max_sensitivity_ratio = 1.0;

@@ -60,7 +60,7 @@ struct DesignSpec {
   };
   std::vector<Weighted> variants;  ///< for criteria over several variants
   Located<std::string> criterion{"o1", 0};
-  Located<std::string> method{"exchange", 0};
+  Located<std::string> method{"auto", 0};
   std::optional<Located<int>> poses;
   bool smallest = false;  ///< poses: auto
   RequirementSpec require;

@@ -187,8 +187,32 @@ long scan_rows(const double* x, std::size_t n, int stride, const double* u, cons
   return found;
 }
 
+std::size_t next_block(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
+                       int vectors, const double* d, const unsigned char* blocked, double least_d, double least_sum) {
+  for (std::size_t j = first; j < n; ++j) {
+    if (d[j] <= least_d || blocked[j] != 0) continue;
+    const double* row = x + j * static_cast<std::size_t>(rows * stride);
+    double sum = d[j];
+    for (int i = 0; i < rows; ++i, row += stride) {
+      int l = 0;
+      for (; l + 1 < vectors; l += 2) {
+        double a, b;
+        dot2(row, y + l * stride, y + (l + 1) * stride, stride, &a, &b);
+        sum += a * a + b * b;
+      }
+      if (l < vectors) {
+        const double last = dot(row, y + l * stride, stride);
+        sum += last * last;
+      }
+      // Squares only add: what is enough already needs no more rows.
+      if (sum > least_sum) return j;
+    }
+  }
+  return n;
+}
+
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, next_block, KERNELS_TEXT};
 
 }  // namespace posewright

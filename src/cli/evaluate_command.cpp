@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "evaluation_report.hpp"
+#include "planners/registry.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/pipeline/evaluate_problem.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "session.hpp"
+#include "write_result.hpp"
+
+namespace posewright::cli {
+namespace {
+
+po::options_description options() {
+  po::options_description options("Options");
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  options.add_options()                                                                           //
+      ("drop", text("k"), "which k poses to leave out")                                           //
+      ("add", text("k"), "which k poses to measure more")                                         //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                   //
+      ("criterion", text("NAME"), ("what counts: " + criterion_names() + " (o1)").c_str())        //
+      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
+      ("candidates", text("n"), "feasible configurations to compare with (10000)")                //
+      ("restarts", text("k"), "starts of a search (10)")                                          //
+      ("time-limit", text("S"), "stop searching after S seconds");
+  return options;
+}
+
+int run(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see --help");
+  EvaluateOptions evaluate;
+  evaluate.drop = whole_number(values, "drop", 1, 1000000);
+  evaluate.add = whole_number(values, "add", 1, 1000000);
+  evaluate.plan.variant = text_of(values, "variant");
+  evaluate.plan.criterion = text_of(values, "criterion");
+  evaluate.plan.method = text_of(values, "method");
+  evaluate.plan.candidates = whole_number(values, "candidates", 1, 10000000);
+  evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
+  evaluate.plan.seed = common.seed;
+  evaluate.plan.threads = common.threads;
+  const Problem problem = read_problem(positional[0]);
+  PoseListEvaluation result;
+  {
+    const Watch watch(common, time_limit(values));
+    result = evaluate_problem(problem, positional[1], evaluate, watch.monitor());
+    if (watch.was_interrupted()) return interrupted;
+  }
+  if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
+  else fmt::print("{}", evaluation_text(result));
+  return done;
+}
+
+}  // namespace
+
+Command evaluate_command() {
+  return {"evaluate",
+          "PROBLEM POSES",
+          "Scores poses that you have (CSV or plan.json): every criterion, each pose's share, what to drop and add.",
+          options,
+          "posewright evaluate examples/telescope/problem.yaml poses.csv --drop 2 --add 3",
+          run};
+}
+
+}  // namespace posewright::cli

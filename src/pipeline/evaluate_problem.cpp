@@ -1,0 +1,229 @@
+#include "posewright/pipeline/evaluate_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "fill_plan.hpp"
+#include "judgement.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/support/error.hpp"
+#include "preparation.hpp"
+#include "read_poses.hpp"
+
+namespace posewright {
+namespace {
+
+// Sets that branch and bound tries before it would take too long; above, the search is good but not proved.
+constexpr double proved_drop = 5e4;
+
+class ListEvaluation {
+ public:
+  ListEvaluation(const Problem& problem, const std::filesystem::path& file, const EvaluateOptions& options,
+                 const Monitor& monitor)
+      : options_(options), monitor_(monitor), settings_(settings_of(problem, numbered(options.plan))) {
+    settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
+    prepared_ = prepare(problem, settings_, monitor);
+    const std::vector<Coordinate>& coordinates = prepared_.first().workspace->coordinates();
+    const PoseList list = read_poses(file, coordinates);
+    poses_.dimension = int(coordinates.size());
+    for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+      require_feasible(list.configurations[i], i, file);
+      append(poses_, list.configurations[i]);
+    }
+    settings_.poses = int(poses_.count());
+  }
+
+  PoseListEvaluation evaluate(const Problem& problem) {
+    PoseListEvaluation result;
+    const Judgement judgement = judge(prepared_, poses_, settings_);
+    Plan& plan = result.plan;
+    plan.seed = settings_.planner.seed;
+    plan.problem_file = problem.file.string();
+    plan.problem_sha256 = problem.sha256;
+    plan.method = "given";
+    fill_judgement(plan, judgement, prepared_, settings_);
+    const std::vector<double> references = score_all(result, judgement);
+    const CriterionValue value = criterion_value(settings_.criterion, judgement, prepared_, references);
+    plan.criterion_value = value.shown;
+    fill_variants(plan, judgement, prepared_, references);
+    SearchResult shape;
+    for (std::size_t i = 0; i < poses_.count(); ++i)
+      shape.design.members.push_back(int(prepared_.configurations.count() + i));
+    shape.without = without_each(value.phi, references);
+    fill_poses(plan, prepared_, poses_, shape, judgement);
+    plan.statistics.drawn = prepared_.configurations.drawn;
+    plan.statistics.feasible = long(prepared_.configurations.count());
+    plan.statistics.rejected = prepared_.configurations.rejected;
+    if (options_.drop) result.drop = drop(*options_.drop, value.phi, references);
+    if (options_.add) result.add = add(*options_.add, value.phi, references);
+    plan.interrupted = monitor_.should_stop();
+    return result;
+  }
+
+ private:
+  /// The list brings the number of poses; until it is read any will do.
+  static PlanOptions numbered(PlanOptions options) {
+    options.poses = 1;
+    return options;
+  }
+
+  void require_feasible(const std::vector<double>& q, std::size_t i, const std::filesystem::path& file) const {
+    for (const PreparedVariant& variant : prepared_.variants)
+      if (const int reason = variant.workspace->violation(q); reason >= 0)
+        throw InputError(
+            {file.string(), 0},
+            fmt::format("pose {} is not feasible: {}", i + 1, variant.workspace->reasons()[std::size_t(reason)]),
+            "poses within the workspace of the problem");
+  }
+
+  double degree() const { return degree_ > 0 ? degree_ : 1.0; }
+
+  /// Bounds for as many candidates by every criterion; the references of the criterion in use.
+  std::vector<double> score_all(PoseListEvaluation& result, const Judgement& judgement) {
+    std::vector<double> references;
+    for (const CriterionEntry& entry : criterion_registry()) {
+      if (entry.several_variants != (prepared_.variants.size() > 1) && entry.name != settings_.criterion) continue;
+      if (entry.name.starts_with("test_pose") && prepared_.first().test_points.empty()) continue;
+      const bool chosen = entry.name == settings_.criterion;
+      const Bound bound = bound_of(entry.name);
+      const CriterionValue value = criterion_value(entry.name, judgement, prepared_, bound.references);
+      CriterionScore score{entry.name, value.shown, std::nullopt};
+      if (bound.certificate.proved) {
+        Certificate certificate = bound.certificate;
+        certify(certificate, value.phi, bound.degree);
+        score.efficiency = certificate.efficiency;
+        if (chosen) result.plan.certificate = certificate;
+      } else if (chosen) {
+        result.plan.certificate.proved = false;
+      }
+      if (chosen) {
+        references = bound.references;
+        degree_ = bound.degree;
+      }
+      result.scores.push_back(score);
+    }
+    return references;
+  }
+
+  SearchRequest request(const std::string& criterion, int poses) const {
+    SearchRequest request;
+    request.criterion = criterion;
+    request.method = settings_.method;
+    request.poses = poses;
+    request.repeats = settings_.repeats;
+    request.planner = settings_.planner;
+    return request;
+  }
+
+  Bound bound_of(const std::string& criterion) {
+    return bound_only(search_parts(prepared_, prepared_.configurations, settings_.planner.threads),
+                      request(criterion, settings_.poses), monitor_);
+  }
+
+  Configurations without(const std::vector<int>& members) const {
+    Configurations left;
+    left.dimension = poses_.dimension;
+    for (std::size_t i = 0; i < poses_.count(); ++i)
+      if (std::find(members.begin(), members.end(), int(i)) == members.end()) append(left, poses_[i]);
+    return left;
+  }
+
+  /// Φ of another list; −∞ where it leaves parameters open.
+  std::optional<std::pair<Judgement, double>> phi_of(const Configurations& list,
+                                                     const std::vector<double>& references) const {
+    try {
+      Judgement judgement = judge(prepared_, list, settings_);
+      const double phi = criterion_value(settings_.criterion, judgement, prepared_, references).phi;
+      return std::pair{std::move(judgement), phi};
+    } catch (const CannotDo&) {
+      return std::nullopt;
+    }
+  }
+
+  std::vector<double> without_each(double phi, const std::vector<double>& references) const {
+    std::vector<double> result;
+    for (int i = 0; i < int(poses_.count()); ++i) {
+      const auto left = poses_.count() > 1 ? phi_of(without({i}), references) : std::nullopt;
+      result.push_back(left ? std::min(1.0, std::exp((left->second - phi) / degree())) : 0.0);
+    }
+    return result;
+  }
+
+  ListChange changed(const Configurations& list, double phi, const std::vector<double>& references) const {
+    ListChange change;
+    const auto judged = phi_of(list, references);
+    if (!judged) return change;
+    change.efficiency = std::exp((judged->second - phi) / degree());
+    change.log_det = judged->first.evaluations.front().log_det;
+    change.rho0 = judged->first.rho0;
+    return change;
+  }
+
+  /// The best N − k of the N: a search over the list itself.
+  ListChange drop(int k, double phi, const std::vector<double>& references) {
+    const int n = int(poses_.count());
+    if (k >= n) throw CannotDo(fmt::format("{} of {} poses cannot be dropped: at least one must be left", k, n));
+    SearchRequest wanted = request(settings_.criterion, n - k);
+    double sets = 1.0;
+    for (int i = 0; i < k; ++i) sets *= double(n - i) / (i + 1);
+    wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
+    wanted.repeats = Repeats{1};
+    const SearchResult found = search(search_parts(prepared_, poses_, settings_.planner.threads), wanted, monitor_);
+    std::vector<int> dropped;
+    for (int i = 0; i < n; ++i)
+      if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
+    ListChange change = changed(without(dropped), phi, references);
+    for (const int i : dropped) change.poses.push_back(i + 1);
+    return change;
+  }
+
+  /// k more with the list as what is known already.
+  ListChange add(int k, double phi, const std::vector<double>& references) {
+    const int threads = settings_.planner.threads;
+    std::vector<SearchPart> parts = search_parts(prepared_, prepared_.configurations, threads);
+    for (std::size_t v = 0; v < parts.size(); ++v) {
+      const PreparedVariant& variant = prepared_.variants[v];
+      const BlockArray blocks = build_blocks(*variant.model, variant.columns().selected, poses_, threads);
+      const Eigen::MatrixXd known = blocks.all().transpose() * blocks.all();
+      parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
+    }
+    SearchRequest wanted = request(settings_.criterion, k);
+    wanted.make_space = space_maker(prepared_);
+    const SearchResult found = search(std::move(parts), wanted, monitor_);
+    Configurations longer = poses_, added;
+    added.dimension = poses_.dimension;
+    const std::size_t n = prepared_.configurations.count();
+    for (const int i : found.design.members)
+      append(added, std::size_t(i) < n ? prepared_.configurations[std::size_t(i)]
+                                       : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
+    ListChange change = changed(longer, phi, references);
+    for (std::size_t i = 0; i < added.count(); ++i) {
+      change.added.push_back(pose_of(*prepared_.first().model, added[i]));
+      change.added.back().id = int(poses_.count() + i) + 1;
+    }
+    return change;
+  }
+
+  const EvaluateOptions& options_;
+  const Monitor& monitor_;
+  Settings settings_;
+  Preparation prepared_;
+  Configurations poses_;
+  double degree_ = 0.0;
+};
+
+}  // namespace
+
+PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
+                                    const EvaluateOptions& options, const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  PoseListEvaluation result = ListEvaluation(problem, poses, options, monitor).evaluate(problem);
+  result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,71 @@
+#include "posewright/planning/extended_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "posewright/criterion/sensitivity.hpp"
+#include "restricted_design.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr int most_rounds = 10;
+
+BlockArray joined(const BlockArray& candidates, const std::vector<int>& kept, const BlockArray& more) {
+  const BlockArray part = candidates.subset(kept);
+  BlockArray pool(part.count() + more.count(), part.rows(), part.columns());
+  const auto length = std::size_t(part.rows() * part.stride());
+  std::copy_n(part.data(), part.count() * length, pool.data());
+  std::copy_n(more.data(), more.count() * length, pool.row(part.count(), 0));
+  return pool;
+}
+
+/// Candidates of largest d, ascending by index.
+std::vector<int> largest(const std::vector<double>& d, std::size_t count) {
+  std::vector<int> order(d.size());
+  std::iota(order.begin(), order.end(), 0);
+  count = std::min(count, order.size());
+  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(), [&](int a, int b) {
+    return d[std::size_t(a)] != d[std::size_t(b)] ? d[std::size_t(a)] > d[std::size_t(b)] : a < b;
+  });
+  order.resize(count);
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::sort(a.begin(), a.end());
+  a.erase(std::unique(a.begin(), a.end()), a.end());
+  return a;
+}
+
+}  // namespace
+
+ApproximateDesign extended_bound(const BlockArray& candidates, const ApproximateDesign& design, const BlockArray& more,
+                                 const InformationFunction& function, const ApproximateDesignOptions& options,
+                                 const Monitor& monitor) {
+  const auto room = std::max(std::size_t(10 * candidates.columns()), std::size_t(4 / options.cap));
+  std::vector<int> kept = united(largest(design.sensitivity, room), design.support);
+  ApproximateDesign best;
+  for (int round = 0; round < most_rounds; ++round) {
+    ApproximateDesign now = solve_approximate_design(joined(candidates, kept, more), function, options, monitor);
+    std::vector<double> d;
+    sensitivities(candidates, now.factor, options.threads, d);
+    std::vector<double> all = d;
+    all.insert(all.end(), now.sensitivity.end() - std::ptrdiff_t(more.count()), now.sensitivity.end());
+    const double prior = options.prior.size() > 0 ? (now.factor.transpose() * options.prior * now.factor).trace() : 0.0;
+    now.max_sensitivity_ratio = std::max(1.0, (best_mean(std::move(all), options.cap) + prior) / now.degree);
+    now.bound = with_margin(now.value + now.degree * std::log(now.max_sensitivity_ratio));
+    const bool first = round == 0;
+    if (first || now.bound < best.bound) best = std::move(now);
+    if (best.max_sensitivity_ratio <= 1 + std::max(options.tolerance, 1e-9) || monitor.should_stop()) break;
+    std::vector<int> next = united(kept, largest(d, room));
+    if (next == kept) break;
+    kept = std::move(next);
+  }
+  return best;
+}
+
+}  // namespace posewright

@@ -133,7 +133,8 @@ PoseList from_plan(const std::string& text, const std::string& file, const std::
   const SourcePlace place{file, 0};
   PoseList list;
   try {
-    for (const Json& pose : Json::parse(text).at("poses")) {
+    const Json plan = Json::parse(text);
+    for (const Json& pose : plan.at("poses")) {
       std::vector<double> q;
       const Json& names = pose.at("names");
       for (const Coordinate& c : coordinates) {

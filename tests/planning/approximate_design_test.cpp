@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/criterion/trace.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/support/error.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -94,6 +96,75 @@ TEST_P(Bounds, NoRandomFeasibleWeightsExceedTheBoundAndCapsHold) {
 INSTANTIATE_TEST_SUITE_P(Shapes, Bounds,
                          testing::Values(Case{1, 5, 0, 10}, Case{1, 6, 2, 20}, Case{3, 9, 0, 8}, Case{3, 9, 4, 12},
                                          Case{1, 4, 0, 299}, Case{2, 4, 0, 300}));
+
+TEST(ApproximateDesign, TraceCriteriaAreBoundedTooWithCapsAndPriors) {
+  for (const int rows : {1, 3})
+    for (const double cap : {1.0, 0.1, 0.15})
+      for (const bool known : {false, true}) {
+        BlockArray blocks = random_blocks(200, rows, 6, 9);
+        whiten(blocks);
+        const TraceFunction function(random_blocks(1, 4, 6, 3).block(0));
+        ApproximateDesignOptions options;
+        options.cap = cap;
+        if (known) options.prior = 0.3 * Eigen::MatrixXd::Identity(6, 6);
+        const ApproximateDesign design = solve_approximate_design(blocks, function, options, Monitor{});
+        EXPECT_LE(design.max_sensitivity_ratio, 1 + 1e-6) << rows << " " << cap << " " << known;
+        Random random(8, 0);
+        for (int trial = 0; trial < 200; ++trial) {
+          // As many alike as the cap asks for; a partial one where 1/cap is no whole number.
+          Eigen::MatrixXd M = known ? options.prior : Eigen::MatrixXd::Zero(6, 6);
+          std::vector<int> order(200);
+          std::iota(order.begin(), order.end(), 0);
+          double left = 1.0;
+          for (std::size_t i = 0; left > 1e-12; ++i) {
+            std::swap(order[i], order[i + std::size_t(random.index(int(200 - i)))]);
+            const double w = std::min({left, cap, cap == 1.0 ? random.uniform(0.02, 0.3) : cap});
+            M += w * blocks.block(std::size_t(order[i])).transpose() * blocks.block(std::size_t(order[i]));
+            left -= w;
+          }
+          EXPECT_LE(function.value(M), design.bound);
+        }
+      }
+}
+
+TEST(ApproximateDesign, AOptimalQuadraticHasTheKnownWeights) {
+  // A-optimality for 1, x, x² on [−1, 1]: weights 1/4, 1/2, 1/4 at −1, 0, 1, trace 8 (Pukelsheim 1993, ch. 9).
+  const BlockArray blocks = quadratic(101);
+  const TraceFunction function(Eigen::MatrixXd::Identity(3, 3));
+  const ApproximateDesign design = solve_approximate_design(blocks, function, {}, Monitor{});
+  EXPECT_NEAR(std::exp(-design.value), 8, 1e-6);
+  EXPECT_NEAR(weight_of(design, 0), 0.25, 1e-4);
+  EXPECT_NEAR(weight_of(design, 50), 0.5, 1e-4);
+}
+
+TEST(ApproximateDesign, SeveralVariantsAreBoundedByTheirWorst) {
+  const BlockArray blocks = random_blocks(150, 2, 8, 14);
+  CriterionData data{Eigen::MatrixXd::Identity(8, 8), Eigen::VectorXd::Ones(8), 0};
+  data.variants = {{0, 4, 0, 1.0, 1.0}, {4, 4, 1, 2.0, 3.0}};
+  for (const char* name : {"compound", "maximin"}) {
+    const auto criterion = make_criterion(name, data);
+    const ApproximateDesign design = solve_approximate_design(blocks, criterion->function(), {}, Monitor{});
+    EXPECT_LE(design.max_sensitivity_ratio, 1.001) << name;
+    Eigen::MatrixXd best = Eigen::MatrixXd::Zero(8, 8);
+    for (std::size_t i = 0; i < design.support.size(); ++i) {
+      const auto block = blocks.block(std::size_t(design.support[i]));
+      best += design.weights[i] * block.transpose() * block;
+    }
+    EXPECT_GT(criterion->function().value(best), design.bound - 0.02) << name << ": the bound is of use";
+    Random random(2, 0);
+    for (int trial = 0; trial < 300; ++trial) {
+      Eigen::MatrixXd M = Eigen::MatrixXd::Zero(8, 8);
+      double total = 0;
+      for (int i = 0; i < 12; ++i) {
+        const double w = random.uniform();
+        const auto block = blocks.block(std::size_t(random.index(150)));
+        M += w * block.transpose() * block;
+        total += w;
+      }
+      EXPECT_LE(criterion->function().value(M / total), design.bound) << name;
+    }
+  }
+}
 
 TEST(ApproximateDesign, DependentColumnsAreAnErrorNotANumber) {
   BlockArray blocks = random_blocks(50, 1, 4, 3);

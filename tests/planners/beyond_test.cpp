@@ -1,0 +1,138 @@
+// Planners beyond the conformance kit: proofs on small problems, poses between the candidates, what is lost with a
+// pose.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "planners/continuous.hpp"
+#include "planners/registry.hpp"
+#include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/planning/extended_bound.hpp"
+#include "posewright/planning/workspace_bound.hpp"
+#include "tests/kit/random_blocks.hpp"
+#include "tests/kit/wave_space.hpp"
+
+namespace posewright {
+namespace {
+
+CriterionData plain_data(int columns) {
+  CriterionData data{Eigen::MatrixXd::Identity(columns, columns), Eigen::VectorXd::Ones(columns), 0};
+  data.test_points.push_back({random_blocks(1, 3, columns, 9).block(0), 1.0});
+  return data;
+}
+
+TEST(BranchAndBound, ProvesFiftySmallProblemsAndAutoFindsTheOptimumOfNearlyAll) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const int rows = seed % 2 == 0 ? 1 : 2, poses = 5 + int(seed % 3);
+    const BlockArray blocks = random_blocks(22, rows, 4, 300 + seed);
+    const auto criterion = make_criterion(seed % 5 == 4 ? "a" : "o1", plain_data(4));
+    ApproximateDesignOptions options;
+    options.cap = 1.0 / poses;
+    const ApproximateDesign approximate = solve_approximate_design(blocks, criterion->function(), options, Monitor{});
+    DesignTask task{{&blocks, 0, 1}, criterion.get(), poses, &approximate};
+    const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+    EXPECT_TRUE(proved.optimal) << seed;
+    EXPECT_LE(proved.value, approximate.bound_for(poses));
+    const Design searched = make_planner("auto")->plan(task, {}, Monitor{});
+    EXPECT_LE(searched.value, proved.value + 1e-8);
+    if (searched.value > proved.value - 1e-8) ++found;
+  }
+  EXPECT_GE(found, 48) << "of 50";
+}
+
+TEST(BranchAndBound, ReplicatedDesignReachesTheReplicationBound) {
+  // Quadratic on [−1, 1]: support −1, 0, 1 with weights 1/3; N = 6 with repeats attains the bound itself.
+  BlockArray blocks(21, 1, 3);
+  for (int i = 0; i < 21; ++i) {
+    const double x = -1 + 0.1 * i;
+    blocks.row(std::size_t(i), 0)[0] = 1;
+    blocks.row(std::size_t(i), 0)[1] = x;
+    blocks.row(std::size_t(i), 0)[2] = x * x;
+  }
+  const auto criterion = make_criterion("o1", plain_data(3));
+  const ApproximateDesign approximate = solve_approximate_design(blocks, criterion->function(), {}, Monitor{});
+  DesignTask task{{&blocks, 0, 6}, criterion.get(), 6, &approximate};
+  const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+  EXPECT_EQ(proved.members, (std::vector<int>{0, 0, 10, 10, 20, 20}));
+  EXPECT_NEAR(proved.value, approximate.bound_for(6), 1e-8);
+}
+
+/// A thin, bent, disconnected feasible set.
+bool hostile(std::span<const double> q) {
+  const double x = q[0] - 0.5, y = q[1] - 0.5, ring = std::sqrt(x * x + y * y);
+  return std::abs(ring - 0.3) < 0.02 || std::sin(40 * q[0]) * std::sin(40 * q[1]) > 0.9;
+}
+
+TEST(Continuous, NeverLeavesAHostileFeasibleSetAndNeverReturnsLess) {
+  for (const bool box : {true, false})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const WaveSpace space(2, 2, 6, 60, seed, box ? WaveSpace::Oracle() : WaveSpace::Oracle(hostile));
+      const auto criterion = make_criterion(seed % 2 == 0 ? "o1" : "a", plain_data(6));
+      DesignTask task{{&space.blocks(), 0, 1}, criterion.get(), 7, nullptr};
+      task.space = &space;
+      Random random(seed, 3);
+      std::vector<int> members;
+      while (members.size() < 7)
+        if (const int i = random.index(60); std::find(members.begin(), members.end(), i) == members.end())
+          members.push_back(i);
+      PoseSet poses = pose_set_of(task, members);
+      const double before = poses.value;
+      improve(task, poses, Monitor{});
+      EXPECT_GE(poses.value, before);
+      EXPECT_GT(poses.value, before + 1e-3) << "somewhere there is something to gain";
+      for (std::size_t i = 0; i < poses.configurations.size(); ++i) {
+        EXPECT_TRUE(space.inside(poses.configurations[i]));
+        for (std::size_t j = 0; j < i; ++j)
+          if (poses.candidates[i] < 0 || poses.candidates[j] < 0) {
+            EXPECT_FALSE(space.spacing().too_near(poses.configurations[i], poses.configurations[j]));
+          }
+      }
+      EXPECT_NEAR(criterion->function().value(poses.blocks.all().transpose() * poses.blocks.all()), poses.value, 1e-9);
+    }
+}
+
+TEST(WorkspaceBound, IsNotExceededByADenseGridAndFindsWhatCandidatesMiss) {
+  const WaveSpace space(2, 2, 6, 50, 4);
+  const LogDetFunction function(0, 6);
+  const ApproximateDesign design = solve_approximate_design(space.blocks(), function, {}, Monitor{});
+  const WorkspaceBound bound = workspace_bound(space.blocks(), design, function, space, {}, Monitor{});
+  EXPECT_LE(bound.max_ratio, 1.001);
+  EXPECT_GT(bound.bound, design.bound) << "fifty candidates miss much of the square";
+  EXPECT_FALSE(bound.support.empty());
+  // Optimal weights on a fine grid: a lower bound of the true optimum.
+  BlockArray grid(81 * 81, 2, 6);
+  const auto probe = space.probe();
+  for (int i = 0; i < 81; ++i)
+    for (int j = 0; j < 81; ++j) {
+      const std::vector<double> q{i / 80.0, j / 80.0};
+      probe->block(q, grid.row(std::size_t(81 * i + j), 0), grid.stride());
+    }
+  const ApproximateDesign fine = solve_approximate_design(grid, function, {}, Monitor{});
+  EXPECT_LE(fine.value, bound.bound + 1e-9);
+  EXPECT_GT(fine.value, bound.bound - 0.02);
+}
+
+TEST(ExtendedBound, EqualsThatOfCandidatesAndNewBlocksTogether) {
+  for (const char* name : {"o1", "a", "test_pose"})
+    for (const double cap : {1.0, 0.1}) {
+      const BlockArray all = random_blocks(400, 2, 6, 21);
+      std::vector<int> first, last;
+      for (int i = 0; i < 400; ++i) (i < 380 ? first : last).push_back(i);
+      const BlockArray candidates = all.subset(first);
+      const auto criterion = make_criterion(name, plain_data(6));
+      ApproximateDesignOptions options;
+      options.cap = cap;
+      const ApproximateDesign design = solve_approximate_design(candidates, criterion->function(), options, Monitor{});
+      const ApproximateDesign extended =
+          extended_bound(candidates, design, all.subset(last), criterion->function(), options, Monitor{});
+      const ApproximateDesign whole = solve_approximate_design(all, criterion->function(), options, Monitor{});
+      EXPECT_NEAR(extended.bound, whole.bound, 1e-6) << name << " " << cap;
+      EXPECT_GE(extended.bound, whole.value - 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace posewright

@@ -101,8 +101,9 @@ class Run {
       exchange(options_.seed + (round << 32));
       tabu(options_.seed + (round << 32));
       if (task_.space != nullptr) beyond(options_.seed + (round << 32));
+      // Rounds after the first are a gift of the time limit: to be stopped in one of them cuts nothing short.
+      if (round == 0) best_.stopped = monitor_.should_stop();
     }
-    best_.stopped = monitor_.was_interrupted();
     if (moved_ && moved_->value > best_.value) write_to(best_, *moved_, task_.candidates.blocks->count());
     return std::move(best_);
   }

@@ -97,10 +97,12 @@ class Run {
   Design carry_out() {
     greedy();
     // A limit is there to be used; without one the work is what the options say.
-    for (std::uint64_t round = 0; round == 0 || (monitor_.deadline && !monitor_.should_stop()); ++round) {
+    for (std::uint64_t round = 0; round == 0 || (options_.use_all_time && monitor_.deadline && !monitor_.should_stop());
+         ++round) {
       exchange(options_.seed + (round << 32));
       tabu(options_.seed + (round << 32));
-      if (task_.space != nullptr) beyond(options_.seed + (round << 32));
+      // Moves between the candidates see Φ of the whole design only: not what is left without a pose.
+      if (task_.space != nullptr && task_.criterion->of_information_alone()) beyond(options_.seed + (round << 32));
       // Rounds after the first are a gift of the time limit: to be stopped in one of them cuts nothing short.
       if (round == 0) best_.stopped = monitor_.should_stop();
     }

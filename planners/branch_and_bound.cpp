@@ -223,7 +223,9 @@ class Enumeration {
   bool next(int position, int first, int repeated, const Eigen::MatrixXd& information) {
     if (position == task_.poses) {
       if (monitor_.should_stop()) return false;
-      const double value = task_.criterion->function().value(information);
+      const double value = task_.criterion->of_information_alone()
+                               ? task_.criterion->function().value(information)
+                               : task_.criterion->start(task_.candidates, members_)->value();
       if (value <= best_.value + proof_tolerance || !apart()) return true;
       best_.value = value;
       best_.members = members_;
@@ -265,7 +267,8 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
   } else {
     const double sets =
         number_of_sets(double(task.candidates.blocks->count()), task.poses, task.candidates.max_repeats > 1);
-    if (!(sets <= most_enumerated))
+    // With reserve each set costs N factorisations.
+    if (!(sets <= (task.criterion->of_information_alone() ? most_enumerated : 0.01 * most_enumerated)))
       throw CannotDo("criterion " + task.criterion->name() +
                      " has no bound: all sets would have to be tried, and there are too many");
     design.optimal = Enumeration(task, monitor, design).run();

@@ -1,12 +1,15 @@
 #include "local_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
+
+constexpr int most_singular_passes = 50;
 
 /// One pass over all positions; returns the number of accepted swaps.
 int exchange_pass(DesignState& state, std::vector<int>& order) {
@@ -34,15 +37,18 @@ Outcome outcome_of(const DesignState& state, long exchanges) {
 long settle(DesignState& state, const Monitor& monitor) {
   std::vector<int> order(state.members().size());
   long total = 0;
+  int singular = 0;
   while (true) {
     int accepted = 0, now = 0;
     do {
       now = exchange_pass(state, order);
       accepted += now;
+      // Gains of a singular set are those of M plus a ridge; where no set is regular they may go round for ever.
+      if (!std::isfinite(state.value()) && ++singular >= most_singular_passes) break;
     } while (now > 0 && !monitor.should_stop());
     state.refresh();
     total += accepted;
-    if (accepted == 0 || monitor.should_stop()) return total;
+    if (accepted == 0 || singular >= most_singular_passes || monitor.should_stop()) return total;
   }
 }
 

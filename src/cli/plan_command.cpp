@@ -50,7 +50,12 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = read_problem(file);
-  const Outputs outputs(values, file, true);
+  std::vector<std::filesystem::path> inputs{file};
+  if (!plan_options.augment.empty()) inputs.push_back(plan_options.augment);
+  if (problem.design.measured) inputs.push_back(*problem.design.measured);
+  if (problem.design.test_poses && !problem.design.test_poses->file.empty())
+    inputs.push_back(problem.design.test_poses->file);
+  const Outputs outputs(values, inputs, true);
   return outputs.search_and_write(common, time_limit(values),
                                   [&](const Monitor& monitor) { return plan_problem(problem, plan_options, monitor); });
 }

@@ -39,7 +39,7 @@ int run(const po::variables_map& values, const Words& positional) {
   select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;
   select.threads = common.threads;
-  const Outputs outputs(values, file, false);
+  const Outputs outputs(values, {file}, false);
   return outputs.search_and_write(common, time_limit(values),
                                   [&](const Monitor& monitor) { return select_blocks(file, select, monitor); });
 }

@@ -78,11 +78,12 @@ void Watch::show(const Progress& progress) {
   shown_ = terminal;
 }
 
-void check_outputs(const std::vector<fs::path>& outputs, const fs::path& input, bool force) {
+void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs, bool force) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     std::error_code code;
-    if (fs::equivalent(outputs[i], input, code))
-      throw InputError({}, outputs[i].string() + " is the input", "write the result to another file");
+    for (const fs::path& input : inputs)
+      if (fs::equivalent(outputs[i], input, code))
+        throw InputError({}, outputs[i].string() + " is an input", "write the result to another file");
     for (std::size_t k = 0; k < i; ++k)
       if (fs::weakly_canonical(outputs[i]) == fs::weakly_canonical(outputs[k]))
         throw InputError({}, outputs[i].string() + " is named for two outputs", "give each a file of its own");

@@ -32,7 +32,8 @@ class Watch {
 
 /// Refuses to write over anything that is not an earlier result of this program, unless forced. Call before the search.
 /// Throws CannotDo naming the file, InputError where two outputs or an input and an output are the same file.
-void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::filesystem::path& input, bool force);
+void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs,
+                   bool force);
 
 /// Seconds of --time-limit; 0 where it is not given.
 double time_limit(const po::variables_map& values);

@@ -28,7 +28,7 @@ std::optional<Repeats> repeats_of(const po::variables_map& values) {
   throw InputError({}, "--repeats " + text, "allowed: allow, forbid, or how often a pose may be measured");
 }
 
-Outputs::Outputs(const po::variables_map& values, const std::filesystem::path& input, bool poses) {
+Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses) {
   const auto file_of = [&](const char* option, const char* standard) {
     const std::string text = values.count(option) > 0 ? text_of(values, option) : standard;
     if (text.empty()) throw InputError({}, std::string("--") + option + " is empty", "name a file, or - for none");
@@ -39,7 +39,7 @@ Outputs::Outputs(const po::variables_map& values, const std::filesystem::path& i
   std::vector<std::filesystem::path> files;
   for (const auto& file : {plan_, poses_})
     if (!file.empty()) files.push_back(file);
-  check_outputs(files, input, values.count("force") > 0);
+  check_outputs(files, inputs, values.count("force") > 0);
 }
 
 int Outputs::search_and_write(const CommonOptions& common, double seconds,

@@ -20,7 +20,7 @@ std::optional<Repeats> repeats_of(const po::variables_map& values);
 class Outputs {
  public:
   /// Checks the files before any search. Throws CannotDo or InputError.
-  Outputs(const po::variables_map& values, const std::filesystem::path& input, bool poses);
+  Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses);
   /// Runs the search under a Watch, writes everything, returns the exit code.
   int search_and_write(const CommonOptions& common, double seconds,
                        const std::function<Plan(const Monitor&)>& search) const;

@@ -46,7 +46,10 @@ std::string certificate_text(const Plan& plan) {
   const std::string found = c.found > 0 ? fmt::format(" ({} found beyond those drawn)", c.found) : "";
   std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}{}.\n", percent(c.efficiency),
                                  as, poses, c.count, found, policy);
-  if (plan.proved_optimal) text += "No plan of these candidates is better: every other one is ruled out.\n";
+  if (plan.proved_optimal)
+    text += plan.reserve
+                ? "No plan of these candidates keeps more when its worst pose is lost: all others are ruled out.\n"
+                : "No plan of these candidates is better: every other one is ruled out.\n";
   if (c.workspace)
     text +=
         fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof).\n",

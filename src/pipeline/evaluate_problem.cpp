@@ -30,6 +30,8 @@ class ListEvaluation {
     const PoseList list = read_poses(file, coordinates);
     poses_.dimension = int(coordinates.size());
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+      // What the problem names as measured counts once.
+      if (prepared_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
       require_feasible(list.configurations[i], i, file);
       append(poses_, list.configurations[i]);
     }
@@ -114,13 +116,22 @@ class ListEvaluation {
     request.method = settings_.method;
     request.poses = poses;
     request.repeats = settings_.repeats;
+    request.reserve = settings_.reserve;
     request.planner = settings_.planner;
     return request;
   }
 
+  /// Over the candidates and the list itself, so that the bound holds for the list too.
   Bound bound_of(const std::string& criterion) {
-    return bound_only(search_parts(prepared_, prepared_.configurations, settings_.planner.threads),
-                      request(criterion, settings_.poses), monitor_);
+    Configurations pool = prepared_.configurations;
+    for (std::size_t i = 0; i < poses_.count(); ++i) {
+      const auto q = poses_[i];
+      bool known = false;
+      for (std::size_t j = 0; j < pool.count() && !known; ++j) known = std::equal(q.begin(), q.end(), pool[j].begin());
+      if (!known) append(pool, q);
+    }
+    return bound_only(search_parts(prepared_, pool, settings_.planner.threads), request(criterion, settings_.poses),
+                      monitor_);
   }
 
   Configurations without(const std::vector<int>& members) const {
@@ -171,6 +182,7 @@ class ListEvaluation {
     for (int i = 0; i < k; ++i) sets *= double(n - i) / (i + 1);
     wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
     wanted.repeats = Repeats{1};
+    wanted.references = references;
     const SearchResult found = search(search_parts(prepared_, poses_, settings_.planner.threads), wanted, monitor_);
     std::vector<int> dropped;
     for (int i = 0; i < n; ++i)
@@ -183,6 +195,9 @@ class ListEvaluation {
   /// k more with the list as what is known already.
   ListChange add(int k, double phi, const std::vector<double>& references) {
     const int threads = settings_.planner.threads;
+    // The list is what is there already; the last thing that is done, so the candidates may change.
+    prepared_.measured.values.insert(prepared_.measured.values.end(), poses_.values.begin(), poses_.values.end());
+    keep_away_from_measured(prepared_, settings_.repeats);
     std::vector<SearchPart> parts = search_parts(prepared_, prepared_.configurations, threads);
     for (std::size_t v = 0; v < parts.size(); ++v) {
       const PreparedVariant& variant = prepared_.variants[v];
@@ -192,6 +207,8 @@ class ListEvaluation {
     }
     SearchRequest wanted = request(settings_.criterion, k);
     wanted.make_space = space_maker(prepared_);
+    wanted.references = references;
+    if (prepared_.has_minimum_distance) wanted.spacing = &prepared_.minimum_distance;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
     Configurations longer = poses_, added;
     added.dimension = poses_.dimension;
@@ -200,6 +217,7 @@ class ListEvaluation {
       append(added, std::size_t(i) < n ? prepared_.configurations[std::size_t(i)]
                                        : std::span<const double>(found.design.added[std::size_t(i) - n]));
     longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
+    prepared_.measured.values.resize(prepared_.measured.values.size() - poses_.values.size());
     ListChange change = changed(longer, phi, references);
     for (std::size_t i = 0; i < added.count(); ++i) {
       change.added.push_back(pose_of(*prepared_.first().model, added[i]));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "fill_plan.hpp"
 #include "judgement.hpp"
@@ -47,14 +48,27 @@ class Planning {
   /// Doubles the number of poses until everything required is reached, then halves the interval.
   Plan smallest() {
     std::vector<CurvePoint> curve;
-    int enough = 0, too_few = fewest() - 1;
+    settings_.planner.use_all_time = false;
+    int enough = 0, too_few = fewest() - 1, unfit = limit() + 1;
     Plan best;
-    for (int poses = too_few + 1; enough == 0; poses = std::min(2 * poses, limit())) {
-      best = plan(poses);
+    for (int poses = std::min(too_few + 1, limit()); enough == 0;) {
+      std::optional<Plan> trial = try_plan(poses, curve.empty() && poses == too_few + 1);
+      if (!trial) {
+        // At the minimum distance so many do not fit.
+        unfit = poses;
+        if (unfit - too_few <= 1) fail(curve, false);
+        poses = (too_few + unfit) / 2;
+        continue;
+      }
+      best = std::move(*trial);
       curve.push_back(judge_requirement(best));
-      if (curve.back().enough) enough = poses;
-      else if (poses == limit() || best.interrupted) fail(curve);
-      else too_few = poses;
+      if (curve.back().enough) {
+        enough = poses;
+      } else {
+        too_few = poses;
+        if (poses + 1 >= unfit || best.interrupted) fail(curve, best.interrupted);
+        poses = unfit > limit() ? std::min(2 * poses, limit()) : (poses + unfit) / 2;
+      }
     }
     while (enough - too_few > 1 && !monitor_.should_stop()) {
       const int middle = (enough + too_few) / 2;
@@ -109,13 +123,24 @@ class Planning {
     return point;
   }
 
-  [[noreturn]] void fail(const std::vector<CurvePoint>& curve) const {
+  /// None where so many poses do not fit, unless that is to be told.
+  std::optional<Plan> try_plan(int poses, bool tell) {
+    try {
+      return plan(poses);
+    } catch (const CannotDo&) {
+      if (tell) throw;
+      return std::nullopt;
+    }
+  }
+
+  [[noreturn]] void fail(const std::vector<CurvePoint>& curve, bool interrupted) const {
     const CurvePoint& last = curve.back();
     std::string text = fmt::format("what design: require asks for is not reached with {} poses", last.poses);
     if (last.rho0 && problem_.design.require.accuracy)
       text += fmt::format("; accuracy {:.4g} mm, required {:.4g} mm", 1e3 * *last.rho0,
                           1e3 * *problem_.design.require.accuracy);
     if (last.worst_sigma) text += fmt::format("; largest σ {:.3g} times the required one", *last.worst_sigma);
+    if (interrupted) text += "; the search was ended before more poses were tried";
     throw CannotDo(text);
   }
 

@@ -111,13 +111,32 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
 
   prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
   prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
-  if (prepared.has_minimum_distance) {
-    prepared.minimum_distance = prepared.spacing;
-    prepared.minimum_distance.points = Eigen::Map<const BlockArray::RowMatrix>(
-        prepared.configurations.values.data(), Eigen::Index(prepared.configurations.count()),
-        prepared.configurations.dimension);
-  }
+  keep_away_from_measured(prepared, settings.repeats);
   return prepared;
+}
+
+void keep_away_from_measured(Preparation& prepared, Repeats repeats) {
+  const Configurations all = prepared.configurations;
+  const auto taken = [&](std::span<const double> q) {
+    for (std::size_t i = 0; i < prepared.measured.count(); ++i) {
+      const auto other = prepared.measured[i];
+      const bool same = std::equal(q.begin(), q.end(), other.begin());
+      if (prepared.has_minimum_distance ? prepared.spacing.too_near(other, q) : repeats.most == 1 && same) return true;
+    }
+    return false;
+  };
+  prepared.configurations.values.clear();
+  for (std::size_t i = 0; i < all.count(); ++i)
+    if (!taken(all[i])) append(prepared.configurations, all[i]);
+  if (const long lost = long(all.count() - prepared.configurations.count()); lost > 0)
+    prepared.configurations.rejected.emplace_back("measured already", lost);
+  if (prepared.configurations.count() == 0)
+    throw CannotDo("every candidate is too near to a pose that is there already");
+  if (!prepared.has_minimum_distance) return;
+  prepared.minimum_distance = prepared.spacing;
+  prepared.minimum_distance.points = Eigen::Map<const BlockArray::RowMatrix>(
+      prepared.configurations.values.data(), Eigen::Index(prepared.configurations.count()),
+      prepared.configurations.dimension);
 }
 
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared) {
@@ -125,7 +144,7 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
     std::vector<SpacePart> parts;
     for (const PreparedVariant& v : prepared.variants)
       parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
-    return make_configuration_space(std::move(parts), prepared.configurations, prepared.spacing, R);
+    return make_configuration_space(std::move(parts), prepared.configurations, prepared.measured, prepared.spacing, R);
   };
 }
 

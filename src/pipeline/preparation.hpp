@@ -60,6 +60,10 @@ std::vector<SearchPart> search_parts(const Preparation& prepared, const Configur
 /// The workspace of the problem for searches beyond the candidates; `prepared` must outlive what it makes.
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared);
 
+/// Takes away candidates that repeat a measured pose or are nearer to one than the minimum distance, where the policy
+/// forbids it; rebuilds what depends on the candidates. Throws CannotDo where none is left.
+void keep_away_from_measured(Preparation& prepared, Repeats repeats);
+
 /// One configuration more.
 void append(Configurations& list, std::span<const double> q);
 

@@ -149,6 +149,7 @@ PoseList from_plan(const std::string& text, const std::string& file, const std::
         require_inside(q.back(), c, place);
       }
       list.configurations.push_back(std::move(q));
+      list.measured.push_back(pose.value("measured", false));
     }
   } catch (const Json::exception&) {
     throw InputError(place, "is no plan with configurations", "plan.json as posewright writes it, or CSV");
@@ -174,7 +175,9 @@ std::vector<std::string> csv_cells(const std::string& line) {
 }
 
 PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates) {
-  const std::string text = read_file(file, size_limit);
+  std::string text = read_file(file, size_limit);
+  // Spreadsheets write a byte order mark.
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && text[first] == '{') return from_plan(text, file.string(), coordinates);
   return CsvReader(file.string(), coordinates).read(text);

@@ -11,7 +11,8 @@ namespace posewright {
 /// Configurations as a user lists them, with a weight where the file has one.
 struct PoseList {
   std::vector<std::vector<double>> configurations;
-  std::vector<double> weights;  ///< as many, or none
+  std::vector<double> weights;   ///< as many, or none
+  std::vector<bool> measured{};  ///< of a plan: which poses were there before it; empty for CSV
 };
 
 /// Reads poses.csv as `plan` writes it, any CSV with one column for each coordinate (header: names, maybe with unit, as

@@ -80,7 +80,9 @@ Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool se
     if (own.size() > 0) prior.block(first, first, c, c) = own;
     joined.data.scale.segment(first, c) = part.scale;
     if (several) {
-      const double reference = reference_of(part, own, request, monitor);
+      const std::size_t v = joined.references.size();
+      const double reference = request.references.empty() ? reference_of(part, own, request, monitor)
+                                                          : request.references[v] - joined.offsets.back();
       joined.references.push_back(reference + joined.offsets.back());
       joined.data.variants.push_back({int(first), int(c), part.nuisance, part.weight, reference});
     }

@@ -29,6 +29,7 @@ struct SearchRequest {
   Repeats repeats;
   bool reserve = false;
   PlannerOptions planner;
+  std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance
   /// Configurations behind the blocks, for the whitening R of all columns; empty: there are only blocks.
   std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> make_space{};

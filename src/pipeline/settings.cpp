@@ -1,4 +1,5 @@
 #include "posewright/criterion/registry.hpp"
+#include "posewright/support/error.hpp"
 #include "preparation.hpp"
 
 namespace posewright {
@@ -40,6 +41,8 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.repeats = options.repeats.value_or(design.repeats);
   s.scaling = options.scaling.value_or(design.scaling);
   s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
+  if (s.criterion.starts_with("test_pose") && !design.test_poses)
+    throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
   s.measured = !options.augment.empty() ? options.augment : design.measured.value_or(std::filesystem::path());
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.planner.seed = options.seed;

@@ -13,8 +13,9 @@ constexpr double same_pose = 0.01;
 
 class StudyProbe : public ConfigurationSpace::Probe {
  public:
-  StudyProbe(const std::vector<SpacePart>& parts, const Eigen::MatrixXd& R)
-      : parts_(parts), R_(R), scratch_(parts.size()) {
+  StudyProbe(const std::vector<SpacePart>& parts, const Configurations& measured, const Spacing& spacing,
+             const Eigen::MatrixXd& R)
+      : parts_(parts), measured_(measured), spacing_(spacing), R_(R), scratch_(parts.size()) {
     int rows = 0;
     for (const SpacePart& part : parts) {
       first_row_.push_back(rows);
@@ -26,6 +27,8 @@ class StudyProbe : public ConfigurationSpace::Probe {
   bool feasible(std::span<const double> q) override {
     for (const SpacePart& part : parts_)
       if (part.workspace->violation(q) >= 0) return false;
+    for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
+      if (spacing_.too_near(measured_[i], q)) return false;
     return true;
   }
 
@@ -47,6 +50,8 @@ class StudyProbe : public ConfigurationSpace::Probe {
 
  private:
   const std::vector<SpacePart>& parts_;
+  const Configurations& measured_;
+  const Spacing& spacing_;
   const Eigen::MatrixXd& R_;
   std::vector<Linearisation> scratch_;
   std::vector<int> first_row_;
@@ -55,10 +60,13 @@ class StudyProbe : public ConfigurationSpace::Probe {
 
 class StudySpace : public ConfigurationSpace {
  public:
-  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Spacing& spacing, Eigen::MatrixXd R)
-      : parts_(std::move(parts)), candidates_(candidates), spacing_(spacing), R_(std::move(R)) {
+  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
+             const Spacing& spacing, Eigen::MatrixXd R)
+      : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
     for (const Coordinate& c : parts_.front().workspace->coordinates())
       axes_.push_back({c.lower, c.upper, !c.discrete()});
+    // Poses that are there already are holes in the box.
+    box_ = measured.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
   }
 
@@ -66,11 +74,14 @@ class StudySpace : public ConfigurationSpace {
   bool is_box() const override { return box_; }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
-  std::unique_ptr<Probe> probe() const override { return std::make_unique<StudyProbe>(parts_, R_); }
+  std::unique_ptr<Probe> probe() const override {
+    return std::make_unique<StudyProbe>(parts_, measured_, spacing_, R_);
+  }
 
  private:
   std::vector<SpacePart> parts_;
   const Configurations& candidates_;
+  const Configurations& measured_;
   Spacing spacing_;
   Eigen::MatrixXd R_;
   std::vector<Axis> axes_;
@@ -80,15 +91,17 @@ class StudySpace : public ConfigurationSpace {
 }  // namespace
 
 std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
-                                                             const Configurations& candidates, const Spacing& spacing,
+                                                             const Configurations& candidates,
+                                                             const Configurations& measured, const Spacing& spacing,
                                                              Eigen::MatrixXd R) {
-  return std::make_unique<StudySpace>(std::move(parts), candidates, spacing, std::move(R));
+  return std::make_unique<StudySpace>(std::move(parts), candidates, measured, spacing, std::move(R));
 }
 
 Spacing spacing_of(const std::vector<Coordinate>& coordinates,
                    const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats) {
   Spacing spacing;
-  if (!distance && repeats.most > 1) return spacing;
+  // A limited number of repeats is kept for candidates; poses between them are then not repeated at all.
+  if (!distance && repeats.most == Repeats::any_number) return spacing;
   const auto d = Eigen::Index(coordinates.size());
   spacing.unit.resize(d);
   spacing.period = Eigen::VectorXd::Zero(d);

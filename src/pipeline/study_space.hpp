@@ -20,9 +20,11 @@ struct SpacePart {
 };
 
 /// The problem's workspace as planners see it. Everything referred to must outlive it.
+/// @param measured  poses that are there already: new ones keep the spacing from them
 /// @param R  whitening of all columns: blocks are J_raw R⁻¹
 std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
-                                                             const Configurations& candidates, const Spacing& spacing,
+                                                             const Configurations& candidates,
+                                                             const Configurations& measured, const Spacing& spacing,
                                                              Eigen::MatrixXd R);
 
 /// What the design's minimum distance and repeat policy ask of poses that are no candidates (see

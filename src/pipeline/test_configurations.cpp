@@ -204,8 +204,13 @@ TestConfigurations test_configurations(const Problem& seen, const Identification
   result.weights = spec.weights;
   for (const auto& written : spec.at)
     result.configurations.push_back(configuration_of(written, model.coordinates(), seen.at(spec.line)));
-  if (!spec.at.empty()) return result;
   const Workspace workspace(model, seen);
+  for (std::size_t i = 0; i < result.configurations.size(); ++i)
+    if (const int reason = workspace.violation(result.configurations[i]); reason >= 0)
+      throw InputError(seen.at(spec.line),
+                       fmt::format("test pose {} is not feasible: {}", i + 1, workspace.reasons()[std::size_t(reason)]),
+                       "configurations within the workspace");
+  if (!spec.at.empty()) return result;
   if (spec.grid) return reach(points_of(*spec.grid), seen, model, workspace, seed);
   if (!spec.file.empty()) {
     if (lists_points(spec.file, workspace.coordinates()))

@@ -121,7 +121,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
        "300 poses cannot be chosen from 200 candidates without repeats"},
       {{"plan", telescope, "-o", "no/such/folder.json"}, 1, "cannot be written"},
       {{"plan", telescope, "-o", "same", "--poses-csv", "same"}, 2, "is named for two outputs"},
-      {{"plan", telescope, "-o", telescope}, 2, "is the input"},
+      {{"plan", telescope, "-o", telescope}, 2, "is an input"},
       {{"select", blocks, "--rows", "2"}, 2, "--poses is missing"},
       {{"select", blocks, "--poses", "5"}, 2, "say with --rows"},
       {{"select", blocks, "--rows", "3", "--poses", "5"}, 2, "multiple of --rows 3"},

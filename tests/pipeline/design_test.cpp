@@ -280,6 +280,41 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
   }
 }
 
+TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnce) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(example("five_bar/problem.yaml"));
+  EvaluateOptions options;
+  options.plan = quick(200);
+  const auto file = folder.write("four.csv", "x [mm],y [mm]\n0,300\n100,300\n-100,300\n0,400\n");
+  options.plan.criterion = "test_pose";
+  EXPECT_THROW(evaluate_problem(problem, file, options, Monitor{}), CannotDo);
+  options.plan.criterion = "o1";
+  options.drop = 1;  // three poses of two rows leave eight parameters open
+  EXPECT_THROW(evaluate_problem(problem, file, options, Monitor{}), CannotDo);
+}
+
+TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(example("five_bar/problem.yaml"));
+  PlanOptions options = quick(200);
+  options.poses = 10;
+  const Plan first = plan_problem(problem, options, Monitor{});
+  options.augment = folder.write("measured.csv", poses_csv(first));
+  for (const char* method : {"exchange", "auto"}) {
+    options.method = method;
+    const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) EXPECT_NE(poses[i], poses[j]) << method;
+  }
+  options = quick(200);
+  options.method = "auto";
+  options.poses = 16;
+  options.repeats = Repeats{2};
+  std::map<std::vector<double>, int> used;
+  for (const auto& q : configurations_of(problem, plan_problem(problem, options, Monitor{}))) ++used[q];
+  for (const auto& [q, times] : used) EXPECT_LE(times, 2);
+}
+
 TEST(Evaluate, BadListsNameFileLineAndWhatIsAllowed) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));

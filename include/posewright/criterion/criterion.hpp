@@ -89,6 +89,8 @@ class Criterion {
   virtual std::string name() const = 0;
   /// Φ as a function of the information alone.
   virtual const InformationFunction& function() const = 0;
+  /// Whether Φ of a design is function() of its information: not where losses of single poses count too.
+  virtual bool of_information_alone() const { return true; }
   /// A state that starts from `members` (indices into the view's blocks), maybe none.
   virtual std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const = 0;
 };

@@ -17,6 +17,7 @@ class ReserveCriterion : public Criterion {
   explicit ReserveCriterion(const Criterion& inner) : inner_(inner) {}
   std::string name() const override { return inner_.name(); }
   const InformationFunction& function() const override { return inner_.function(); }
+  bool of_information_alone() const override { return false; }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override;
 
  private:

@@ -31,7 +31,8 @@ struct PlannerOptions {
   int restarts = 10;  ///< ≥ 1
   int kicks = 50;     ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
   std::uint64_t seed = 0;
-  int threads = 0;  ///< 0 = all
+  int threads = 0;           ///< 0 = all
+  bool use_all_time = true;  ///< `auto` goes on until the monitor's deadline, where there is one
 };
 
 /// What a part of a search reached.

@@ -212,7 +212,7 @@ TEST(Refusals, TestPosesThatDoNotFitTheRobotAreNamed) {
   EXPECT_THAT(refusal("delta/problem.yaml", with({{{0.1}, {0.1, Quantity::angle}, {0.1}}})),
               testing::HasSubstr("a test pose has the wrong unit for 'y'; allowed: m, mm, um, nm"));
   EXPECT_THAT(refusal("delta/problem.yaml", with({{{5}, {0.1}, {0.1}}})),
-              testing::HasSubstr("a test pose is out of reach"));
+              testing::HasSubstr("test pose 1 is not feasible: limits"));
   EXPECT_THAT(refusal("delta/problem.yaml", [](Problem& p) { p.design.criterion.value = "test_pose"; }),
               testing::HasSubstr("set design: test_poses"));
 }

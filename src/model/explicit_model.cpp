@@ -43,6 +43,7 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
   unmeasurable_reason_ = measurement_->unseen_reason();
   if (!actuators_.empty()) unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + near_singularity();
   rows_ = measurement_->rows();
+  rows_per_target_ = measurement_->rows_per_target();
   reading_noise_ =
       std::any_of(tip_->reading_noise().begin(), tip_->reading_noise().end(), [](double s) { return s > 0; });
 }
@@ -136,6 +137,14 @@ bool ExplicitModel::do_measurable(std::span<const double> q, std::span<const dou
   Eigen::Isometry3d X;
   return tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr) &&
          measurement_->sees({X, p.own_correction, p.station});
+}
+
+bool ExplicitModel::do_reading_twists(std::span<const double> q, std::span<const double> correction,
+                                      Twists& twists) const {
+  const Parts p = parts(q, correction);
+  Twists none;
+  Eigen::Isometry3d X;
+  return tip_->linearise(p.q, p.tip_correction, {}, X, none, &twists);
 }
 
 bool ExplicitModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,

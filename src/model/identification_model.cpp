@@ -14,7 +14,10 @@ void require_size(std::size_t given, std::size_t expected, const char* what) {
 }  // namespace
 
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels) {
-  Coordinate c{name, "", 0.0, double(labels.size()) - 1, false, {}, labels};
+  Coordinate c;
+  c.name = name;
+  c.upper = double(labels.size()) - 1;
+  c.labels = labels;
   for (std::size_t i = 0; i < labels.size(); ++i) c.values.push_back(double(i));
   return c;
 }
@@ -39,13 +42,40 @@ std::span<const double> IdentificationModel::total(std::span<const double> corre
 bool IdentificationModel::linearise(std::span<const double> q, std::span<const double> correction,
                                     std::span<const int> selected, Linearisation& out) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_linearise(q, total(correction, out.correction), selected, out);
+  if (!do_linearise(q, total(correction, out.correction), selected, out)) return false;
+  hide(q, out);
+  return true;
 }
 
 bool IdentificationModel::linearise_factored(std::span<const double> q, std::span<const double> correction,
                                              std::span<const int> selected, Linearisation& out) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_linearise_factored(q, total(correction, out.correction), selected, out);
+  if (!do_linearise_factored(q, total(correction, out.correction), selected, out)) return false;
+  hide(q, out);
+  return true;
+}
+
+/// A hidden target is not read: its rows tell nothing, and its noise is nobody's.
+void IdentificationModel::hide(std::span<const double> q, Linearisation& out) const {
+  if (visibility_ == nullptr || rows_per_target_ == 0) return;
+  out.seen.resize(std::size_t(visibility_->targets()));
+  visibility_->visible(q, out.seen);
+  for (std::size_t t = 0; t < out.seen.size(); ++t) {
+    if (out.seen[t] != 0) continue;
+    for (Eigen::Index i = Eigen::Index(t) * rows_per_target_; i < Eigen::Index(t + 1) * rows_per_target_; ++i) {
+      if (out.G.rows() == rows_) out.G.row(i).setZero();
+      if (out.basis.rows() == rows_) out.basis.row(i).setZero();
+      out.covariance.row(i).setZero();
+      out.covariance.col(i).setZero();
+      out.covariance(i, i) = 1.0;
+    }
+  }
+}
+
+bool IdentificationModel::reading_twists(std::span<const double> q,
+                                         Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  return do_reading_twists(q, shift_, twists);
 }
 
 bool IdentificationModel::measurable(std::span<const double> q) const {
@@ -69,6 +99,11 @@ int IdentificationModel::do_block_rows(std::span<const int>) const { return rows
 bool IdentificationModel::do_linearise_factored(std::span<const double>, std::span<const double>, std::span<const int>,
                                                 Linearisation&) const {
   throw std::logic_error("this model does not factor its rows");
+}
+
+bool IdentificationModel::do_reading_twists(std::span<const double>, std::span<const double>,
+                                            Eigen::Matrix<double, 6, Eigen::Dynamic>&) const {
+  return false;
 }
 
 bool IdentificationModel::do_measurable(std::span<const double>, std::span<const double>) const { return true; }

@@ -12,6 +12,7 @@ LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : in
   geometric_ = inside_->geometric_parameters();
   unmeasurable_reason_ = inside_->unmeasurable_reason();
   rows_ = inside_->rows();
+  rows_per_target_ = inside_->rows_per_target();
   const auto load = std::find_if(coordinates_.begin(), coordinates_.end(),
                                  [](const Coordinate& c) { return c.choice() && c.name == "load_case"; });
   if (load == coordinates_.end() || load->values.size() < 2)

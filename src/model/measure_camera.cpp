@@ -80,6 +80,7 @@ CameraModel::CameraModel(const MeasurementSpec& spec)
       repeatability_(spec.repeatability) {
   for (int r = 0; r < spec_.rows; ++r)
     for (int c = 0; c < spec_.columns; ++c) points_.emplace_back(c * spec_.spacing, r * spec_.spacing, 0);
+  rows_per_target_ = 2;
   rows_ = 2 * int(points_.size());
   replaces_tool_ = true;
   unseen_reason_ = "board not in the image or behind the camera";

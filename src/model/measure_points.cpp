@@ -14,6 +14,7 @@ PointsModel::PointsModel(const MeasurementSpec& spec)
       places_(spec_.stations),
       repeats_(spec.repeats),
       repeatability_(spec.repeatability) {
+  rows_per_target_ = int(spec_.components.size());
   rows_ = int(spec_.targets.size() * spec_.components.size());
   stations_ = places_.names();
   replaces_tool_ = true;

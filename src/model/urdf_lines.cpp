@@ -6,7 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <locale>
 #include <map>
+#include <span>
+#include <sstream>
 #include <string_view>
 
 namespace posewright {
@@ -45,9 +48,27 @@ bool are_numbers(std::string_view text, int count) {
   }
 }
 
-void check_numbers(const tinyxml2::XMLElement& joint, const std::string& file) {
-  for (const tinyxml2::XMLElement* e = joint.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-    for (const NumberAttribute& rule : number_attributes) {
+/// Of numbers that are well-formed.
+bool are_positive(const std::string& text) {
+  std::istringstream numbers(text);
+  numbers.imbue(std::locale::classic());
+  for (double value = 0; numbers >> value;)
+    if (!(value > 0)) return false;
+  return true;
+}
+
+constexpr std::array<NumberAttribute, 7> shape_attributes = {{{"origin", "xyz", 3},
+                                                              {"origin", "rpy", 3},
+                                                              {"box", "size", 3},
+                                                              {"cylinder", "radius", 1},
+                                                              {"cylinder", "length", 1},
+                                                              {"sphere", "radius", 1},
+                                                              {"mesh", "scale", 3}}};
+
+void check_numbers(const tinyxml2::XMLElement& parent, std::span<const NumberAttribute> rules,
+                   const std::string& file) {
+  for (const tinyxml2::XMLElement* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    for (const NumberAttribute& rule : rules) {
       const char* value = std::strcmp(e->Name(), rule.element) == 0 ? e->Attribute(rule.attribute) : nullptr;
       if (value != nullptr && !are_numbers(value, rule.count))
         throw InputError(
@@ -96,8 +117,30 @@ UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(t
                      "a URDF file is needed");
   for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint"))
-    check_numbers(*e, file);
+    check_numbers(*e, number_attributes, file);
   check_tree(*robot, file);
+}
+
+void UrdfLines::check_collision_shapes() const {
+  tinyxml2::XMLDocument document;
+  document.Parse(text_.data(), text_.size());
+  using Element = tinyxml2::XMLElement;
+  for (const Element* link = document.RootElement()->FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link"))
+    for (const Element* e = link->FirstChildElement("collision"); e != nullptr;
+         e = e->NextSiblingElement("collision")) {
+      check_numbers(*e, shape_attributes, file_);
+      const Element* geometry = e->FirstChildElement("geometry");
+      if (geometry == nullptr || geometry->FirstChildElement() == nullptr)
+        throw InputError({file_, e->GetLineNum()}, "collision has no geometry", "box, cylinder, sphere or mesh");
+      check_numbers(*geometry, shape_attributes, file_);
+      const Element* shape = geometry->FirstChildElement();
+      for (const char* size : {"size", "radius", "length"})
+        if (const char* text = shape->Attribute(size); text != nullptr && !are_positive(text))
+          throw InputError({file_, shape->GetLineNum()},
+                           std::string(shape->Name()) + " " + size + "=\"" + text + "\" is not positive",
+                           "sizes > 0 are allowed");
+    }
 }
 
 SourcePlace UrdfLines::find(const char* element, const std::string& name) const {

@@ -15,6 +15,9 @@ class UrdfLines {
   SourcePlace joint(const std::string& name) const { return find("joint", name); }
   SourcePlace link(const std::string& name) const { return find("link", name); }
 
+  /// Throws InputError where a number of a <collision> shape is malformed or a size is not positive.
+  void check_collision_shapes() const;
+
  private:
   SourcePlace find(const char* element, const std::string& name) const;
   std::string text_, file_;

@@ -1,125 +1,20 @@
 #include "posewright/model/urdf_reader.hpp"
 
-#include <console_bridge/console.h>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <algorithm>
-#include <mutex>
 #include <numbers>
 #include <set>
 
 #include "posewright/model/placement.hpp"
-#include "posewright/support/file.hpp"
-#include "urdf_lines.hpp"
+#include "urdf_document.hpp"
 
 namespace posewright {
 namespace {
-
-constexpr std::uintmax_t largest_urdf = 20'000'000;  // bytes
-
-/// Keeps what urdfdom says, for the error message; its handler is global to the process, so one reader at a time.
-class CapturedMessages : public console_bridge::OutputHandler {
- public:
-  CapturedMessages() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
-  CapturedMessages(const CapturedMessages&) = delete;
-  CapturedMessages& operator=(const CapturedMessages&) = delete;
-  ~CapturedMessages() override { console_bridge::restorePreviousOutputHandler(); }
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR || !first_.empty()) return;
-    first_ = text.substr(0, text.find('\n'));
-  }
-  const std::string& first() const { return first_; }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex instance;
-    return instance;
-  }
-  std::scoped_lock<std::mutex> lock_;
-  std::string first_;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file) {
-  CapturedMessages messages;
-  urdf::ModelInterfaceSharedPtr model;
-  try {
-    model = urdf::parseURDF(text);
-  } catch (const std::exception& error) {
-    throw InputError({file, 0}, std::string("is no valid URDF: ") + error.what(), "");
-  }
-  if (model == nullptr)
-    throw InputError({file, 0}, "is no valid URDF: " + (messages.first().empty() ? "not accepted" : messages.first()),
-                     "");
-  return model;
-}
-
-std::string names_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, const SourcePlace& place) {
-  std::vector<std::string> links, leaves;
-  for (const auto& [name, link] : model.links_) {
-    links.push_back(name);
-    if (link->child_joints.empty()) leaves.push_back(name);
-  }
-  if (arm.tip) {
-    if (model.links_.count(arm.tip->value) == 0)
-      throw InputError({place.file, arm.tip->line},
-                       "tip '" + arm.tip->value + "' is no link of " + arm.urdf.filename().string(),
-                       "links: " + names_of(links));
-    return arm.tip->value;
-  }
-  if (leaves.size() != 1)
-    throw InputError(place, "the robot has several ends and no tip is named",
-                     "set robot: tip to one of " + names_of(leaves));
-  return leaves.front();
-}
-
-std::string base_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, const SourcePlace& place) {
-  if (!arm.base) return model.getRoot()->name;
-  if (model.links_.count(arm.base->value) == 0) {
-    std::vector<std::string> links;
-    for (const auto& entry : model.links_) links.push_back(entry.first);
-    throw InputError({place.file, arm.base->line},
-                     "base '" + arm.base->value + "' is no link of " + arm.urdf.filename().string(),
-                     "links: " + names_of(links));
-  }
-  return arm.base->value;
-}
-
-/// Joints from base to tip.
-std::vector<urdf::JointConstSharedPtr> path(const urdf::ModelInterface& model, const std::string& base,
-                                            const std::string& tip, const SourcePlace& place) {
-  std::vector<urdf::JointConstSharedPtr> joints;
-  urdf::LinkConstSharedPtr link = model.getLink(tip);
-  while (link->name != base) {
-    if (link->parent_joint == nullptr)
-      throw InputError(place, "tip '" + tip + "' is not below base '" + base + "'", "name links of one branch");
-    joints.push_back(link->parent_joint);
-    link = model.getLink(link->parent_joint->parent_link_name);
-  }
-  std::reverse(joints.begin(), joints.end());
-  return joints;
-}
-
-Eigen::Isometry3d isometry(const urdf::Pose& pose) {
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
-  X.linear() = Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)
-                   .normalized()
-                   .toRotationMatrix();
-  return X;
-}
 
 Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   const bool prismatic = joint.type == urdf::Joint::PRISMATIC;
   Coordinate c{joint.name, prismatic ? "m" : "rad", -std::numbers::pi, std::numbers::pi};
   c.periodic = joint.type == urdf::Joint::CONTINUOUS;
+  if (joint.limits != nullptr && joint.limits->velocity > 0) c.speed = joint.limits->velocity;
   if (c.periodic) return c;
   if (joint.limits == nullptr)
     throw InputError(place, "joint '" + joint.name + "' has no <limit>",
@@ -221,17 +116,12 @@ class ChainBuilder {
 }  // namespace
 
 ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& place) {
-  const std::string file = arm.urdf.string();
-  const std::string text = read_file(arm.urdf, largest_urdf);
-  const UrdfLines lines(text, file);
-  const urdf::ModelInterfaceSharedPtr model = parse(text, file);
-  const std::string base = base_of(*model, arm, place), tip = tip_of(*model, arm, place);
-  const std::vector<urdf::JointConstSharedPtr> joints = path(*model, base, tip, place);
-  ChainBuilder builder(arm, lines, *model, joints);
-  for (const auto& joint : joints) builder.add(*joint);
+  const UrdfDocument urdf(arm, place);
+  ChainBuilder builder(arm, urdf.lines(), urdf.model(), urdf.joints());
+  for (const auto& joint : urdf.joints()) builder.add(*joint);
   ChainDescription chain = builder.finish();
   if (chain.coordinates.empty())
-    throw InputError(place, "no joint moves between '" + base + "' and '" + tip + "'",
+    throw InputError(place, "no joint moves between '" + urdf.base() + "' and '" + urdf.tip() + "'",
                      "name a base and a tip with joints between");
   if (chain.joints.size() > 64)
     throw InputError(place, "the chain has " + std::to_string(chain.joints.size()) + " joints",

@@ -62,11 +62,12 @@ std::vector<Observation> observe_problem(const Problem& problem, const ObserveOp
   sampling.seed = options.seed;
   sampling.threads = options.threads;
   if (!options.variant.empty()) find_variant(problem, options.variant);
+  const std::shared_ptr<const Cell> cell = make_cell(problem);
   std::vector<Observation> observations;
   for (const VariantSpec& variant : problem.variants)
     if (options.variant.empty() || variant.name == options.variant)
       observations.push_back(
-          observe(make_study(problem, variant, sampling, monitor), problem, variant, options, monitor));
+          observe(make_study(problem, variant, cell, sampling, monitor), problem, variant, options, monitor));
   return observations;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
 #include "read_poses.hpp"
 #include "study_space.hpp"
@@ -87,12 +86,14 @@ void append(Configurations& list, std::span<const double> q) {
 
 Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor) {
   Preparation prepared;
+  prepared.cell = make_cell(problem);
   for (const DesignSpec::Weighted& wanted : settings.variants) {
     PreparedVariant variant;
     variant.spec = &find_variant(problem, wanted.name.value);
     variant.weight = wanted.weight;
-    variant.model = make_model(problem, *variant.spec);
-    variant.workspace = std::make_unique<Workspace>(*variant.model, problem);
+    Site site = make_site(problem, *variant.spec, prepared.cell);
+    variant.model = std::move(site.model);
+    variant.workspace = std::move(site.workspace);
     prepared.variants.push_back(std::move(variant));
     require_same_coordinates(prepared.first(), prepared.variants.back());
   }

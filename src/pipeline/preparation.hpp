@@ -42,6 +42,7 @@ struct PreparedVariant {
 
 /// A problem as planning needs it: variants, feasible configurations, poses that are there already.
 struct Preparation {
+  std::shared_ptr<const Cell> cell;
   std::vector<PreparedVariant> variants;
   Configurations configurations;
   Configurations measured;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -40,11 +39,12 @@ std::string dropped_names(const Identifiability& found, const std::vector<Parame
 
 }  // namespace
 
-Study make_study(const Problem& problem, const VariantSpec& variant, const SamplingOptions& options,
-                 const Monitor& monitor) {
+Study make_study(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell,
+                 const SamplingOptions& options, const Monitor& monitor) {
   Study study;
-  study.model = make_model(problem, variant);
-  study.workspace = std::make_unique<Workspace>(*study.model, problem);
+  Site site = make_site(problem, variant, cell);
+  study.model = std::move(site.model);
+  study.workspace = std::move(site.workspace);
   study.configurations = sample_configurations(*study.workspace, options, monitor);
   return study;
 }

@@ -28,8 +28,8 @@ struct StudyView {
 };
 
 /// The robot as one variant sees it.
-Study make_study(const Problem& problem, const VariantSpec& variant, const SamplingOptions& options,
-                 const Monitor& monitor);
+Study make_study(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell,
+                 const SamplingOptions& options, const Monitor& monitor);
 
 /// At most `count` of the configurations, evenly through the list.
 Configurations thinned(const Configurations& configurations, std::size_t count);

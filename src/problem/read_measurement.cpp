@@ -86,18 +86,6 @@ TrackerNoise read_tracker(const Value* value) {
   return noise;
 }
 
-std::vector<StationSpec> read_stations(const Value& value) {
-  std::vector<StationSpec> stations;
-  for (const yaml::Entry& entry : Section(value).entries()) {
-    StationSpec station{entry.key.value, {}};
-    if (entry.value.is_mapping()) station.placement = read_placement(Section(entry.value));
-    else station.placement.position = entry.value.vector(Quantity::length);
-    stations.push_back(std::move(station));
-  }
-  if (stations.empty()) value.fail("is empty", "at least one station is needed");
-  return stations;
-}
-
 /// A device that measures points: its noise and where it stands.
 void read_point_device(const Value& value, PointNoise& noise, std::vector<StationSpec>& stations) {
   const Section device(value);
@@ -164,6 +152,18 @@ PointsMeasurement read_points(const Section& section, bool single) {
 }
 
 }  // namespace
+
+std::vector<StationSpec> read_stations(const Value& value) {
+  std::vector<StationSpec> stations;
+  for (const yaml::Entry& entry : Section(value).entries()) {
+    StationSpec station{entry.key.value, {}};
+    if (entry.value.is_mapping()) station.placement = read_placement(Section(entry.value));
+    else station.placement.position = entry.value.vector(Quantity::length);
+    stations.push_back(std::move(station));
+  }
+  if (stations.empty()) value.fail("is empty", "at least one station is needed");
+  return stations;
+}
 
 std::vector<TargetSpec> read_targets(const Value& value) {
   std::vector<TargetSpec> targets;

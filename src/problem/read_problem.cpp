@@ -50,7 +50,7 @@ Problem parse_problem(const std::string& text, const fs::path& file) {
   problem.measurement = read_measurement(root.at("measurement"));
   problem.variants = read_variants(root.at("variants"));
   if (const yaml::Value* workspace = root.find("workspace"))
-    problem.workspace = read_workspace(*workspace, problem.robot);
+    problem.workspace = read_workspace(*workspace, problem.robot, file.parent_path());
   if (const yaml::Value* design = root.find("design"))
     problem.design = read_design(*design, problem.variants, file.parent_path());
   return problem;

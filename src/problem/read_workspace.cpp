@@ -1,3 +1,5 @@
+#include <array>
+
 #include "sections.hpp"
 
 namespace posewright {
@@ -7,9 +9,22 @@ using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
 
-WorkspaceSpec read_joints(const Section& joints) {
-  joints.allow({"margin", "margin_length", "limits"});
-  WorkspaceSpec workspace;
+CoupledLimits read_coupled(const Value& value) {
+  const Section section(value);
+  section.allow({"sum", "range"});
+  CoupledLimits coupled;
+  coupled.line = value.line();
+  for (const yaml::Entry& entry : Section(section.at("sum")).entries())
+    coupled.factors.emplace_back(entry.key, entry.value.number(Quantity::number));
+  if (coupled.factors.empty()) section.at("sum").fail("is empty", "names of joints with a factor each");
+  const yaml::Range range = read_range(section.at("range"), {Quantity::angle, Quantity::length});
+  coupled.lower = range.lower;
+  coupled.upper = range.upper;
+  return coupled;
+}
+
+void read_joints(const Section& joints, WorkspaceSpec& workspace) {
+  joints.allow({"margin", "margin_length", "limits", "coupled"});
   if (const Value* margin = joints.find("margin"))
     workspace.joint_margin = margin->number(Quantity::angle, Sign::not_negative);
   if (const Value* margin = joints.find("margin_length"))
@@ -19,33 +34,93 @@ WorkspaceSpec read_joints(const Section& joints) {
       const yaml::Range range = read_range(entry.value, {Quantity::angle, Quantity::length});
       workspace.limits.push_back({entry.key, range.lower, range.upper, range.quantity});
     }
-  return workspace;
+  if (const Value* coupled = joints.find("coupled"))
+    for (const Value& item : coupled->items("a list of {sum, range} is expected"))
+      workspace.coupled.push_back(read_coupled(item));
 }
 
-WorkspaceSpec read_pose(const Section& pose) {
+void read_pose(const Section& pose, WorkspaceSpec& workspace) {
   pose.allow({"x", "y", "z", "rx", "ry", "rz"});
-  WorkspaceSpec workspace;
   for (std::size_t i = 0; i < pose_components.size(); ++i) {
     const Quantity quantity = i < 3 ? Quantity::length : Quantity::angle;
     const Value& limits = pose.at(pose_components[i]);
     const yaml::Range range = read_range(limits, {quantity});
     workspace.limits.push_back({{std::string(pose_components[i]), limits.line()}, range.lower, range.upper, quantity});
   }
-  return workspace;
+}
+
+ToolBoxSpec read_tool_box(const Section& tool) {
+  tool.allow({"point", "x", "y", "z"});
+  ToolBoxSpec box;
+  if (const Value* point = tool.find("point")) box.point = point->vector(Quantity::length);
+  bool any = false;
+  for (int k = 0; k < 3; ++k)
+    if (const Value* limits = tool.find(pose_components[std::size_t(k)])) {
+      const yaml::Range range = read_range(*limits, {Quantity::length});
+      box.lower[k] = range.lower;
+      box.upper[k] = range.upper;
+      any = true;
+    }
+  if (!any) tool.value().fail("limits nothing", "at least one of x, y, z is needed");
+  return box;
+}
+
+SingularitySpec read_singularity(const Value& value) {
+  SingularitySpec singularity;
+  singularity.line = value.line();
+  if (!value.is_mapping()) {
+    singularity.smallest = value.number(Quantity::number, Sign::positive);
+    return singularity;
+  }
+  const Section section(value);
+  section.allow({"smallest", "length"});
+  singularity.smallest = section.at("smallest").number(Quantity::number, Sign::positive);
+  if (const Value* length = section.find("length"))
+    singularity.length = length->number(Quantity::length, Sign::positive);
+  return singularity;
+}
+
+std::vector<std::pair<SamplerKind, double>> read_samplers(const Section& section) {
+  using Kind = SamplerKind;
+  section.allow({"even", "boundary", "obstacle_based", "gaussian", "clearance"});
+  const std::array<std::pair<const char*, Kind>, 5> kinds = {{{"even", Kind::even},
+                                                              {"boundary", Kind::boundary},
+                                                              {"obstacle_based", Kind::obstacle_based},
+                                                              {"gaussian", Kind::gaussian},
+                                                              {"clearance", Kind::clearance}}};
+  std::vector<std::pair<Kind, double>> samplers;
+  for (const auto& [name, kind] : kinds)
+    if (const Value* share = section.find(name))
+      if (const double number = share->number(Quantity::number, Sign::not_negative); number > 0)
+        samplers.emplace_back(kind, number);
+  if (samplers.empty()) section.value().fail("draws nothing", "a share > 0 is needed");
+  return samplers;
 }
 
 }  // namespace
 
-WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot) {
+WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const std::filesystem::path& folder) {
   const Section section(value);
+  WorkspaceSpec workspace;
   if (std::holds_alternative<SixLegsSpec>(robot)) {
-    section.allow({"pose"});
-    const Value* pose = section.find("pose");
-    return pose == nullptr ? WorkspaceSpec{} : read_pose(Section(*pose));
+    section.allow({"pose", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
+                   "uncalibrated"});
+    if (const Value* pose = section.find("pose")) read_pose(Section(*pose), workspace);
+  } else {
+    section.allow({"joints", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
+                   "uncalibrated"});
+    if (const Value* joints = section.find("joints")) read_joints(Section(*joints), workspace);
   }
-  section.allow({"joints"});
-  const Value* joints = section.find("joints");
-  return joints == nullptr ? WorkspaceSpec{} : read_joints(Section(*joints));
+  if (const Value* tool = section.find("tool")) workspace.tool = read_tool_box(Section(*tool));
+  if (const Value* singularity = section.find("singularity")) workspace.singularity = read_singularity(*singularity);
+  if (const Value* collision = section.find("collision")) workspace.collision = read_collision(*collision, folder);
+  if (const Value* sight = section.find("line_of_sight")) workspace.line_of_sight = read_line_of_sight(*sight);
+  if (const Value* stations = section.find("stations")) workspace.stations = read_station_choice(*stations);
+  if (const Value* motion = section.find("motion")) workspace.motion = read_motion(*motion);
+  if (const Value* samplers = section.find("samplers")) workspace.samplers = read_samplers(Section(*samplers));
+  if (const Value* sigmas = section.find("uncalibrated"))
+    workspace.uncalibrated = sigmas->number(Quantity::number, Sign::not_negative);
+  return workspace;
 }
 
 }  // namespace posewright

@@ -36,8 +36,17 @@ std::vector<PatternValue> read_pattern_values(const yaml::Value& value, yaml::Si
 
 std::vector<VariantSpec> read_variants(const yaml::Value& value);
 
-/// The kind of robot decides which keys there are.
-WorkspaceSpec read_workspace(const yaml::Value& value, const RobotSpec& robot);
+/// The kind of robot decides which keys there are. `folder` is what paths are relative to.
+WorkspaceSpec read_workspace(const yaml::Value& value, const RobotSpec& robot, const std::filesystem::path& folder);
+CollisionSpec read_collision(const yaml::Value& value, const std::filesystem::path& folder);
+LineOfSightSpec read_line_of_sight(const yaml::Value& value);
+StationChoiceSpec read_station_choice(const yaml::Value& value);
+MotionSpec read_motion(const yaml::Value& value);
+
+/// {NAME: [x, y, z] or {position, rpy}}, at least one.
+std::vector<StationSpec> read_stations(const yaml::Value& value);
+/// A vector of length 1 from one that is not zero.
+Eigen::Vector3d read_direction(const yaml::Value& value);
 
 /// Throws where the design names none of the variants. `folder` is what paths are relative to.
 DesignSpec read_design(const yaml::Value& value, const std::vector<VariantSpec>& variants,

@@ -20,7 +20,7 @@ struct Unit {
   double times, over;
 };
 
-constexpr std::array<Unit, 15> units{{
+constexpr std::array<Unit, 25> units{{
     {"m", Quantity::length, 1, 1},
     {"mm", Quantity::length, 1, 1e3},
     {"um", Quantity::length, 1, 1e6},
@@ -36,6 +36,16 @@ constexpr std::array<Unit, 15> units{{
     {"N/m", Quantity::stiffness, 1, 1},
     {"N/mm", Quantity::stiffness, 1e3, 1},
     {"N/um", Quantity::stiffness, 1e6, 1},
+    {"s", Quantity::time, 1, 1},
+    {"min", Quantity::time, 60, 1},
+    {"rad/s", Quantity::turn_rate, 1, 1},
+    {"deg/s", Quantity::turn_rate, std::numbers::pi, 180},
+    {"m/s", Quantity::speed, 1, 1},
+    {"mm/s", Quantity::speed, 1, 1e3},
+    {"rad/s2", Quantity::turn_acceleration, 1, 1},
+    {"deg/s2", Quantity::turn_acceleration, std::numbers::pi, 180},
+    {"m/s2", Quantity::acceleration, 1, 1},
+    {"mm/s2", Quantity::acceleration, 1, 1e3},
 }};
 
 [[noreturn]] void fail(std::string_view text, const std::string& what, const std::string& allowed) {

@@ -1,5 +1,8 @@
 #include "posewright/workspace/candidates.hpp"
 
+#include <ompl/base/ScopedState.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,6 +13,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
+#include "valid_samples.hpp"
 
 namespace posewright {
 namespace {
@@ -17,6 +21,10 @@ namespace {
 constexpr std::size_t batch = 2048;
 // Halvings of the way from a feasible point to an infeasible one: 2⁻³⁰ of the way is finer than any controller's step.
 constexpr int bisections = 30;
+// Where each step asks for collisions: 2⁻¹³ of the way.
+constexpr int bisections_in_cell = 13;
+// Draws that one OMPL sampler makes in a row; the next ones begin afresh, so that threads can share them out.
+constexpr int ompl_run = 16;
 // Corners of a box of more dimensions are drawn, not enumerated.
 constexpr std::size_t max_enumerated = 10;
 constexpr std::uint64_t interior_stream = 1, boundary_stream = 2;
@@ -30,6 +38,7 @@ class Sampler {
     for (std::size_t k = 0; k < workspace.coordinates().size(); ++k)
       if (const Coordinate& c = workspace.coordinates()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
     reasons_.push_back("drawn before");
+    reasons_.push_back("passed over by the sampler");
     rejected_.assign(reasons_.size(), 0);
   }
 
@@ -51,6 +60,24 @@ class Sampler {
         true);
   }
 
+  /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
+  void valid_states(SamplerKind kind, std::size_t wanted, const Monitor& monitor) {
+    const std::size_t target = result_.count() + wanted;
+    const long limit = result_.drawn + long(wanted * options_.draws_per_candidate);
+    constexpr std::size_t runs = 32;
+    std::vector<Run> batch_of_runs(runs);
+    for (std::size_t first = 0; result_.count() < target && result_.drawn < limit && !monitor.should_stop();
+         first += runs) {
+      parallel_for(runs, thread_count(options_.threads),
+                   [&](std::size_t r, int) { batch_of_runs[r] = run(kind, first + r); });
+      for (const Run& done : batch_of_runs) {
+        if (result_.count() >= target) break;
+        add(done, target);
+      }
+      monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
+    }
+  }
+
   Configurations take() {
     for (std::size_t r = 0; r < rejected_.size(); ++r)
       if (rejected_[r] > 0) result_.rejected.emplace_back(reasons_[r], rejected_[r]);
@@ -59,6 +86,53 @@ class Sampler {
   }
 
  private:
+  struct Run {
+    std::vector<double> values;
+    std::vector<long> rejected;
+    long drawn = 0;
+  };
+
+  std::size_t drawn_before() const { return rejected_.size() - 2; }
+
+  Run run(SamplerKind kind, std::size_t number) const {
+    namespace ob = ompl::base;
+    Random random(options_.seed, mix_bits(mix_bits(number) + 17 * (1 + std::size_t(kind))));
+    SamplingSession session(random, workspace_.reasons().size());
+    const auto& space = workspace_.space_information();
+    const ob::ValidStateSamplerPtr sampler = make_valid_sampler(kind, space.get());
+    ob::ScopedState<ob::RealVectorStateSpace> state(space);
+    Run result;
+    for (int i = 0; i < ompl_run; ++i) {
+      session.fixed.clear();
+      for (const Coordinate& c : workspace_.coordinates())
+        session.fixed.push_back(c.discrete() ? c.values[std::size_t(random.index(int(c.values.size())))] : 0.0);
+      if (!sampler->sample(state.get())) continue;
+      const double* values = state->values;
+      if (workspace_.violation({values, std::size_t(result_.dimension)}) < 0)
+        result.values.insert(result.values.end(), values, values + result_.dimension);
+    }
+    result.drawn = session.draws();
+    result.rejected = session.rejected();
+    return result;
+  }
+
+  void add(const Run& done, std::size_t target) {
+    result_.drawn += done.drawn;
+    long open = done.drawn;
+    for (std::size_t r = 0; r < done.rejected.size(); ++r) {
+      rejected_[r] += done.rejected[r];
+      open -= done.rejected[r];
+    }
+    const auto d = std::size_t(result_.dimension);
+    for (std::size_t i = 0; i < done.values.size() && result_.count() < target; i += d) {
+      const std::span<const double> q = std::span(done.values).subspan(i, d);
+      --open;
+      if (is_new(q)) result_.values.insert(result_.values.end(), q.begin(), q.end());
+      else ++rejected_[drawn_before()];
+    }
+    rejected_.back() += open;
+  }
+
   /// Moves unit coordinates to 0 or 1: all of them for the first draws (every corner once, if they are not too many),
   /// then 1, 2, … of them in turn. Periodic coordinates have no ends.
   void pin(std::size_t i, std::span<double> q) const {
@@ -104,7 +178,7 @@ class Sampler {
         ++result_.drawn;
         const std::span<const double> q = std::span(points).subspan(i * d, d);
         if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
-        else if (!is_new(q)) ++rejected_.back();
+        else if (!is_new(q)) ++rejected_[drawn_before()];
         else
           result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
                                 points.begin() + std::ptrdiff_t((i + 1) * d));
@@ -129,8 +203,9 @@ class Sampler {
       for (std::size_t k = 0; k < q.size(); ++k)
         trial[k] = workspace_.coordinates()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
     };
+    const int steps = workspace_.cell() == nullptr ? bisections : bisections_in_cell;
     double feasible = 0.0, infeasible = 1.0;
-    for (int i = 0; i < bisections; ++i) {
+    for (int i = 0; i < steps; ++i) {
       const double middle = 0.5 * (feasible + infeasible);
       along(middle);
       (workspace_.violation(trial) < 0 ? feasible : infeasible) = middle;
@@ -163,8 +238,17 @@ class Sampler {
 Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
                                      const Monitor& monitor) {
   Sampler sampler(workspace, options);
-  sampler.interior(options.count - options.count / 2, monitor);
-  sampler.boundary(options.count / 2, monitor);
+  double open_share = 0;
+  for (const auto& [kind, share] : workspace.sampler_shares()) open_share += share;
+  std::size_t open = options.count;
+  for (const auto& [kind, share] : workspace.sampler_shares()) {
+    const auto wanted = std::size_t(std::lround(double(open) * share / open_share));
+    open -= wanted;
+    open_share -= share;
+    if (kind == SamplerKind::even) sampler.interior(wanted, monitor);
+    else if (kind == SamplerKind::boundary) sampler.boundary(wanted, monitor);
+    else sampler.valid_states(kind, wanted, monitor);
+  }
   return sampler.take();
 }
 

@@ -1,29 +1,29 @@
-#include "check_actuators.hpp"
-
 #include <array>
+
+#include "checks.hpp"
 
 namespace posewright {
 namespace {
 
 constexpr std::size_t max_actuators = 64;
 
-class ReachCheck : public ValidityCheck {
+class ReachCheck : public SingleCheck {
  public:
-  explicit ReachCheck(const IdentificationModel& model) : model_(model) {}
-  std::string reason() const override { return "out of reach"; }
+  explicit ReachCheck(const IdentificationModel& model) : SingleCheck("out of reach"), model_(model) {}
+
+ private:
   bool holds(std::span<const double> q) const override {
     std::array<double, max_actuators> values{};
     return model_.actuator_values(q, std::span(values).first(model_.actuators().size()));
   }
-
- private:
   const IdentificationModel& model_;
 };
 
-class TravelCheck : public ValidityCheck {
+class TravelCheck : public SingleCheck {
  public:
-  explicit TravelCheck(const IdentificationModel& model) : model_(model) {}
-  std::string reason() const override { return "actuator travel"; }
+  explicit TravelCheck(const IdentificationModel& model) : SingleCheck("actuator travel"), model_(model) {}
+
+ private:
   bool holds(std::span<const double> q) const override {
     std::array<double, max_actuators> values{};
     const std::size_t count = model_.actuators().size();
@@ -32,19 +32,15 @@ class TravelCheck : public ValidityCheck {
       if (values[i] < model_.actuators()[i].lower || values[i] > model_.actuators()[i].upper) return false;
     return true;
   }
-
- private:
   const IdentificationModel& model_;
 };
 
 }  // namespace
 
-std::vector<std::unique_ptr<ValidityCheck>> actuator_checks(const IdentificationModel& model) {
-  std::vector<std::unique_ptr<ValidityCheck>> checks;
-  if (model.actuators().empty()) return checks;
-  checks.push_back(std::make_unique<ReachCheck>(model));
-  checks.push_back(std::make_unique<TravelCheck>(model));
-  return checks;
+void add_actuator_checks(const CheckContext& context, Checks& checks) {
+  if (context.model.actuators().empty()) return;
+  checks.push_back(std::make_unique<ReachCheck>(context.model));
+  checks.push_back(std::make_unique<TravelCheck>(context.model));
 }
 
 }  // namespace posewright

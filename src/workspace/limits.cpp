@@ -62,11 +62,13 @@ void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits
 
 }  // namespace
 
-std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const Problem& problem) {
+std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const Problem& problem, const Cell* cell) {
   std::vector<Coordinate> coordinates = model.coordinates();
   for (const CoordinateLimits& limits : problem.workspace.limits) narrow(coordinates, limits, problem);
   for (Coordinate& c : coordinates) {
-    const double margin = c.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
+    double margin = c.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
+    if (cell != nullptr)
+      if (const auto more = cell->joint_margin.find(c.name); more != cell->joint_margin.end()) margin += more->second;
     const Coordinate before = c;
     if (c.periodic || c.choice()) continue;
     c.lower += margin;

@@ -6,89 +6,68 @@
 #include <ompl/util/Console.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <stdexcept>
 
-#include "check_actuators.hpp"
+#include "checks.hpp"
 #include "limits.hpp"
-#include "posewright/workspace/validity_check.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "valid_samples.hpp"
 
 namespace posewright {
 namespace {
 
 namespace ob = ompl::base;
 using Space = ob::RealVectorStateSpace;
-using Checks = std::vector<std::unique_ptr<ValidityCheck>>;
 
-class LimitsCheck : public ValidityCheck {
- public:
-  explicit LimitsCheck(const std::vector<Coordinate>& coordinates) : coordinates_(coordinates) {}
-  std::string reason() const override { return "limits"; }
-  bool holds(std::span<const double> q) const override {
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      const Coordinate& c = coordinates_[i];
-      if (!(q[i] >= c.lower && q[i] <= c.upper)) return false;
-      if (c.discrete() && !std::binary_search(c.values.begin(), c.values.end(), q[i])) return false;
-    }
-    return true;
-  }
-
- private:
-  std::vector<Coordinate> coordinates_;
-};
-
-/// What the instrument cannot see cannot be measured.
-class MeasurableCheck : public ValidityCheck {
- public:
-  explicit MeasurableCheck(const IdentificationModel& model) : model_(model) {}
-  std::string reason() const override { return model_.unmeasurable_reason(); }
-  bool holds(std::span<const double> q) const override { return model_.measurable(q); }
-
- private:
-  const IdentificationModel& model_;
-};
-
-/// All checks, in the order of cost; a new constraint is one row here.
-Checks make_checks(const IdentificationModel& model, const std::vector<Coordinate>& coordinates) {
-  Checks checks;
-  checks.push_back(std::make_unique<LimitsCheck>(coordinates));
-  for (auto& check : actuator_checks(model)) checks.push_back(std::move(check));
-  if (!model.unmeasurable_reason().empty()) checks.push_back(std::make_unique<MeasurableCheck>(model));
-  return checks;
-}
+// Beyond this, more room is no better.
+constexpr double most_clearance = 0.3;  // m
 
 class FeasibilityChecker : public ob::StateValidityChecker {
  public:
-  FeasibilityChecker(const ob::SpaceInformationPtr& space, Checks checks)
-      : ob::StateValidityChecker(space), checks_(std::move(checks)) {}
+  FeasibilityChecker(const ob::SpaceInformationPtr& space, Checks checks, const Collision* collision)
+      : ob::StateValidityChecker(space), checks_(std::move(checks)), collision_(collision) {
+    for (const auto& check : checks_) {
+      first_.push_back(int(reasons_.size()));
+      for (const std::string& reason : check->reasons()) reasons_.push_back(reason);
+    }
+  }
 
   bool isValid(const ob::State* state) const override {
     const double* values = state->as<Space::StateType>()->values;
-    return violation({values, si_->getStateDimension()}) < 0;
+    const int found = violation({values, si_->getStateDimension()});
+    if (SamplingSession* session = SamplingSession::current()) session->judged(found);
+    return found < 0;
+  }
+
+  /// What OMPL's sampler of maximal clearance climbs: room beyond what must be kept, m.
+  double clearance(const ob::State* state) const override {
+    if (collision_ == nullptr) return 0.0;
+    const double* values = state->as<Space::StateType>()->values;
+    return collision_->slack({values, si_->getStateDimension()}, most_clearance);
   }
 
   int violation(std::span<const double> q) const {
     for (std::size_t i = 0; i < checks_.size(); ++i)
-      if (!checks_[i]->holds(q)) return int(i);
+      if (const int reason = checks_[i]->violation(q); reason >= 0) return first_[i] + reason;
     return -1;
   }
 
-  std::vector<std::string> reasons() const {
-    std::vector<std::string> names;
-    for (const auto& check : checks_) names.push_back(check->reason());
-    return names;
-  }
+  const std::vector<std::string>& reasons() const { return reasons_; }
 
  private:
   Checks checks_;
+  const Collision* collision_;
+  std::vector<int> first_;  // of each check's reasons
+  std::vector<std::string> reasons_;
 };
 
 }  // namespace
 
 class Workspace::Implementation {
  public:
-  Implementation(const IdentificationModel& model_in, const Problem& problem)
-      : model(model_in), coordinates(limits_in_force(model_in, problem)) {
+  Implementation(const IdentificationModel& model_in, const Problem& problem, std::shared_ptr<const Cell> cell_in)
+      : model(model_in), cell(std::move(cell_in)), coordinates(limits_in_force(model_in, problem, cell.get())) {
     // Errors of ours are exceptions; OMPL's console output would mix with the program's own.
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     const auto state_space = std::make_shared<Space>(unsigned(coordinates.size()));
@@ -101,27 +80,42 @@ class Workspace::Implementation {
       state_space->setDimensionName(i, coordinates[i].name);
     }
     state_space->setBounds(bounds);
+    state_space->setStateSamplerAllocator(
+        [this](const ob::StateSpace* of) { return allocate_sampler(of, coordinates); });
     space = std::make_shared<ob::SpaceInformation>(state_space);
-    checker = std::make_shared<FeasibilityChecker>(space, make_checks(model, coordinates));
+    checker = std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get()}),
+                                                   cell == nullptr ? nullptr : cell->collision.get());
     space->setStateValidityChecker(checker);
     space->setup();
     reasons = checker->reasons();
+    sampler_shares = problem.workspace.samplers;
+    if (!sampler_shares.empty()) return;
+    using Kind = SamplerKind;
+    const bool cut = cell != nullptr && (cell->collision != nullptr || cell->sight_is_asked);
+    if (cut) sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};
+    else sampler_shares = {{Kind::even, 1}, {Kind::boundary, 1}};
   }
 
   const IdentificationModel& model;
+  std::shared_ptr<const Cell> cell;
   std::vector<Coordinate> coordinates;
   std::shared_ptr<ob::SpaceInformation> space;
   std::shared_ptr<FeasibilityChecker> checker;
   std::vector<std::string> reasons;
+  std::vector<std::pair<SamplerKind, double>> sampler_shares;
 };
 
-Workspace::Workspace(const IdentificationModel& model, const Problem& problem)
-    : implementation_(std::make_unique<Implementation>(model, problem)) {}
+Workspace::Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell)
+    : implementation_(std::make_unique<Implementation>(model, problem, std::move(cell))) {}
 Workspace::~Workspace() = default;
 
 const std::vector<Coordinate>& Workspace::coordinates() const { return implementation_->coordinates; }
 const std::vector<std::string>& Workspace::reasons() const { return implementation_->reasons; }
 int Workspace::violation(std::span<const double> q) const { return implementation_->checker->violation(q); }
+const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() const {
+  return implementation_->sampler_shares;
+}
+const Cell* Workspace::cell() const { return implementation_->cell.get(); }
 const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_information() const {
   return implementation_->space;
 }
@@ -149,6 +143,19 @@ bool Workspace::on_boundary(std::span<const double> q, double actuator_share) co
     if (values[i] - actuators[i].lower <= near || actuators[i].upper - values[i] <= near) return true;
   }
   return false;
+}
+
+Site make_site(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell) {
+  Site site;
+  site.model = make_model(problem, variant);
+  if (cell != nullptr && cell->sight_is_asked) {
+    if (site.model->rows_per_target() > 0 &&
+        site.model->rows() != cell->sight->targets() * site.model->rows_per_target())
+      throw std::logic_error("targets of the instrument and of the line of sight differ");
+    site.model->set_visibility({cell, cell->sight.get()});
+  }
+  site.workspace = std::make_unique<Workspace>(*site.model, problem, cell);
+  return site;
 }
 
 }  // namespace posewright

@@ -32,6 +32,8 @@ class ExplicitModel : public IdentificationModel {
                           std::span<double> values) const override;
   Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
 
+  bool do_reading_twists(std::span<const double> q, std::span<const double> correction, Twists& twists) const override;
+
   struct Parts;
   Parts parts(std::span<const double> q, std::span<const double> correction) const;
   bool twists_and_noise(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,

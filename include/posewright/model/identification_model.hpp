@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@ struct Coordinate {
   bool periodic = false;              ///< a full turn: both ends are the same pose and no boundary
   std::vector<double> values{};       ///< the only values allowed, ascending; empty: all between the limits
   std::vector<std::string> labels{};  ///< of a choice (load case, station): what the values 0, 1, … stand for
+  double speed = 0.0;                 ///< largest, per second; 0: not known
 
   bool discrete() const { return !values.empty(); }
   bool choice() const { return !labels.empty(); }
@@ -40,9 +42,19 @@ struct Linearisation {
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
   Eigen::MatrixXd rows, small;                              ///< scratch
+  std::vector<char> seen;                                   ///< scratch: per target
   std::vector<double> correction;                           ///< scratch
   Eigen::LLT<Eigen::MatrixXd> factor, small_factor;         ///< scratch of the whitening
   Eigen::HouseholderQR<Eigen::MatrixXd> compression;        ///< scratch of the whitening
+};
+
+/// Which of an instrument's targets can be seen. Const and callable from several threads.
+class Visibility {
+ public:
+  virtual ~Visibility() = default;
+  virtual int targets() const = 0;
+  /// seen[t] = 1 for each target that can be seen at q, else 0; size targets().
+  virtual void visible(std::span<const double> q, std::span<char> seen) const = 0;
 };
 
 /// Robot and instrument together: everything that planning needs to know of them.
@@ -82,6 +94,16 @@ class IdentificationModel {
   /// Empty where every reachable configuration can be measured.
   const std::string& unmeasurable_reason() const { return unmeasurable_reason_; }
 
+  /// Who says which targets can be seen: from now on the rows of hidden ones are zero in every linearisation, so that a
+  /// block counts what is visible only. Without rows_per_target() it does nothing.
+  void set_visibility(std::shared_ptr<const Visibility> visibility) { visibility_ = std::move(visibility); }
+  /// Rows that one target has; 0: the instrument sees the pose as a whole.
+  int rows_per_target() const { return rows_per_target_; }
+
+  /// Twists of the tip per unit of each reading (joint or actuator), 6 × readings (see TipModel); false where q is
+  /// unreachable or the model has no single tip.
+  bool reading_twists(std::span<const double> q, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+
   /// Actuator coordinates at q (size actuators()); false where q is unreachable.
   bool actuator_values(std::span<const double> q, std::span<double> values) const;
 
@@ -102,6 +124,7 @@ class IdentificationModel {
   std::vector<Preference> geometric_;
   std::string unmeasurable_reason_;
   int rows_ = 0;
+  int rows_per_target_ = 0;
 
  private:
   virtual bool do_linearise(std::span<const double> q, std::span<const double> correction,
@@ -113,9 +136,13 @@ class IdentificationModel {
   virtual bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
                                   std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const = 0;
+  virtual bool do_reading_twists(std::span<const double> q, std::span<const double> correction,
+                                 Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+  void hide(std::span<const double> q, Linearisation& out) const;
 
   std::span<const double> total(std::span<const double> correction, std::vector<double>& scratch) const;
 
+  std::shared_ptr<const Visibility> visibility_;
   std::vector<double> shift_;  // nominal in force − nominal the model was built with; empty: all zero
 };
 

@@ -26,6 +26,8 @@ class MeasurementModel {
   /// Parameters that `auto` may choose, in tiers (IdentificationModel::Preference; indices into parameters()).
   const std::vector<IdentificationModel::Preference>& preferences() const { return preferences_; }
   int rows() const { return rows_; }
+  /// Rows that belong to one target each, target by target; 0: readings are of the pose as a whole.
+  int rows_per_target() const { return rows_per_target_; }
   /// Names of the stations that a measurement can be taken from; empty where there is nothing to choose.
   const std::vector<std::string>& stations() const { return stations_; }
   /// True where targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
@@ -56,6 +58,7 @@ class MeasurementModel {
   std::string unseen_reason_;
   bool replaces_tool_ = false;
   int rows_ = 0;
+  int rows_per_target_ = 0;
 };
 
 /// Covariance (6 × 6) of the pose in spatial twists about the tip's origin, by the linear fit of the pose to an

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/problem/cell_specs.hpp"
 #include "posewright/problem/design_specs.hpp"
 #include "posewright/problem/measurement_specs.hpp"
 #include "posewright/problem/robot_specs.hpp"
@@ -35,10 +36,22 @@ struct CoordinateLimits {
   Quantity quantity = Quantity::number;  ///< kind of unit written (length, angle); number: none, so SI
 };
 
+/// How candidates are drawn: evenly, on the boundary of what is feasible, and by OMPL's samplers of valid states.
+enum class SamplerKind { even, boundary, obstacle_based, gaussian, clearance };
+
 struct WorkspaceSpec {
   double joint_margin = 0.0;             ///< rad, kept from both ends of revolute limits
   double joint_margin_length = 0.0;      ///< m, the same for prismatic joints
   std::vector<CoordinateLimits> limits;  ///< `joints: limits:` or `pose:` of a platform
+  std::vector<CoupledLimits> coupled;
+  std::optional<ToolBoxSpec> tool;
+  std::optional<SingularitySpec> singularity;
+  std::optional<CollisionSpec> collision;
+  std::optional<LineOfSightSpec> line_of_sight;
+  std::optional<StationChoiceSpec> stations;  ///< to choose among, for the command `stations`
+  MotionSpec motion;
+  std::vector<std::pair<SamplerKind, double>> samplers;  ///< shares of the candidates; empty: chosen by the constraints
+  double uncalibrated = 0.0;  ///< margins grow by so many σ of what the tolerances let the robot miss; 0: they don't
 };
 
 /// A whole problem file.
@@ -51,6 +64,8 @@ struct Problem {
   std::vector<VariantSpec> variants;  ///< at least one
   WorkspaceSpec workspace;
   DesignSpec design;
+  /// Where meshes named package://NAME/… are: folders named so beside those of ROS_PACKAGE_PATH and around the URDF.
+  std::vector<std::pair<std::string, std::filesystem::path>> packages;
 
   SourcePlace at(int line) const { return {file.string(), line}; }
 };

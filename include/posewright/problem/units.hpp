@@ -6,8 +6,20 @@
 
 namespace posewright {
 
-/// What a value measures. SI inside: m, rad, N, rad/(N·m), N/m.
-enum class Quantity { number, length, angle, force, compliance, stiffness };
+/// What a value measures. SI inside: m, rad, N, rad/(N·m), N/m, s, rad/s, m/s, rad/s², m/s².
+enum class Quantity {
+  number,
+  length,
+  angle,
+  force,
+  compliance,
+  stiffness,
+  time,
+  turn_rate,
+  speed,
+  turn_acceleration,
+  acceleration
+};
 
 /// A value in SI together with the quantity its unit names; `number` where no unit was written.
 struct Measured {

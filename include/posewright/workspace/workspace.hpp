@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/cell/cell.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
 
@@ -21,7 +22,8 @@ class Workspace {
   /// @param model  must outlive the workspace
   /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are
   /// empty once the margin is taken off.
-  Workspace(const IdentificationModel& model, const Problem& problem);
+  /// @param cell  bodies and sights; null: neither constrains
+  Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr);
   ~Workspace();
 
   /// Limits in force, in the order of a configuration.
@@ -30,6 +32,11 @@ class Workspace {
   const std::vector<std::string>& reasons() const;
   /// Index of the first reason that forbids q, or −1.
   int violation(std::span<const double> q) const;
+  /// Null where there is none.
+  const Cell* cell() const;
+  /// Shares of the candidates that each sampler draws: the problem's, or half evenly and half on the boundary, with a
+  /// part near obstacles where collisions or sights cut the space.
+  const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from a limit, or an
@@ -42,5 +49,13 @@ class Workspace {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Robot and workspace of one variant, as the cell lets it be.
+struct Site {
+  std::unique_ptr<IdentificationModel> model;
+  std::unique_ptr<Workspace> workspace;
+};
+/// Blocks of the model count visible targets only, where line of sight is asked for.
+Site make_site(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell);
 
 }  // namespace posewright

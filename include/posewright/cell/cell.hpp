@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "posewright/cell/collision.hpp"
+#include "posewright/cell/line_of_sight.hpp"
+
+namespace posewright {
+
+/// The cell around the robot: what it may touch and what the instrument sees. Made once for a problem, shared by all
+/// variants: bodies and sights follow the nominal model, whose errors are far below any clearance.
+struct Cell {
+  std::shared_ptr<const IdentificationModel> model;  ///< nominal one of the planned variant
+  std::unique_ptr<const Collision> collision;        ///< null: nothing is checked
+  std::unique_ptr<const LineOfSight> sight;          ///< null: the instrument has no stations
+  /// What a robot that is not calibrated yet may stand beside its readings, per coordinate's name (rad or m): kept from
+  /// its limits beside the margin.
+  std::map<std::string, double> joint_margin;
+  bool sight_is_asked = false;  ///< whether line of sight constrains configurations and blocks
+};
+
+/// Throws InputError as Collision and LineOfSight, and where a station stands inside an obstacle or, at home, inside
+/// the robot.
+std::shared_ptr<const Cell> make_cell(const Problem& problem);
+
+/// Home of the robot: motion.home, zero where it says nothing, drawn into the limits; first of every choice.
+/// Throws InputError for names that are no coordinates.
+std::vector<double> home_configuration(const Problem& problem, const IdentificationModel& model);
+
+}  // namespace posewright

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+struct Scene;
+
+/// Robot, tool and obstacles: what collides with what. Const and callable from several threads.
+class Collision {
+ public:
+  /// @param model  nominal one of the problem (Problem::workspace has a collision block); must outlive this
+  /// Throws InputError for links, packages and meshes that are missing or broken.
+  Collision(const Problem& problem, const IdentificationModel& model);
+  ~Collision();
+
+  /// "self-collision", "collision with table", …
+  const std::vector<std::string>& reasons() const;
+  /// Pairs of links that touch wherever the robot stands, and are therefore not checked.
+  const std::vector<std::string>& always_touching() const;
+  /// Largest margin (m) that was added to a clearance for a robot that is not calibrated yet.
+  double margin() const;
+  /// Bodies checked against each other: pairs.
+  std::size_t pairs() const;
+
+  /// Index into reasons() of what q collides with, or −1. Bodies keep their clearance, and half a millimetre more.
+  int violation(std::span<const double> q) const;
+  /// "link_3 and table" for the first pair that is too near; empty where q is free.
+  std::string colliding(std::span<const double> q) const;
+  /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
+  double slack(std::span<const double> q, double cap) const;
+
+  /// Whether the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: an
+  /// interval is free of a pair where its distance in the middle exceeds what the bodies can move until the ends
+  /// (Schwarzer, Saha & Latombe 2005), else it is halved, until nothing moves more than half a millimetre.
+  bool motion_is_free(std::span<const double> from, std::span<const double> to) const;
+
+  /// Whether a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.
+  bool blocked(std::span<const double> q, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
+               const std::string& station) const;
+  /// Name of a body, other than those of `station`, that a point (measurement frame) is in at q; empty: none.
+  std::string inside(std::span<const double> q, const Eigen::Vector3d& point, const std::string& station) const;
+
+  /// Bodies as drawn: name, pose at q, corners; for tests and reports.
+  const Scene& scene() const { return *scene_; }
+
+ private:
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+class Collision;
+
+/// One target as one station sees it.
+struct Sight {
+  std::string target;
+  Eigen::Vector3d p_StationTarget = Eigen::Vector3d::Zero();  ///< m, station frame
+  double distance = 0.0;                                      ///< m
+  double azimuth = 0.0, elevation = 0.0;  ///< rad, about z of the station from its x, above its x-y plane
+  std::optional<double> incidence;        ///< rad, between the target's normal and the line to the station
+  int hidden_by = -1;                     ///< index into LineOfSight::reasons(); −1: visible
+};
+
+/// What the instrument sees: from a station to each target, by range, angles, acceptance cone and what stands between.
+/// Const and callable from several threads.
+class LineOfSight : public Visibility {
+ public:
+  /// @param model      nominal one of the problem; must outlive this
+  /// @param collision  bodies that may hide a target; null: nothing does. Must outlive this.
+  /// Null for an instrument without stations and targets. Throws InputError where the problem's line_of_sight asks for
+  /// what the instrument does not have.
+  static std::unique_ptr<LineOfSight> make(const Problem& problem, const IdentificationModel& model,
+                                           const Collision* collision);
+
+  int targets() const override { return int(targets_.size()); }
+  /// Targets seen from the station of q (from every station where a pose is measured from all of them).
+  void visible(std::span<const double> q, std::span<char> seen) const override;
+
+  const std::vector<std::string>& stations() const { return station_names_; }
+  /// "occluded from station A", "out of range of station A", …, station by station.
+  const std::vector<std::string>& reasons() const { return reasons_; }
+  /// −1 where as many targets are visible as must be; else the reason that hides the first hidden one.
+  int violation(std::span<const double> q) const;
+  /// Every target from one station, also where q belongs to another.
+  std::vector<Sight> sights(std::span<const double> q, int station) const;
+  /// Index of the station that q is measured from.
+  int station_of(std::span<const double> q) const;
+  /// Reference targets (measurement frame) from one station.
+  std::vector<Sight> reference_sights(std::span<const double> q, int station) const;
+
+  Eigen::Isometry3d X_MeasureStation(std::span<const double> q, int station) const;
+
+ private:
+  struct Target {
+    std::string name;
+    Eigen::Vector3d position;
+    std::optional<Eigen::Vector3d> normal;
+  };
+
+  LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision);
+  void add_points(const std::vector<TargetSpec>& targets);
+  void add_board(const CameraMeasurement& camera);
+  void add_normals(const Problem& problem);
+  void add_reasons();
+  bool seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station, std::span<char> seen,
+                 int* reason) const;
+  Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
+              bool on_tip) const;
+  int hidden_by(const Sight& sight) const;
+
+  LineOfSightSpec spec_;
+  const IdentificationModel& model_;
+  const Collision* collision_;
+  std::vector<std::string> station_names_, reasons_;
+  std::vector<Eigen::Isometry3d> X_CarrierStation_;
+  std::vector<Target> targets_, references_;
+  Eigen::Isometry3d X_CarrierTarget_ = Eigen::Isometry3d::Identity();
+  bool station_on_tip_ = false, targets_on_tip_ = true, all_stations_ = false;
+  int station_coordinate_ = -1;
+};
+
+}  // namespace posewright

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/problem/cell_specs.hpp"
+
+namespace posewright {
+
+/// Triangles with shared vertices, m.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// A shape as the collision library sees it. Immutable, so that threads share one.
+class Solid {
+ public:
+  virtual ~Solid() = default;
+
+  /// Sphere that holds all of it; the radius of a half space is infinite.
+  const Eigen::Vector3d& centre() const { return centre_; }
+  double radius() const { return radius_; }
+  /// Largest distance of a point of it from `origin` (own frame).
+  double reach_from(const Eigen::Vector3d& origin) const;
+  /// Whether a point (own frame) is in it or on it; for open meshes false.
+  virtual bool holds(const Eigen::Vector3d& point) const = 0;
+  /// Points whose convex hull has the solid in it: corners, or vertices of a mesh. Empty for a half space.
+  const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
+
+ protected:
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  double radius_ = 0.0;
+  std::vector<Eigen::Vector3d> corners_;
+};
+
+/// Meshes are surfaces; closed ones count as solid. Throws std::invalid_argument where nothing is left of a mesh.
+std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMesh* mesh);
+
+/// Distance between two solids in m, at most `cap`; 0 where they touch or one is in the other.
+double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b, double cap);
+
+/// Whether a solid comes nearer than `radius` to the segment.
+bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+            double radius);
+
+/// Triangles of the convex hull. Throws std::invalid_argument for points in one plane.
+TriangleMesh convex_hull(const TriangleMesh& mesh);
+
+}  // namespace posewright

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// What the URDF says a link looks like to a collision checker, placed in the frame that carries it.
+struct LinkShape {
+  ShapeSpec shape;  ///< mesh files as the URDF names them, other paths resolved against the URDF's folder
+  Eigen::Isometry3d X_FrameShape = Eigen::Isometry3d::Identity();
+};
+
+struct LinkGeometry {
+  std::string name;
+  std::string parent;  ///< nearest link above it that has a shape; empty: none
+  int frame = 0;       ///< 0: the measurement frame, k: frame of the chain's k-th joint after its motion
+  std::vector<LinkShape> shapes;
+  int line = 0;  ///< of <link> in the URDF
+};
+
+/// All links with a <collision> shape, also those before the base and on branches, which hang at zero position.
+/// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
+std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
+
+}  // namespace posewright

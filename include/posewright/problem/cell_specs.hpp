@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "posewright/problem/measurement_specs.hpp"
+
+/// What a problem file may say of the cell around the robot: one plain struct a thing, SI units.
+namespace posewright {
+
+struct BoxShape {
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< m, edges along x, y, z
+};
+/// Axis along z, centre in the origin.
+struct CylinderShape {
+  double radius = 0.0, length = 0.0;  ///< m
+};
+struct SphereShape {
+  double radius = 0.0;  ///< m
+};
+/// Everything on the far side of a plane through the origin from where `normal` points: floor, wall.
+struct HalfSpaceShape {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit
+};
+/// Triangles of a file (whatever assimp reads), in m once multiplied by `scale`.
+struct MeshShape {
+  std::filesystem::path file;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+using ShapeSpec = std::variant<BoxShape, CylinderShape, SphereShape, HalfSpaceShape, MeshShape>;
+
+/// An obstacle (placement in the measurement frame) or a part of the tool (placement in the tip frame).
+struct BodySpec {
+  std::string name;
+  ShapeSpec shape;
+  Placement placement;
+  std::string station;  ///< the instrument whose own body this is: it does not hide its own sight; empty: nobody's
+  int line = 0;
+};
+
+struct CollisionSpec {
+  bool self = true;
+  double clearance = 0.0;       ///< m, kept from obstacles
+  double self_clearance = 0.0;  ///< m, kept between links
+  bool hulls = false;           ///< meshes are replaced by their convex hulls
+  std::optional<Located<std::filesystem::path>> srdf;
+  /// Pairs of links or tool parts that may touch.
+  std::vector<std::pair<Located<std::string>, Located<std::string>>> ignore;
+  std::vector<BodySpec> tool, obstacles;
+  int line = 0;
+};
+
+/// What an instrument must see. Angles rad, lengths m.
+struct LineOfSightSpec {
+  int visible = 0;  ///< targets that must be seen; 0: all
+  std::optional<std::pair<double, double>> range, elevation, azimuth;
+  std::optional<double> field_of_view;              ///< half angle of a cone about `axis`
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, station frame
+  std::optional<double> acceptance;  ///< largest angle between a target's normal and the line to the station
+  std::vector<std::pair<Located<std::string>, Eigen::Vector3d>> normals;  ///< unit, tip frame (board frame of a camera)
+  double beam = 0.004;                                                    ///< m, radius that must be free
+  double target_radius = 0.01905;      ///< m, about the target, where nothing hides it: a 1.5 inch reflector
+  std::vector<StationSpec> stations;   ///< of instruments that have none of their own (photogrammetry of a pose)
+  std::vector<TargetSpec> references;  ///< measurement frame; measured again every `every` poses to watch drift
+  int every = 0;
+  int line = 0;
+};
+
+/// Limits of Σ factor · coordinate.
+struct CoupledLimits {
+  std::vector<std::pair<Located<std::string>, double>> factors;
+  double lower = 0.0, upper = 0.0;
+  int line = 0;
+};
+
+/// Box for a point of the tool, measurement frame.
+struct ToolBoxSpec {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame
+  Eigen::Vector3d lower = Eigen::Vector3d::Constant(-1e9), upper = Eigen::Vector3d::Constant(1e9);
+};
+
+/// Smallest singular value of the tip's Jacobian, rows of rotation as they are, of translation divided by `length`.
+struct SingularitySpec {
+  double smallest = 0.0;
+  double length = 1.0;  ///< m
+  int line = 0;
+};
+
+/// How the robot travels between poses.
+struct MotionSpec {
+  std::vector<std::pair<Located<std::string>, double>> velocity, acceleration;  ///< replace the robot's own; SI
+  std::vector<std::pair<Located<std::string>, double>> home;                    ///< coordinates left out are zero
+  double speed = 1.0;           ///< share of the velocities that is used
+  double settle = 0.0;          ///< s, standstill at each pose
+  double station_change = 900;  ///< s, from one station to another
+  double load_change = 300;     ///< s, from one load case to another
+  bool reachable = false;       ///< every pose must be connected with home
+  int line = 0;
+};
+
+/// Stations to choose among.
+struct StationChoiceSpec {
+  std::vector<StationSpec> list;
+  int choose = 1;
+  int line = 0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Frames that carry bodies: 0 is the measurement frame, the others move with the configuration. Const and callable
+/// from several threads.
+class BodyFrames {
+ public:
+  virtual ~BodyFrames() = default;
+  int count() const { return count_; }
+  /// Frame that carries the tool, and where the tip is in it.
+  int tip_frame() const { return count_ - 1; }
+  const Eigen::Isometry3d& X_FrameTip() const { return X_FrameTip_; }
+  /// Robot's poses in one configuration: a pair of configurations has two.
+  int poses_per_configuration() const { return poses_; }
+
+  /// Pose of every frame in the measurement frame for the `pose`-th pose of q.
+  virtual void poses(std::span<const double> q, int pose, std::span<Eigen::Isometry3d> X_MeasureFrame) const = 0;
+  /// Per coordinate (of all of a configuration): how far a point of frame b, within `radius` of its origin, moves at
+  /// most relative to frame a < b while that coordinate changes by one unit.
+  virtual Eigen::VectorXd travel(int pose, int a, int b, double radius) const = 0;
+  /// Frames from which on a parameter of that name acts: k means k, k + 1, …; count() where it moves none.
+  virtual int acts_from(const std::string& parameter) const = 0;
+
+ protected:
+  int count_ = 1, poses_ = 1;
+  Eigen::Isometry3d X_FrameTip_ = Eigen::Isometry3d::Identity();
+};
+
+/// @param model  must outlive the frames. Throws CannotDo for a robot whose bodies cannot be placed.
+std::unique_ptr<BodyFrames> make_body_frames(const Problem& problem, const IdentificationModel& model);
+
+}  // namespace posewright

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <set>
+
+#include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+#include "scene.hpp"
+
+namespace posewright {
+namespace {
+
+// Configurations that decide which pairs of links touch wherever the robot stands, as MoveIt's assistant does.
+constexpr int always_samples = 1000;
+constexpr double always_share = 0.95;
+constexpr std::uint64_t seed = 271828;
+
+using NamePair = std::pair<std::string, std::string>;
+
+NamePair ordered(const std::string& a, const std::string& b) { return std::minmax(a, b); }
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const Problem& problem, const IdentificationModel& model)
+      : problem_(problem), spec_(*problem.workspace.collision), model_(model) {
+    scene_.frames = make_body_frames(problem, model);
+    scene_.bodies = build_bodies(problem, *scene_.frames);
+  }
+
+  Scene build() {
+    read_ignored();
+    if (spec_.self) add_self_pairs();
+    add_obstacle_pairs();
+    add_margins();
+    drop_always_touching();
+    return std::move(scene_);
+  }
+
+ private:
+  void read_ignored() {
+    std::set<std::string> names;
+    for (const Body& body : scene_.bodies) names.insert(body.name);
+    for (const auto& [a, b] : spec_.ignore) {
+      for (const auto& name : {a, b})
+        if (names.count(name.value) == 0) {
+          std::string list;
+          for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+          throw InputError(problem_.at(name.line),
+                           "'" + name.value + "' is no link, tool part or obstacle with a shape",
+                           list.empty() ? "there is none" : "allowed: " + list);
+        }
+      ignored_.insert(ordered(a.value, b.value));
+    }
+    if (spec_.srdf)
+      for (const auto& [a, b] : read_srdf_pairs(spec_.srdf->value, problem_.at(spec_.srdf->line)))
+        ignored_.insert(ordered(a, b));
+  }
+
+  void add_pair(int a, int b, int reason, double clearance) {
+    if (scene_.bodies[std::size_t(a)].frame > scene_.bodies[std::size_t(b)].frame) std::swap(a, b);
+    scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, {}});
+    const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
+    const double reach = second.solid->reach_from(second.X_FrameBody.inverse().translation());
+    for (int pose = 0; pose < scene_.frames->poses_per_configuration(); ++pose)
+      scene_.pairs.back().travel.push_back(scene_.frames->travel(pose, first.frame, second.frame, reach));
+  }
+
+  void add_self_pairs() {
+    scene_.reasons.emplace_back("self-collision");
+    const int count = int(scene_.bodies.size());
+    for (int i = 0; i < count; ++i)
+      for (int j = i + 1; j < count; ++j) {
+        const Body &a = scene_.bodies[std::size_t(i)], &b = scene_.bodies[std::size_t(j)];
+        const bool adjacent = a.name == b.parent || b.name == a.parent;
+        if (a.obstacle || b.obstacle || a.frame == b.frame || adjacent || ignored_.count(ordered(a.name, b.name)) > 0)
+          continue;
+        add_pair(i, j, 0, spec_.self_clearance);
+      }
+  }
+
+  void add_obstacle_pairs() {
+    const int count = int(scene_.bodies.size());
+    for (int i = 0; i < count; ++i) {
+      const Body& obstacle = scene_.bodies[std::size_t(i)];
+      if (!obstacle.obstacle) continue;
+      scene_.reasons.push_back("collision with " + obstacle.name);
+      for (int j = 0; j < count; ++j) {
+        const Body& body = scene_.bodies[std::size_t(j)];
+        // What does not move stands where the user put it: a base on its table touches it.
+        if (body.obstacle || body.frame == 0 || ignored_.count(ordered(obstacle.name, body.name)) > 0) continue;
+        add_pair(i, j, int(scene_.reasons.size()) - 1, spec_.clearance);
+      }
+    }
+  }
+
+  void add_margins() {
+    if (!(problem_.workspace.uncalibrated > 0)) return;
+    const UncalibratedError error(problem_, model_, *scene_.frames);
+    for (BodyPair& pair : scene_.pairs) {
+      const double margin = error.of(scene_.bodies[std::size_t(pair.a)], scene_.bodies[std::size_t(pair.b)]);
+      pair.clearance += margin;
+      scene_.margin = std::max(scene_.margin, margin);
+    }
+  }
+
+  /// Links whose shapes overlap wherever the robot stands say nothing about collision. By link, not by shape; the
+  /// plain clearance decides, margins would take pairs away that do matter.
+  void drop_always_touching() {
+    std::vector<int> hits(scene_.pairs.size(), 0);
+    std::vector<Eigen::Isometry3d> X(std::size_t(scene_.frames->count()));
+    Random random(seed, 0);
+    std::vector<double> q;
+    for (int i = 0; i < always_samples; ++i) {
+      q.clear();
+      for (const Coordinate& c : model_.coordinates())
+        q.push_back(c.discrete() ? c.values.front() : c.lower + random.uniform() * (c.upper - c.lower));
+      scene_.frames->poses(q, 0, X);
+      for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
+        const BodyPair& pair = scene_.pairs[p];
+        const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
+        if (a.obstacle || b.obstacle || hits[p] < i - int(always_samples * (1 - always_share))) continue;
+        hits[p] += distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                            X[std::size_t(b.frame)] * b.X_FrameBody,
+                            spec_.self_clearance + motion_resolution) < spec_.self_clearance + motion_resolution;
+      }
+    }
+    std::set<NamePair> always;
+    for (std::size_t p = 0; p < scene_.pairs.size(); ++p)
+      if (hits[p] >= always_share * always_samples)
+        always.insert(ordered(name(scene_.pairs[p].a), name(scene_.pairs[p].b)));
+    std::erase_if(scene_.pairs, [&](const BodyPair& p) { return always.count(ordered(name(p.a), name(p.b))) > 0; });
+    for (const auto& [a, b] : always) scene_.always.push_back(a + " and " + b);
+  }
+
+  const std::string& name(int body) const { return scene_.bodies[std::size_t(body)].name; }
+
+  const Problem& problem_;
+  const CollisionSpec& spec_;
+  const IdentificationModel& model_;
+  std::set<NamePair> ignored_;
+  Scene scene_;
+};
+
+}  // namespace
+
+Scene build_scene(const Problem& problem, const IdentificationModel& model) {
+  return SceneBuilder(problem, model).build();
+}
+
+}  // namespace posewright

@@ -1,0 +1,90 @@
+#include "posewright/cell/cell.hpp"
+
+#include <algorithm>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+/// An instrument does not stand in a wall. The ways out of its own body are not judged.
+void check_stations(const Problem& problem, const Cell& cell) {
+  if (cell.collision == nullptr || cell.sight == nullptr || !cell.sight_is_asked) return;
+  const std::vector<double> home = home_configuration(problem, *cell.model);
+  for (std::size_t s = 0; s < cell.sight->stations().size(); ++s) {
+    const std::string& name = cell.sight->stations()[s];
+    const std::string in = cell.collision->inside(home, cell.sight->X_MeasureStation(home, int(s)).translation(), name);
+    if (!in.empty())
+      throw InputError(problem.at(problem.workspace.line_of_sight->line), "station " + name + " stands inside " + in,
+                       "move it, or give its own body the key station: " + name);
+  }
+}
+
+void check_body_stations(const Problem& problem, const Cell& cell) {
+  if (!problem.workspace.collision) return;
+  const auto check = [&](const BodySpec& body) {
+    if (body.station.empty()) return;
+    std::string names;
+    if (cell.sight != nullptr)
+      for (const std::string& name : cell.sight->stations()) {
+        if (name == body.station) return;
+        names += (names.empty() ? "allowed: " : ", ") + name;
+      }
+    throw InputError(problem.at(body.line), "'" + body.station + "' is no station",
+                     names.empty() ? "there is none" : names);
+  };
+  for (const BodySpec& body : problem.workspace.collision->obstacles) check(body);
+  for (const BodySpec& body : problem.workspace.collision->tool) check(body);
+}
+
+std::map<std::string, double> joint_margins(const Problem& problem, const IdentificationModel& model) {
+  std::map<std::string, double> margins;
+  if (!(problem.workspace.uncalibrated > 0)) return margins;
+  const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
+  for (std::size_t c = 0; c < columns.selected.size(); ++c)
+    for (const Coordinate& coordinate : model.coordinates())
+      if (model.parameters()[std::size_t(columns.selected[c])].name == coordinate.name + ".offset")
+        margins[coordinate.name] = problem.workspace.uncalibrated * columns.parameters[c].tolerance;
+  return margins;
+}
+
+}  // namespace
+
+std::vector<double> home_configuration(const Problem& problem, const IdentificationModel& model) {
+  std::vector<double> home;
+  for (const Coordinate& c : model.coordinates())
+    home.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
+  for (const auto& [name, value] : problem.workspace.motion.home) {
+    bool found = false;
+    std::string names;
+    for (std::size_t i = 0; i < home.size(); ++i) {
+      const Coordinate& c = model.coordinates()[i];
+      if (c.choice()) continue;
+      names += (names.empty() ? "allowed: " : ", ") + c.name;
+      if (c.name != name.value && c.name != name.value + ".second") continue;
+      if (value < c.lower - 1e-9 || value > c.upper + 1e-9)
+        throw InputError(problem.at(name.line),
+                         "workspace.motion.home: '" + name.value + "' is beyond the robot's limits", "");
+      home[i] = std::clamp(value, c.lower, c.upper);
+      found = true;
+    }
+    if (!found) throw InputError(problem.at(name.line), "'" + name.value + "' is no coordinate of this robot", names);
+  }
+  return home;
+}
+
+std::shared_ptr<const Cell> make_cell(const Problem& problem) {
+  auto cell = std::make_shared<Cell>();
+  cell->model = make_model(problem, find_variant(problem, ""));
+  if (problem.workspace.collision) cell->collision = std::make_unique<Collision>(problem, *cell->model);
+  cell->sight = LineOfSight::make(problem, *cell->model, cell->collision.get());
+  cell->joint_margin = joint_margins(problem, *cell->model);
+  cell->sight_is_asked = problem.workspace.line_of_sight.has_value();
+  check_body_stations(problem, *cell);
+  check_stations(problem, *cell);
+  return cell;
+}
+
+}  // namespace posewright

@@ -1,0 +1,202 @@
+#include "posewright/cell/line_of_sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/cell/collision.hpp"
+#include "posewright/model/placement.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+/// Why a target may be hidden, in the order of cost.
+enum Reason { range, elevation, azimuth, field_of_view, acceptance, occluded, reason_count };
+constexpr const char* reason_names[reason_count] = {"out of range of",          "elevation at",     "azimuth at",
+                                                    "outside field of view of", "facing away from", "occluded from"};
+
+bool outside(const std::optional<std::pair<double, double>>& limits, double value) {
+  return limits && (value < limits->first || value > limits->second);
+}
+
+}  // namespace
+
+std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const IdentificationModel& model,
+                                               const Collision* collision) {
+  std::unique_ptr<LineOfSight> sight(new LineOfSight(problem, model, collision));
+  const auto& asked = problem.workspace.line_of_sight;
+  if (!asked) return sight->station_names_.empty() ? nullptr : std::move(sight);
+  if (sight->station_names_.empty())
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument stands nowhere",
+                     "measurement.device.stations are needed (line_of_sight.stations for photogrammetry of a pose)");
+  if (sight->targets_.empty())
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no targets to be seen",
+                     "it is for points, position, camera, and pose by photogrammetry");
+  if (asked->visible > sight->targets())
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
+                     "there are " + std::to_string(sight->targets()) + " targets");
+  return sight;
+}
+
+LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision)
+    : spec_(problem.workspace.line_of_sight.value_or(LineOfSightSpec{})), model_(model), collision_(collision) {
+  const auto& instrument = problem.measurement.instrument;
+  std::vector<StationSpec> stations = spec_.stations;
+  if (const auto* points = std::get_if<PointsMeasurement>(&instrument)) {
+    if (!stations.empty())
+      throw InputError(problem.at(spec_.line), "workspace.line_of_sight.stations stands beside the device's own",
+                       "stations of trackers belong to measurement.device");
+    stations = points->stations;
+    add_points(points->targets);
+  } else if (const auto* pose = std::get_if<PoseMeasurement>(&instrument)) {
+    all_stations_ = true;
+    add_points(pose->photogrammetry);
+  } else if (const auto* camera = std::get_if<CameraMeasurement>(&instrument)) {
+    stations = {{"camera", camera->camera}};
+    station_on_tip_ = camera->on_hand;
+    add_board(*camera);
+  }
+  for (const StationSpec& station : stations) {
+    station_names_.push_back(station.name);
+    X_CarrierStation_.push_back(isometry(station.placement));
+  }
+  for (std::size_t i = 0; i < model.coordinates().size(); ++i)
+    if (model.coordinates()[i].choice() && model.coordinates()[i].name == "station") station_coordinate_ = int(i);
+  for (const TargetSpec& reference : spec_.references)
+    references_.push_back({reference.name, reference.position, std::nullopt});
+  add_normals(problem);
+  add_reasons();
+}
+
+void LineOfSight::add_points(const std::vector<TargetSpec>& targets) {
+  for (const TargetSpec& target : targets) targets_.push_back({target.name, target.position, std::nullopt});
+}
+
+void LineOfSight::add_board(const CameraMeasurement& camera) {
+  targets_on_tip_ = !camera.on_hand;
+  X_CarrierTarget_ = isometry(camera.board);
+  for (int r = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.columns; ++c)
+      targets_.push_back({"point " + std::to_string(r + 1) + "," + std::to_string(c + 1),
+                          X_CarrierTarget_ * Eigen::Vector3d(c * camera.spacing, r * camera.spacing, 0), std::nullopt});
+}
+
+void LineOfSight::add_normals(const Problem& problem) {
+  for (const auto& [name, normal] : spec_.normals) {
+    bool found = false;
+    for (Target& target : targets_)
+      if (name.value == "*" || name.value == target.name) {
+        target.normal = X_CarrierTarget_.linear() * normal;
+        found = true;
+      }
+    if (!found) {
+      std::string names;
+      for (const Target& target : targets_) names += ", " + target.name;
+      throw InputError(problem.at(name.line), "'" + name.value + "' is no target", "allowed: *" + names);
+    }
+  }
+}
+
+void LineOfSight::add_reasons() {
+  for (const std::string& station : station_names_)
+    for (const char* reason : reason_names)
+      reasons_.push_back(std::string(reason) + (station == "camera" ? " the camera" : " station " + station));
+}
+
+int LineOfSight::station_of(std::span<const double> q) const {
+  return station_coordinate_ < 0 ? 0 : int(q[std::size_t(station_coordinate_)]);
+}
+
+Eigen::Isometry3d LineOfSight::X_MeasureStation(std::span<const double> q, int station) const {
+  const Eigen::Isometry3d& X = X_CarrierStation_[std::size_t(station)];
+  return station_on_tip_ ? model_.tool_pose(q) * X : X;
+}
+
+int LineOfSight::hidden_by(const Sight& s) const {
+  if (outside(spec_.range, s.distance)) return range;
+  if (outside(spec_.elevation, s.elevation)) return elevation;
+  if (outside(spec_.azimuth, s.azimuth)) return azimuth;
+  if (spec_.field_of_view && std::acos(std::clamp(s.p_StationTarget.dot(spec_.axis) / std::max(s.distance, 1e-12), -1.0,
+                                                  1.0)) > *spec_.field_of_view)
+    return field_of_view;
+  if (s.incidence && spec_.acceptance && *s.incidence > *spec_.acceptance) return acceptance;
+  return -1;
+}
+
+Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station,
+                         const Target& target, bool on_tip) const {
+  const Eigen::Isometry3d& X_Carrier = X_CarrierStation_[std::size_t(station)];
+  const Eigen::Isometry3d X_Station = station_on_tip_ ? Eigen::Isometry3d(X_MeasureTip * X_Carrier) : X_Carrier;
+  const Eigen::Vector3d p = on_tip ? X_MeasureTip * target.position : target.position;
+  Sight s;
+  s.target = target.name;
+  s.p_StationTarget = X_Station.inverse() * p;
+  s.distance = s.p_StationTarget.norm();
+  s.azimuth = std::atan2(s.p_StationTarget.y(), s.p_StationTarget.x());
+  s.elevation = std::atan2(s.p_StationTarget.z(), s.p_StationTarget.head<2>().norm());
+  const Eigen::Vector3d way = X_Station.translation() - p;
+  if (target.normal) {
+    const Eigen::Vector3d n = on_tip ? Eigen::Vector3d(X_MeasureTip.linear() * *target.normal) : *target.normal;
+    s.incidence = std::atan2(n.cross(way).norm(), n.dot(way));
+  }
+  s.hidden_by = hidden_by(s);
+  if (s.hidden_by < 0 && collision_ != nullptr && s.distance > spec_.target_radius &&
+      collision_->blocked(q, X_Station.translation(), p + way.normalized() * (spec_.target_radius + spec_.beam),
+                          spec_.beam, station_names_[std::size_t(station)]))
+    s.hidden_by = occluded;
+  if (s.hidden_by >= 0) s.hidden_by += station * reason_count;
+  return s;
+}
+
+bool LineOfSight::seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station,
+                            std::span<char> seen, int* reason) const {
+  const int needed = spec_.visible == 0 ? targets() : spec_.visible;
+  int found = 0, hidden = 0;
+  for (std::size_t t = 0; t < targets_.size(); ++t) {
+    const int why = sight(q, X_Tip, station, targets_[t], targets_on_tip_).hidden_by;
+    if (!seen.empty()) seen[t] = char(why < 0 && seen[t] != 0);
+    found += why < 0;
+    hidden += why >= 0;
+    if (why >= 0 && reason != nullptr && *reason < 0) *reason = why;
+    // Whether enough are seen is all that a constraint asks.
+    if (seen.empty() && (found >= needed || hidden > targets() - needed)) break;
+  }
+  return found >= needed;
+}
+
+void LineOfSight::visible(std::span<const double> q, std::span<char> seen) const {
+  std::fill(seen.begin(), seen.end(), char(1));
+  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  if (!all_stations_) {
+    seen_from(q, X_Tip, station_of(q), seen, nullptr);
+    return;
+  }
+  for (int s = 0; s < int(station_names_.size()); ++s) seen_from(q, X_Tip, s, seen, nullptr);
+}
+
+int LineOfSight::violation(std::span<const double> q) const {
+  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  const int first = all_stations_ ? 0 : station_of(q);
+  const int last = all_stations_ ? int(station_names_.size()) - 1 : first;
+  for (int s = first; s <= last; ++s) {
+    int reason = -1;
+    if (!seen_from(q, X_Tip, s, {}, &reason)) return reason;
+  }
+  return -1;
+}
+
+std::vector<Sight> LineOfSight::sights(std::span<const double> q, int station) const {
+  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  std::vector<Sight> result;
+  for (const Target& target : targets_) result.push_back(sight(q, X_Tip, station, target, targets_on_tip_));
+  return result;
+}
+
+std::vector<Sight> LineOfSight::reference_sights(std::span<const double> q, int station) const {
+  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  std::vector<Sight> result;
+  for (const Target& target : references_) result.push_back(sight(q, X_Tip, station, target, false));
+  return result;
+}
+
+}  // namespace posewright

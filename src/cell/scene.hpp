@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "body_frames.hpp"
+#include "posewright/cell/solid.hpp"
+
+namespace posewright {
+
+/// Half of what bodies may move between two checks of a motion, m: added to every clearance, so that the clearance
+/// asked for holds between the checks too.
+inline constexpr double motion_resolution = 0.5e-3;
+
+/// One solid on a frame. Links, tool parts and obstacles are made of them; what they belong to has the name.
+struct Body {
+  std::string name;
+  std::string station;  ///< see BodySpec
+  std::string parent;   ///< link it hangs on; empty: none
+  bool obstacle = false;
+  int frame = 0;
+  Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
+  std::shared_ptr<const Solid> solid;
+};
+
+/// Two bodies that must not come nearer than `clearance`.
+struct BodyPair {
+  int a = 0, b = 0;  ///< bodies; the frame of a is not above that of b
+  int reason = 0;
+  double clearance = 0.0;               ///< m, margins included
+  std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
+};
+
+/// Links, tool and obstacles, and which pairs of them must keep apart.
+struct Scene {
+  std::unique_ptr<BodyFrames> frames;
+  std::vector<Body> bodies;
+  std::vector<BodyPair> pairs;
+  std::vector<std::string> reasons;  ///< what a pair that comes too near is called in the table of rejections
+  std::vector<std::string> always;   ///< "link_1 and link_3": left out because they always touch
+  double margin = 0.0;               ///< m, largest that was added for a robot that is not calibrated yet
+};
+
+/// @param model  nominal one of the problem; must outlive the scene
+/// Throws InputError and CannotDo for meshes, links and packages that are not there.
+Scene build_scene(const Problem& problem, const IdentificationModel& model);
+
+/// Links of the arm, tool and obstacles, in that order.
+std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames);
+
+/// Pairs that an SRDF file lets touch. Throws InputError with its line.
+std::vector<std::pair<std::string, std::string>> read_srdf_pairs(const std::filesystem::path& file,
+                                                                 const SourcePlace& place);
+
+/// How far a robot that is built within the tolerances of the planned variant may be from where it is thought, `sigmas`
+/// standard deviations: largest over the workspace for a pair's bodies relative to each other.
+class UncalibratedError {
+ public:
+  UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames);
+  double of(const Body& a, const Body& b) const;
+
+ private:
+  const BodyFrames& frames_;
+  std::vector<std::vector<Eigen::Isometry3d>> poses_;             // per sample
+  std::vector<std::vector<Eigen::Matrix<double, 6, 1>>> twists_;  // per sample and parameter, one tolerance long
+  std::vector<int> acts_from_;                                    // per parameter
+  double sigmas_ = 0.0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,222 @@
+#include "posewright/cell/solid.hpp"
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+/// The only file that knows FCL: its headers are slow to compile.
+namespace posewright {
+namespace {
+
+using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
+using Geometry = fcl::CollisionGeometryd;
+
+double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geometry& b, const Eigen::Isometry3d& X_b,
+                    double cap) {
+  fcl::DistanceRequestd request(false);
+  // The default tolerance overestimates distances of curved shapes by up to millimetres.
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  request.distance_tolerance = 1e-9;
+  // What is farther than `cap` is never looked at.
+  fcl::DistanceResultd result(cap);
+  fcl::distance(&a, X_a, &b, X_b, request, result);
+  return std::clamp(result.min_distance, 0.0, cap);
+}
+
+class FclSolid : public Solid {
+ public:
+  const Geometry& geometry() const { return *geometry_; }
+
+ protected:
+  std::shared_ptr<Geometry> geometry_;
+};
+
+class BoxSolid : public FclSolid {
+ public:
+  explicit BoxSolid(const BoxShape& box) : half_(box.size / 2) {
+    geometry_ = std::make_shared<fcl::Boxd>(box.size);
+    radius_ = half_.norm();
+    for (int k = 0; k < 8; ++k)
+      corners_.emplace_back((k & 1 ? 1 : -1) * half_.x(), (k & 2 ? 1 : -1) * half_.y(), (k & 4 ? 1 : -1) * half_.z());
+  }
+  bool holds(const Eigen::Vector3d& p) const override { return (p.cwiseAbs() - half_).maxCoeff() <= 0; }
+
+ private:
+  Eigen::Vector3d half_;
+};
+
+class CylinderSolid : public FclSolid {
+ public:
+  explicit CylinderSolid(const CylinderShape& c) : r_(c.radius), half_(c.length / 2) {
+    geometry_ = std::make_shared<fcl::Cylinderd>(c.radius, c.length);
+    radius_ = std::hypot(r_, half_);
+    for (int k = 0; k < 8; ++k)
+      corners_.emplace_back((k & 1 ? 1 : -1) * r_, (k & 2 ? 1 : -1) * r_, (k & 4 ? 1 : -1) * half_);
+  }
+  bool holds(const Eigen::Vector3d& p) const override { return p.head<2>().norm() <= r_ && std::abs(p.z()) <= half_; }
+
+ private:
+  double r_, half_;
+};
+
+class SphereSolid : public FclSolid {
+ public:
+  explicit SphereSolid(const SphereShape& s) {
+    geometry_ = std::make_shared<fcl::Sphered>(s.radius);
+    radius_ = s.radius;
+    for (int k = 0; k < 8; ++k)
+      corners_.push_back(s.radius * Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+  }
+  bool holds(const Eigen::Vector3d& p) const override { return p.norm() <= radius_; }
+};
+
+/// Half spaces have distances in closed form, and FCL none to meshes.
+class HalfSpaceSolid : public Solid {
+ public:
+  explicit HalfSpaceSolid(const HalfSpaceShape& plane) : normal_(plane.normal) {
+    radius_ = std::numeric_limits<double>::infinity();
+  }
+  bool holds(const Eigen::Vector3d& p) const override { return normal_.dot(p) <= 0; }
+  const Eigen::Vector3d& normal() const { return normal_; }
+
+ private:
+  Eigen::Vector3d normal_;
+};
+
+class MeshSolid : public FclSolid {
+ public:
+  explicit MeshSolid(TriangleMesh mesh) : mesh_(std::move(mesh)) {
+    std::erase_if(mesh_.triangles, [&](const auto& t) { return normal_of(t).norm() <= 1e-14; });
+    if (mesh_.triangles.empty()) throw std::invalid_argument("no triangle has an area");
+    std::vector<fcl::Triangle> triangles;
+    for (const auto& t : mesh_.triangles)
+      triangles.emplace_back(std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]));
+    auto model = std::make_shared<Mesh>();
+    model->beginModel(int(triangles.size()), int(mesh_.vertices.size()));
+    model->addSubModel(mesh_.vertices, triangles);
+    model->endModel();
+    model->computeLocalAABB();
+    geometry_ = model;
+    corners_ = mesh_.vertices;
+    Eigen::AlignedBox3d box;
+    for (const auto& v : mesh_.vertices) box.extend(v);
+    centre_ = box.center();
+    for (const auto& v : mesh_.vertices) radius_ = std::max(radius_, (v - centre_).norm());
+    closed_ = is_closed();
+  }
+
+  /// By the solid angle that the triangles span (van Oosterom & Strackee 1983): ±4π inside a closed surface, 0 outside.
+  bool holds(const Eigen::Vector3d& p) const override {
+    if (!closed_ || (p - centre_).norm() > radius_) return false;
+    double angle = 0;
+    for (const auto& t : mesh_.triangles) {
+      const Eigen::Vector3d a = vertex(t[0]) - p, b = vertex(t[1]) - p, c = vertex(t[2]) - p;
+      const double la = a.norm(), lb = b.norm(), lc = c.norm();
+      angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    }
+    return std::abs(angle) > 6.283185307179586;
+  }
+
+ private:
+  const Eigen::Vector3d& vertex(int i) const { return mesh_.vertices[std::size_t(i)]; }
+  Eigen::Vector3d normal_of(const std::array<int, 3>& t) const {
+    return (vertex(t[1]) - vertex(t[0])).cross(vertex(t[2]) - vertex(t[0]));
+  }
+  bool is_closed() const {
+    std::map<std::pair<int, int>, int> uses;
+    for (const auto& t : mesh_.triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax(t[k], t[(k + 1) % 3])];
+    return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second % 2 == 0; });
+  }
+
+  TriangleMesh mesh_;
+  bool closed_ = false;
+};
+
+/// Signed distance of the lowest point of a solid above the plane.
+double above(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_plane, const Solid& solid,
+             const Eigen::Isometry3d& X) {
+  const Eigen::Vector3d n = X_plane.linear() * plane.normal();
+  const double centre = n.dot(X * solid.centre() - X_plane.translation());
+  const Eigen::Vector3d along = X.linear().transpose() * n;
+  if (dynamic_cast<const SphereSolid*>(&solid) != nullptr) return centre - solid.radius();
+  if (dynamic_cast<const CylinderSolid*>(&solid) != nullptr) {
+    const Eigen::Vector3d& c = solid.corners().front();
+    return centre - along.head<2>().norm() * std::abs(c.x()) - std::abs(along.z() * c.z());
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& corner : solid.corners()) lowest = std::min(lowest, along.dot(corner - solid.centre()));
+  return centre + lowest;
+}
+
+bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
+  if (b.radius() > a.radius()) return false;
+  const Eigen::Vector3d c = X_a.inverse() * (X_b * b.centre());
+  if ((c - a.centre()).norm() > a.radius()) return false;
+  return a.holds(b.corners().empty() ? c : Eigen::Vector3d(X_a.inverse() * (X_b * b.corners().front())));
+}
+
+}  // namespace
+
+double Solid::reach_from(const Eigen::Vector3d& origin) const {
+  double reach = 0;
+  for (const auto& corner : corners_) reach = std::max(reach, (corner - origin).norm());
+  return reach;
+}
+
+std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMesh* mesh) {
+  if (const auto* box = std::get_if<BoxShape>(&shape)) return std::make_shared<BoxSolid>(*box);
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) return std::make_shared<CylinderSolid>(*cylinder);
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) return std::make_shared<SphereSolid>(*sphere);
+  if (const auto* plane = std::get_if<HalfSpaceShape>(&shape)) return std::make_shared<HalfSpaceSolid>(*plane);
+  if (mesh == nullptr) throw std::invalid_argument("a mesh shape needs its triangles");
+  return std::make_shared<MeshSolid>(*mesh);
+}
+
+double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
+                double cap) {
+  const auto* plane_a = dynamic_cast<const HalfSpaceSolid*>(&a);
+  const auto* plane_b = dynamic_cast<const HalfSpaceSolid*>(&b);
+  if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
+  if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
+  if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
+  const double gap = (X_a * a.centre() - X_b * b.centre()).norm() - a.radius() - b.radius();
+  if (gap >= cap) return cap;
+  const double found = fcl_distance(static_cast<const FclSolid&>(a).geometry(), X_a,
+                                    static_cast<const FclSolid&>(b).geometry(), X_b, cap);
+  if (found <= 0) return 0.0;
+  // Surfaces that do not meet: one may still be in the other.
+  return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
+}
+
+bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+            double radius) {
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (const auto* plane = dynamic_cast<const HalfSpaceSolid*>(&solid)) {
+    const Eigen::Vector3d n = X.linear() * plane->normal();
+    return std::min(n.dot(from - X.translation()), n.dot(to - X.translation())) < radius;
+  }
+  // Nearest point of the segment to the sphere around the solid.
+  const Eigen::Vector3d c = X * solid.centre();
+  const double t = length > 0 ? std::clamp((c - from).dot(way) / (length * length), 0.0, 1.0) : 0.0;
+  if ((from + t * way - c).norm() > solid.radius() + radius) return false;
+  if (solid.holds(X.inverse() * from)) return true;
+  Eigen::Isometry3d X_beam = Eigen::Isometry3d::Identity();
+  X_beam.translation() = 0.5 * (from + to);
+  if (length > 0)
+    X_beam.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), way).toRotationMatrix();
+  const fcl::Capsuled beam(std::max(radius, 1e-5), std::max(length, 1e-9));
+  return fcl_distance(static_cast<const FclSolid&>(solid).geometry(), X, beam, X_beam, 1e-6) <= 0;
+}
+
+}  // namespace posewright

@@ -1,0 +1,70 @@
+#include "posewright/model/link_geometry.hpp"
+
+#include <map>
+
+#include "posewright/model/placement.hpp"
+#include "urdf_document.hpp"
+
+namespace posewright {
+namespace {
+
+Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+class LinkCollector {
+ public:
+  LinkCollector(const SerialArmSpec& arm, const SourcePlace& place)
+      : urdf_(arm, place), folder_(arm.urdf.parent_path()) {
+    int frame = 0;
+    for (const auto& joint : urdf_.joints())
+      if (joint->type != urdf::Joint::FIXED) frame_after_[joint->name] = ++frame;
+    urdf_.lines().check_collision_shapes();
+    // Above the base everything stands where zero position puts it.
+    Eigen::Isometry3d X_RootBase = Eigen::Isometry3d::Identity();
+    for (urdf::LinkConstSharedPtr link = urdf_.model().getLink(urdf_.base()); link->parent_joint != nullptr;
+         link = urdf_.model().getLink(link->parent_joint->parent_link_name))
+      X_RootBase = isometry(link->parent_joint->parent_to_joint_origin_transform) * X_RootBase;
+    collect(*urdf_.model().getRoot(), 0, isometry(arm.placement) * X_RootBase.inverse(), "");
+  }
+
+  std::vector<LinkGeometry> take() { return std::move(links_); }
+
+ private:
+  void collect(const urdf::Link& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent) {
+    LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line};
+    for (const auto& collision : link.collision_array)
+      if (collision != nullptr && collision->geometry != nullptr)
+        geometry.shapes.push_back({shape_of(*collision->geometry), X_FrameLink * isometry(collision->origin)});
+    const bool seen = !geometry.shapes.empty();
+    if (seen) links_.push_back(geometry);
+    for (const auto& joint : link.child_joints) {
+      const auto moved = frame_after_.find(joint->name);
+      const Eigen::Isometry3d X_FrameJoint = X_FrameLink * isometry(joint->parent_to_joint_origin_transform);
+      // The frame of a moving joint of the chain is its own; all others hang on the frame before.
+      collect(*urdf_.model().getLink(joint->child_link_name), moved == frame_after_.end() ? frame : moved->second,
+              moved == frame_after_.end() ? X_FrameJoint : Eigen::Isometry3d::Identity(), seen ? link.name : parent);
+    }
+  }
+
+  ShapeSpec shape_of(const urdf::Geometry& geometry) const {
+    if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) return BoxShape{vector_of(box->dim)};
+    if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry))
+      return CylinderShape{cylinder->radius, cylinder->length};
+    if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry)) return SphereShape{sphere->radius};
+    const auto& mesh = dynamic_cast<const urdf::Mesh&>(geometry);
+    const bool elsewhere = mesh.filename.find("://") != std::string::npos;
+    return MeshShape{elsewhere ? std::filesystem::path(mesh.filename) : folder_ / mesh.filename, vector_of(mesh.scale)};
+  }
+
+  UrdfDocument urdf_;
+  std::filesystem::path folder_;
+  std::map<std::string, int> frame_after_;
+  std::vector<LinkGeometry> links_;
+};
+
+}  // namespace
+
+std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place) {
+  return LinkCollector(arm, place).take();
+}
+
+}  // namespace posewright

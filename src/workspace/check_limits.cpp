@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "checks.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+class LimitsCheck : public SingleCheck {
+ public:
+  explicit LimitsCheck(std::vector<Coordinate> coordinates)
+      : SingleCheck("limits"), coordinates_(std::move(coordinates)) {}
+
+ private:
+  bool holds(std::span<const double> q) const override {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const Coordinate& c = coordinates_[i];
+      if (!(q[i] >= c.lower && q[i] <= c.upper)) return false;
+      if (c.discrete() && !std::binary_search(c.values.begin(), c.values.end(), q[i])) return false;
+    }
+    return true;
+  }
+  std::vector<Coordinate> coordinates_;
+};
+
+/// lower ≤ Σ factor · q ≤ upper, as arms with a parallelogram have it.
+class CoupledCheck : public SingleCheck {
+ public:
+  CoupledCheck(std::string reason, std::vector<double> factors, double lower, double upper)
+      : SingleCheck(std::move(reason)), factors_(std::move(factors)), lower_(lower), upper_(upper) {}
+
+ private:
+  bool holds(std::span<const double> q) const override {
+    double sum = 0;
+    for (std::size_t i = 0; i < q.size(); ++i) sum += factors_[i] * q[i];
+    return sum >= lower_ && sum <= upper_;
+  }
+  std::vector<double> factors_;
+  double lower_, upper_;
+};
+
+/// Factors in the order of a configuration, for its first poses or (suffix ".second") its second ones. Empty where
+/// there are none of these.
+std::vector<double> factors_of(const CheckContext& context, const CoupledLimits& coupled, const std::string& suffix) {
+  std::vector<double> factors(context.coordinates.size(), 0.0);
+  bool any = false;
+  for (const auto& [name, factor] : coupled.factors) {
+    std::string names;
+    bool found = false;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      const Coordinate& c = context.coordinates[i];
+      if (!c.choice() && !c.name.ends_with(".second")) names += (names.empty() ? "allowed: " : ", ") + c.name;
+      if (c.choice() || c.name != name.value + suffix) continue;
+      factors[i] += factor;
+      found = any = true;
+    }
+    if (!found && suffix.empty())
+      throw InputError(context.problem.at(name.line), "'" + name.value + "' is no coordinate of this robot", names);
+  }
+  return any ? factors : std::vector<double>{};
+}
+
+}  // namespace
+
+void add_limits_check(const CheckContext& context, Checks& checks) {
+  checks.push_back(std::make_unique<LimitsCheck>(context.coordinates));
+}
+
+void add_coupled_checks(const CheckContext& context, Checks& checks) {
+  for (const CoupledLimits& coupled : context.problem.workspace.coupled) {
+    std::string reason = "coupled limits of";
+    for (const auto& [name, factor] : coupled.factors) reason += " " + name.value;
+    for (const char* suffix : {"", ".second"})
+      if (std::vector<double> factors = factors_of(context, coupled, suffix); !factors.empty())
+        checks.push_back(std::make_unique<CoupledCheck>(reason, std::move(factors), coupled.lower, coupled.upper));
+  }
+}
+
+}  // namespace posewright

@@ -1,0 +1,83 @@
+#include <Eigen/SVD>
+
+#include "checks.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+/// What the instrument cannot see cannot be measured.
+class MeasurableCheck : public SingleCheck {
+ public:
+  explicit MeasurableCheck(const IdentificationModel& model)
+      : SingleCheck(model.unmeasurable_reason()), model_(model) {}
+
+ private:
+  bool holds(std::span<const double> q) const override { return model_.measurable(q); }
+  const IdentificationModel& model_;
+};
+
+class ToolBoxCheck : public SingleCheck {
+ public:
+  ToolBoxCheck(const IdentificationModel& model, ToolBoxSpec box)
+      : SingleCheck("tool outside its box"), model_(model), box_(std::move(box)) {}
+
+ private:
+  bool holds(std::span<const double> q) const override {
+    const Eigen::Vector3d p = model_.tool_pose(q) * box_.point;
+    return (p.array() >= box_.lower.array()).all() && (p.array() <= box_.upper.array()).all();
+  }
+  const IdentificationModel& model_;
+  ToolBoxSpec box_;
+};
+
+/// The smallest singular value of the tip's Jacobian about its own origin: how far the slowest direction moves per
+/// radian (or metre) of the joints.
+class SingularityCheck : public SingleCheck {
+ public:
+  SingularityCheck(const IdentificationModel& model, SingularitySpec spec)
+      : SingleCheck("near a singularity"), model_(model), spec_(spec) {}
+
+ private:
+  bool holds(std::span<const double> q) const override {
+    Eigen::Matrix<double, 6, Eigen::Dynamic> J;
+    if (!model_.reading_twists(q, J)) return false;
+    const Eigen::Vector3d p = model_.tool_pose(q).translation();
+    for (Eigen::Index c = 0; c < J.cols(); ++c) {
+      J.col(c).head<3>() += Eigen::Vector3d(J.col(c).tail<3>()).cross(p);
+      J.col(c).head<3>() /= spec_.length;
+    }
+    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+    return singular[std::min<Eigen::Index>(6, J.cols()) - 1] >= spec_.smallest;
+  }
+  const IdentificationModel& model_;
+  SingularitySpec spec_;
+};
+
+}  // namespace
+
+void add_measurable_check(const CheckContext& context, Checks& checks) {
+  if (!context.model.unmeasurable_reason().empty()) checks.push_back(std::make_unique<MeasurableCheck>(context.model));
+}
+
+void add_tool_check(const CheckContext& context, Checks& checks) {
+  if (context.problem.workspace.tool)
+    checks.push_back(std::make_unique<ToolBoxCheck>(context.model, *context.problem.workspace.tool));
+}
+
+void add_singularity_check(const CheckContext& context, Checks& checks) {
+  const auto& spec = context.problem.workspace.singularity;
+  if (!spec) return;
+  std::vector<double> q;
+  for (const Coordinate& c : context.coordinates)
+    q.push_back(c.discrete() ? c.values.front() : 0.5 * (c.lower + c.upper));
+  Eigen::Matrix<double, 6, Eigen::Dynamic> J;
+  J.resize(6, 0);
+  context.model.reading_twists(q, J);
+  if (J.cols() == 0)
+    throw InputError(context.problem.at(spec->line), "workspace.singularity: this instrument sees no single tip",
+                     "leave it out");
+  checks.push_back(std::make_unique<SingularityCheck>(context.model, *spec));
+}
+
+}  // namespace posewright

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "posewright/cell/cell.hpp"
+#include "posewright/workspace/validity_check.hpp"
+
+namespace posewright {
+
+using Checks = std::vector<std::unique_ptr<ValidityCheck>>;
+
+/// What a constraint may look at. Everything must outlive the checks.
+struct CheckContext {
+  const IdentificationModel& model;
+  const Problem& problem;
+  const std::vector<Coordinate>& coordinates;  ///< with the limits in force
+  const Cell* cell;                            ///< null: no bodies, no sights
+};
+
+/// What must hold on the way from pose to pose too: limits, coupled limits, reach and travel of actuators, collision.
+Checks motion_checks(const CheckContext& context);
+/// All constraints on a measurement, in the order of cost.
+Checks pose_checks(const CheckContext& context);
+
+// One maker a constraint; where the problem does not ask for it, nothing is added.
+void add_limits_check(const CheckContext& context, Checks& checks);
+void add_coupled_checks(const CheckContext& context, Checks& checks);
+void add_actuator_checks(const CheckContext& context, Checks& checks);
+void add_measurable_check(const CheckContext& context, Checks& checks);
+void add_tool_check(const CheckContext& context, Checks& checks);
+void add_singularity_check(const CheckContext& context, Checks& checks);
+void add_collision_check(const CheckContext& context, Checks& checks);
+void add_sight_check(const CheckContext& context, Checks& checks);
+
+}  // namespace posewright

@@ -7,11 +7,12 @@ set(may_problem support)
 set(may_model support blocks problem)
 set(may_cell support blocks problem model)
 set(may_workspace support blocks problem model cell)
+set(may_route support)
 set(may_criterion support blocks)
 set(may_planning support blocks criterion)
 set(may_planners support blocks criterion planning)
 set(may_outputs support blocks criterion planning)
-set(may_pipeline support blocks problem model cell workspace criterion planning planners outputs)
+set(may_pipeline support blocks problem model cell workspace route criterion planning planners outputs)
 set(may_cli ${may_pipeline} pipeline)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/include/*.hpp ${SOURCE}/src/*.hpp ${SOURCE}/src/*.cpp

@@ -38,18 +38,26 @@ class ChainFrames : public BodyFrames {
     }
   }
 
-  Eigen::VectorXd travel(int pose, int a, int b, double radius) const override {
+  Eigen::Vector3d axis(int b) const override { return chain_.joints[std::size_t(b - 1)].axis; }
+
+  Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const override {
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(dimension_));
-    double reach = radius;
+    // Of frame k's points: from its own axis, and from its origin.
+    double from_axis = axis_radius, from_origin = radius;
     for (int k = b; k > a; --k) {
       const ChainJoint& joint = chain_.joints[std::size_t(k - 1)];
-      double& entry = bound[Eigen::Index(place(pose, std::size_t(k - 1)))];
-      entry += std::abs(joint.multiplier) * (joint.prismatic ? 1.0 : reach);
-      // From the axis of the joint before: the fixed way to this one, and what this one may be pushed out.
-      reach += joint.X_ParentJoint.translation().norm();
-      if (!joint.prismatic) continue;
-      const Coordinate& c = chain_.coordinates[std::size_t(joint.coordinate)];
-      reach += std::abs(joint.multiplier) * std::max(std::abs(c.lower), std::abs(c.upper)) + std::abs(joint.offset);
+      bound[Eigen::Index(place(pose, std::size_t(k - 1)))] +=
+          std::abs(joint.multiplier) * (joint.prismatic ? 1.0 : from_axis);
+      if (k - 1 == a) break;
+      // What this joint may be pushed out comes to the fixed way from the frame before.
+      double pushed = 0.0;
+      if (joint.prismatic) {
+        const Coordinate& c = chain_.coordinates[std::size_t(joint.coordinate)];
+        pushed = std::abs(joint.multiplier) * std::max(std::abs(c.lower), std::abs(c.upper)) + std::abs(joint.offset);
+      }
+      const Eigen::Vector3d way = joint.X_ParentJoint.translation();
+      from_axis = way.cross(chain_.joints[std::size_t(k - 2)].axis).norm() + pushed + from_origin;
+      from_origin += way.norm() + pushed;
     }
     return bound;
   }
@@ -92,7 +100,9 @@ class PlatformFrames : public BodyFrames {
     X[1] = model_.tool_pose(q);
   }
 
-  Eigen::VectorXd travel(int, int, int, double radius) const override {
+  Eigen::Vector3d axis(int) const override { return Eigen::Vector3d::UnitZ(); }
+
+  Eigen::VectorXd travel(int, int, int, double radius, double) const override {
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(model_.coordinates().size()));
     for (std::size_t i = 0; i < model_.coordinates().size(); ++i) {
       const Coordinate& c = model_.coordinates()[i];

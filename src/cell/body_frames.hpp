@@ -23,9 +23,13 @@ class BodyFrames {
 
   /// Pose of every frame in the measurement frame for the `pose`-th pose of q.
   virtual void poses(std::span<const double> q, int pose, std::span<Eigen::Isometry3d> X_MeasureFrame) const = 0;
-  /// Per coordinate (of all of a configuration): how far a point of frame b, within `radius` of its origin, moves at
-  /// most relative to frame a < b while that coordinate changes by one unit.
-  virtual Eigen::VectorXd travel(int pose, int a, int b, double radius) const = 0;
+  /// Axis of the joint that moves frame b, in frame b; z for a platform.
+  virtual Eigen::Vector3d axis(int b) const = 0;
+  /// Per coordinate (of all of a configuration): how far a point of frame b moves at most relative to frame a < b while
+  /// that coordinate changes by one unit.
+  /// @param radius       m, largest distance of these points from the origin of b
+  /// @param axis_radius  m, the same from the line through the origin along axis(b)
+  virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
   /// Frames from which on a parameter of that name acts: k means k, k + 1, …; count() where it moves none.
   virtual int acts_from(const std::string& parameter) const = 0;
 

@@ -58,9 +58,15 @@ class SceneBuilder {
     if (scene_.bodies[std::size_t(a)].frame > scene_.bodies[std::size_t(b)].frame) std::swap(a, b);
     scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, {}});
     const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
-    const double reach = second.solid->reach_from(second.X_FrameBody.inverse().translation());
+    double reach = 0, axis_reach = 0;
+    const Eigen::Vector3d axis = second.frame > 0 ? scene_.frames->axis(second.frame) : Eigen::Vector3d::UnitZ();
+    for (const Eigen::Vector3d& corner : second.solid->corners()) {
+      const Eigen::Vector3d p = second.X_FrameBody * corner;
+      reach = std::max(reach, p.norm());
+      axis_reach = std::max(axis_reach, p.cross(axis).norm());
+    }
     for (int pose = 0; pose < scene_.frames->poses_per_configuration(); ++pose)
-      scene_.pairs.back().travel.push_back(scene_.frames->travel(pose, first.frame, second.frame, reach));
+      scene_.pairs.back().travel.push_back(scene_.frames->travel(pose, first.frame, second.frame, reach, axis_reach));
   }
 
   void add_self_pairs() {

@@ -1,9 +1,8 @@
 #include "posewright/cell/collision.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
-#include <limits>
 
 #include "scene.hpp"
 
@@ -12,8 +11,10 @@ namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
 
-// Bodies that move further than this between two checks are not asked for their distance: it would seldom suffice.
-constexpr double longest_step = 0.25;
+// Distances are asked for up to this much beyond the clearance: further ones cost more than the steps they save.
+constexpr double look_ahead = 0.08;  // m
+// States looked at before a motion is followed from its beginning: most that collide do so at one of these.
+constexpr std::array<double, 7> first_looks = {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875};
 
 /// Poses of all bodies; kept per thread so that checks do not allocate.
 Poses& place_bodies(const Scene& scene, std::span<const double> q, int pose) {
@@ -42,10 +43,35 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
   return nullptr;
 }
 
-/// A stretch of the motion and the pairs that are not yet known to keep apart on it.
-struct Stretch {
-  double begin, end;
-  std::vector<int> pairs;
+/// One pair followed along a straight motion.
+class PairOnMotion {
+ public:
+  PairOnMotion(const Scene& scene, std::span<const double> from, std::span<const double> to)
+      : scene_(scene), from_(from), to_(to), q_(from.size()), frames_(std::size_t(scene.frames->count())) {}
+
+  /// From state to state: where the pair is d apart, it keeps its clearance until it has moved by what d has to spare.
+  bool keeps_apart(const BodyPair& pair, int pose, double rate) {
+    if (!(rate > 0)) return true;
+    const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
+    for (double t = 0; t < 1;) {
+      for (std::size_t i = 0; i < q_.size(); ++i) q_[i] = from_[i] + t * (to_[i] - from_[i]);
+      scene_.frames->poses(q_, pose, frames_);
+      const Eigen::Isometry3d X_a = frames_[std::size_t(a.frame)] * a.X_FrameBody;
+      const Eigen::Isometry3d X_b = frames_[std::size_t(b.frame)] * b.X_FrameBody;
+      double spare = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
+      if (!(spare > look_ahead))
+        spare = distance(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
+      if (spare < 0) return false;
+      t += (spare + motion_resolution) / rate;
+    }
+    return true;
+  }
+
+ private:
+  const Scene& scene_;
+  std::span<const double> from_, to_;
+  std::vector<double> q_;
+  Poses frames_;
 };
 
 }  // namespace
@@ -83,35 +109,16 @@ double Collision::slack(std::span<const double> q, double cap) const {
 bool Collision::motion_is_free(std::span<const double> from, std::span<const double> to) const {
   const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
   const Eigen::VectorXd change = (b - a).cwiseAbs();
+  if (first_violation(*scene_, to) != nullptr) return false;
   std::vector<double> q(from.size());
-  Stretch whole{0, 1, {}};
-  for (std::size_t p = 0; p < scene_->pairs.size(); ++p) whole.pairs.push_back(int(p));
-  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) {
-    // Breadth first: a collision anywhere is met early.
-    std::deque<Stretch> open{whole};
-    for (; !open.empty(); open.pop_front()) {
-      Stretch& stretch = open.front();
-      const double middle = 0.5 * (stretch.begin + stretch.end), half = 0.5 * (stretch.end - stretch.begin);
-      for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + middle * (to[i] - from[i]);
-      const Poses& X = place_bodies(*scene_, q, pose);
-      Stretch left{stretch.begin, middle, {}};
-      for (const int p : stretch.pairs) {
-        const BodyPair& pair = scene_->pairs[std::size_t(p)];
-        const double moved = half * pair.travel[std::size_t(pose)].dot(change);
-        if (moved > longest_step) {
-          left.pairs.push_back(p);
-          continue;
-        }
-        const double needed = pair.clearance + std::max(0.0, moved - motion_resolution);
-        const double found = distance_of(*scene_, pair, X, needed);
-        if (found < pair.clearance) return false;
-        if (found < needed) left.pairs.push_back(p);
-      }
-      if (left.pairs.empty()) continue;
-      open.push_back({middle, stretch.end, left.pairs});
-      open.push_back(std::move(left));
-    }
+  for (const double t : first_looks) {
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
+    if (first_violation(*scene_, q) != nullptr) return false;
   }
+  PairOnMotion motion(*scene_, from, to);
+  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose)
+    for (const BodyPair& pair : scene_->pairs)
+      if (!motion.keeps_apart(pair, pose, pair.travel[std::size_t(pose)].dot(change))) return false;
   return true;
 }
 

@@ -35,9 +35,21 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
 class FclSolid : public Solid {
  public:
   const Geometry& geometry() const { return *geometry_; }
+  double at_least(const Eigen::Vector3d& p) const override {
+    return ((p - middle_).cwiseAbs() - half_extent_).cwiseMax(0.0).norm();
+  }
 
  protected:
+  void put_box_around() {
+    Eigen::AlignedBox3d box;
+    for (const auto& corner : corners_) box.extend(corner);
+    middle_ = box.center();
+    half_extent_ = box.sizes() / 2;
+  }
   std::shared_ptr<Geometry> geometry_;
+
+ private:
+  Eigen::Vector3d middle_, half_extent_;
 };
 
 class BoxSolid : public FclSolid {
@@ -47,6 +59,7 @@ class BoxSolid : public FclSolid {
     radius_ = half_.norm();
     for (int k = 0; k < 8; ++k)
       corners_.emplace_back((k & 1 ? 1 : -1) * half_.x(), (k & 2 ? 1 : -1) * half_.y(), (k & 4 ? 1 : -1) * half_.z());
+    put_box_around();
   }
   bool holds(const Eigen::Vector3d& p) const override { return (p.cwiseAbs() - half_).maxCoeff() <= 0; }
 
@@ -61,6 +74,7 @@ class CylinderSolid : public FclSolid {
     radius_ = std::hypot(r_, half_);
     for (int k = 0; k < 8; ++k)
       corners_.emplace_back((k & 1 ? 1 : -1) * r_, (k & 2 ? 1 : -1) * r_, (k & 4 ? 1 : -1) * half_);
+    put_box_around();
   }
   bool holds(const Eigen::Vector3d& p) const override { return p.head<2>().norm() <= r_ && std::abs(p.z()) <= half_; }
 
@@ -75,6 +89,7 @@ class SphereSolid : public FclSolid {
     radius_ = s.radius;
     for (int k = 0; k < 8; ++k)
       corners_.push_back(s.radius * Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+    put_box_around();
   }
   bool holds(const Eigen::Vector3d& p) const override { return p.norm() <= radius_; }
 };
@@ -86,6 +101,7 @@ class HalfSpaceSolid : public Solid {
     radius_ = std::numeric_limits<double>::infinity();
   }
   bool holds(const Eigen::Vector3d& p) const override { return normal_.dot(p) <= 0; }
+  double at_least(const Eigen::Vector3d& p) const override { return std::max(0.0, normal_.dot(p)); }
   const Eigen::Vector3d& normal() const { return normal_; }
 
  private:
@@ -107,6 +123,7 @@ class MeshSolid : public FclSolid {
     model->computeLocalAABB();
     geometry_ = model;
     corners_ = mesh_.vertices;
+    put_box_around();
     Eigen::AlignedBox3d box;
     for (const auto& v : mesh_.vertices) box.extend(v);
     centre_ = box.center();
@@ -167,12 +184,6 @@ bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const 
 
 }  // namespace
 
-double Solid::reach_from(const Eigen::Vector3d& origin) const {
-  double reach = 0;
-  for (const auto& corner : corners_) reach = std::max(reach, (corner - origin).norm());
-  return reach;
-}
-
 std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMesh* mesh) {
   if (const auto* box = std::get_if<BoxShape>(&shape)) return std::make_shared<BoxSolid>(*box);
   if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) return std::make_shared<CylinderSolid>(*cylinder);
@@ -182,15 +193,25 @@ std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMe
   return std::make_shared<MeshSolid>(*mesh);
 }
 
+double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
+  const Eigen::Vector3d centre_a = X_a * a.centre(), centre_b = X_b * b.centre();
+  const auto seen = [](const Eigen::Isometry3d& X, const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return X.linear().transpose() * (p - X.translation());
+  };
+  double bound = (centre_a - centre_b).norm() - a.radius() - b.radius();
+  if (std::isfinite(b.radius())) bound = std::max(bound, a.at_least(seen(X_a, centre_b)) - b.radius());
+  if (std::isfinite(a.radius())) bound = std::max(bound, b.at_least(seen(X_b, centre_a)) - a.radius());
+  return bound;
+}
+
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                 double cap) {
+  if (distance_at_least(a, X_a, b, X_b) >= cap) return cap;
   const auto* plane_a = dynamic_cast<const HalfSpaceSolid*>(&a);
   const auto* plane_b = dynamic_cast<const HalfSpaceSolid*>(&b);
   if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
   if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
   if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
-  const double gap = (X_a * a.centre() - X_b * b.centre()).norm() - a.radius() - b.radius();
-  if (gap >= cap) return cap;
   const double found = fcl_distance(static_cast<const FclSolid&>(a).geometry(), X_a,
                                     static_cast<const FclSolid&>(b).geometry(), X_b, cap);
   if (found <= 0) return 0.0;

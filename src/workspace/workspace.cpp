@@ -86,6 +86,8 @@ class Workspace::Implementation {
     checker = std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get()}),
                                                    cell == nullptr ? nullptr : cell->collision.get());
     space->setStateValidityChecker(checker);
+    // Only samplers walk along segments here, and only to come near an obstacle; motions are checked exactly.
+    space->setStateValidityCheckingResolution(0.04);
     space->setup();
     reasons = checker->reasons();
     sampler_shares = problem.workspace.samplers;

@@ -36,9 +36,9 @@ class Collision {
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
   double slack(std::span<const double> q, double cap) const;
 
-  /// Whether the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: an
-  /// interval is free of a pair where its distance in the middle exceeds what the bodies can move until the ends
-  /// (Schwarzer, Saha & Latombe 2005), else it is halved, until nothing moves more than half a millimetre.
+  /// Whether the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: a pair
+  /// that is d apart keeps its clearance until its bodies can have moved by what d has to spare (bounds on the motion
+  /// of a link as Schwarzer, Saha & Latombe 2005; steps as conservative advancement, Mirtich 1996).
   bool motion_is_free(std::span<const double> from, std::span<const double> to) const;
 
   /// Whether a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.

@@ -24,8 +24,8 @@ class Solid {
   /// Sphere that holds all of it; the radius of a half space is infinite.
   const Eigen::Vector3d& centre() const { return centre_; }
   double radius() const { return radius_; }
-  /// Largest distance of a point of it from `origin` (own frame).
-  double reach_from(const Eigen::Vector3d& origin) const;
+  /// Lower bound of the distance of a point (own frame) from it: from a box around it, or exact.
+  virtual double at_least(const Eigen::Vector3d& point) const = 0;
   /// Whether a point (own frame) is in it or on it; for open meshes false.
   virtual bool holds(const Eigen::Vector3d& point) const = 0;
   /// Points whose convex hull has the solid in it: corners, or vertices of a mesh. Empty for a half space.
@@ -42,6 +42,9 @@ std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMe
 
 /// Distance between two solids in m, at most `cap`; 0 where they touch or one is in the other.
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b, double cap);
+
+/// Lower bound of the distance, by boxes and spheres around both; may be negative where they overlap.
+double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b);
 
 /// Whether a solid comes nearer than `radius` to the segment.
 bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,

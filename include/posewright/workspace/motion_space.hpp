@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "posewright/cell/cell.hpp"
+
+namespace posewright {
+
+/// How the robot travels between poses: the continuous coordinates of its configurations, what is free on the way, and
+/// how long a motion takes. What is chosen per measurement (load case, station) does not move; listed joint positions
+/// may be passed. Members are const and may run in several threads at once.
+class MotionSpace {
+ public:
+  /// @param cell  of the problem; null: only limits and actuators constrain
+  /// Throws InputError for velocities of things that do not move, and where a velocity is not known.
+  MotionSpace(const Problem& problem, std::shared_ptr<const Cell> cell);
+  ~MotionSpace();
+  MotionSpace(const MotionSpace&) = delete;
+  MotionSpace& operator=(const MotionSpace&) = delete;
+
+  /// Coordinates that move, with the limits in force.
+  const std::vector<Coordinate>& coordinates() const;
+  /// Of a whole configuration what moves, and back: choices at their first values.
+  std::vector<double> reduced(std::span<const double> configuration) const;
+  std::vector<double> whole(std::span<const double> q) const;
+  std::vector<double> home() const;
+
+  /// What forbids q ("limits", "collision with table", …); empty where it is free.
+  std::string violation(std::span<const double> q) const;
+  bool is_free(std::span<const double> q) const;
+  /// Whether the straight motion is free all the way; both ends are looked at too.
+  bool is_free(std::span<const double> from, std::span<const double> to) const;
+  /// Seconds of the straight motion from standstill to standstill: every coordinate accelerates, travels and brakes
+  /// together with the slowest. Coordinates of a parallel robot are timed by its actuators.
+  double seconds(std::span<const double> from, std::span<const double> to) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// A motion through via points, straight from one to the next.
+struct Motion {
+  std::vector<std::vector<double>> points;  ///< both ends included
+  double seconds = 0.0;                     ///< standing still at every point
+  const char* found_by = "straight";        ///< straight, roadmap or rrt_connect
+};
+
+/// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run),
+/// and RRT-Connect where it does not connect. Not for several threads.
+class Roadmap {
+ public:
+  /// @param space  must outlive the roadmap
+  Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed);
+  ~Roadmap();
+  Roadmap(const Roadmap&) = delete;
+  Roadmap& operator=(const Roadmap&) = delete;
+
+  /// A motion between two free configurations, simplified; empty `points` where none is found.
+  Motion motion(std::span<const double> from, std::span<const double> to);
+  /// Milestones that are connected with `q`, q first.
+  std::vector<std::vector<double>> connected(std::span<const double> q);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace posewright

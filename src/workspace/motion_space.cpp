@@ -1,0 +1,163 @@
+#include "posewright/workspace/motion_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "checks.hpp"
+#include "limits.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Where nothing says how hard a robot accelerates: full speed after half a second.
+constexpr double seconds_to_full_speed = 0.5;
+// States at which the actuators of a parallel robot are looked at on the way.
+constexpr int actuator_steps = 50;
+
+/// What has a speed: a coordinate of an arm, an actuator of a parallel robot.
+struct Mover {
+  std::string name;
+  double speed, acceleration;
+};
+
+/// Trapezoidal profile from standstill to standstill.
+double seconds_of(double way, const Mover& mover) {
+  const double ramp = mover.speed * mover.speed / mover.acceleration;
+  return way > ramp ? way / mover.speed + mover.speed / mover.acceleration : 2 * std::sqrt(way / mover.acceleration);
+}
+
+void replace(const std::vector<std::pair<Located<std::string>, double>>& given, std::vector<Mover>& movers,
+             double Mover::*value, const Problem& problem) {
+  for (const auto& [name, number] : given) {
+    std::string names;
+    bool found = false;
+    for (Mover& mover : movers) {
+      names += (names.empty() ? "allowed: " : ", ") + mover.name;
+      if (mover.name != name.value) continue;
+      mover.*value = number;
+      found = true;
+    }
+    if (!found) throw InputError(problem.at(name.line), "'" + name.value + "' does not move by itself", names);
+  }
+}
+
+std::vector<Mover> movers_of(const std::vector<Coordinate>& things, const Problem& problem) {
+  const MotionSpec& spec = problem.workspace.motion;
+  std::vector<Mover> movers;
+  for (const Coordinate& c : things) movers.push_back({c.name, c.speed, 0.0});
+  replace(spec.velocity, movers, &Mover::speed, problem);
+  replace(spec.acceleration, movers, &Mover::acceleration, problem);
+  for (Mover& mover : movers) {
+    if (!(mover.speed > 0))
+      throw InputError(problem.at(spec.line), "the velocity of '" + mover.name + "' is not known",
+                       "set workspace: motion: velocity: {" + mover.name + ": …}");
+    mover.speed *= spec.speed;
+    if (!(mover.acceleration > 0)) mover.acceleration = mover.speed / seconds_to_full_speed;
+  }
+  return movers;
+}
+
+}  // namespace
+
+class MotionSpace::Implementation {
+ public:
+  Implementation(const Problem& problem, std::shared_ptr<const Cell> cell_in)
+      : cell(std::move(cell_in)),
+        own_model(cell == nullptr ? make_model(problem, find_variant(problem, "")) : nullptr),
+        model(cell == nullptr ? *own_model : *cell->model),
+        all(limits_in_force(model, problem, cell.get())) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].choice()) continue;
+      if (all[i].name.ends_with(".second"))
+        throw CannotDo("measurement: motions between pairs of configurations are not planned");
+      all[i].values.clear();
+      moving.push_back(i);
+      coordinates.push_back(all[i]);
+    }
+    checks = motion_checks({model, problem, all, cell.get()});
+    movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem);
+    home = home_configuration(problem, model);
+  }
+
+  std::string violation(std::span<const double> configuration) const {
+    for (const auto& check : checks)
+      if (const int reason = check->violation(configuration); reason >= 0) return check->reasons()[std::size_t(reason)];
+    return {};
+  }
+
+  std::vector<double> whole(std::span<const double> q) const {
+    std::vector<double> configuration(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (all[i].choice()) configuration[i] = all[i].values.front();
+    for (std::size_t k = 0; k < moving.size(); ++k) configuration[moving[k]] = q[k];
+    return configuration;
+  }
+
+  std::shared_ptr<const Cell> cell;
+  std::unique_ptr<IdentificationModel> own_model;
+  const IdentificationModel& model;
+  std::vector<Coordinate> all, coordinates;
+  std::vector<std::size_t> moving;  // indices into a configuration
+  Checks checks;
+  std::vector<Mover> movers;
+  std::vector<double> home;
+};
+
+MotionSpace::MotionSpace(const Problem& problem, std::shared_ptr<const Cell> cell)
+    : implementation_(std::make_unique<Implementation>(problem, std::move(cell))) {}
+MotionSpace::~MotionSpace() = default;
+
+const std::vector<Coordinate>& MotionSpace::coordinates() const { return implementation_->coordinates; }
+
+std::vector<double> MotionSpace::reduced(std::span<const double> configuration) const {
+  std::vector<double> q;
+  for (const std::size_t i : implementation_->moving) q.push_back(configuration[i]);
+  return q;
+}
+
+std::vector<double> MotionSpace::whole(std::span<const double> q) const { return implementation_->whole(q); }
+
+std::vector<double> MotionSpace::home() const { return reduced(implementation_->home); }
+
+std::string MotionSpace::violation(std::span<const double> q) const { return implementation_->violation(whole(q)); }
+
+bool MotionSpace::is_free(std::span<const double> q) const {
+  const std::vector<double> configuration = whole(q);
+  return std::all_of(implementation_->checks.begin(), implementation_->checks.end(),
+                     [&](const auto& check) { return check->violation(configuration) < 0; });
+}
+
+bool MotionSpace::is_free(std::span<const double> from, std::span<const double> to) const {
+  const Implementation& own = *implementation_;
+  if (!is_free(from) || !is_free(to)) return false;
+  // Boxes and linear inequalities hold between two points where they hold at both.
+  if (!own.model.actuators().empty()) {
+    std::vector<double> q(from.size());
+    for (int k = 1; k < actuator_steps; ++k) {
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + k * (to[i] - from[i]) / actuator_steps;
+      if (!is_free(q)) return false;
+    }
+  }
+  return own.cell == nullptr || own.cell->collision == nullptr ||
+         own.cell->collision->motion_is_free(whole(from), whole(to));
+}
+
+double MotionSpace::seconds(std::span<const double> from, std::span<const double> to) const {
+  const Implementation& own = *implementation_;
+  std::vector<double> a(from.begin(), from.end()), b(to.begin(), to.end());
+  if (!own.model.actuators().empty()) {
+    a.assign(own.movers.size(), 0.0);
+    b = a;
+    own.model.actuator_values(whole(from), a);
+    own.model.actuator_values(whole(to), b);
+  }
+  double slowest = 0;
+  for (std::size_t i = 0; i < own.movers.size(); ++i)
+    slowest = std::max(slowest, seconds_of(std::abs(b[i] - a[i]), own.movers[i]));
+  return slowest;
+}
+
+}  // namespace posewright

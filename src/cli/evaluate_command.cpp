@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "evaluation_report.hpp"
+#include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
@@ -24,6 +25,7 @@ po::options_description options() {
       ("candidates", text("n"), "feasible configurations to compare with (10000)")                //
       ("restarts", text("k"), "starts of a search (10)")                                          //
       ("time-limit", text("S"), "stop searching after S seconds");
+  options.add(package_options());
   return options;
 }
 
@@ -40,7 +42,8 @@ int run(const po::variables_map& values, const Words& positional) {
   evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
-  const Problem problem = read_problem(positional[0]);
+  Problem problem = read_problem(positional[0]);
+  problem.packages = packages_of(values);
   PoseListEvaluation result;
   {
     const Watch watch(common, time_limit(values));

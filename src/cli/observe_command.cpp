@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "observation_report.hpp"
+#include "packages.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/version.hpp"
 #include "session.hpp"
@@ -18,12 +19,14 @@ po::options_description options() {
       ("variant", text("V"), "only this variant (all)")                        //
       ("candidates", text("n"), "feasible configurations in the pool (2000)")  //
       ("poses", text("N"), "number of poses that σ is predicted for (design: poses)");
+  options.add(package_options());
   return options;
 }
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const Problem problem = read_problem(single(positional, "PROBLEM"));
+  Problem problem = read_problem(single(positional, "PROBLEM"));
+  problem.packages = packages_of(values);
   ObserveOptions observe;
   observe.variant = text_of(values, "variant");
   observe.candidates = whole_number(values, "candidates", 1, 1000000).value_or(observe.candidates);

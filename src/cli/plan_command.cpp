@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
@@ -26,6 +27,7 @@ po::options_description options() {
           "reserve", "maximise what is left when the pose that hurts most is lost")(
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
   options.add(output_options(true));
+  options.add(package_options());
   return options;
 }
 
@@ -49,7 +51,8 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
-  const Problem problem = read_problem(file);
+  Problem problem = read_problem(file);
+  problem.packages = packages_of(values);
   std::vector<std::filesystem::path> inputs{file};
   if (!plan_options.augment.empty()) inputs.push_back(plan_options.augment);
   if (problem.design.measured) inputs.push_back(*problem.design.measured);

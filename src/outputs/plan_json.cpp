@@ -2,6 +2,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/version.hpp"
+#include "sight_json.hpp"
 
 namespace posewright {
 namespace {
@@ -79,6 +80,30 @@ Json parameter_json(const PlannedParameter& p) {
   return json;
 }
 
+}  // namespace
+
+nlohmann::ordered_json sight_json(const TargetSight& sight) {
+  return {{"target", sight.target},
+          {"station", sight.station},
+          {"position", {sight.position.x(), sight.position.y(), sight.position.z()}},
+          {"distance", sight.distance},
+          {"azimuth", sight.azimuth},
+          {"elevation", sight.elevation},
+          {"incidence", sight.incidence ? Json(*sight.incidence) : Json(nullptr)},
+          {"visible", sight.hidden_by.empty()},
+          {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
+}
+
+namespace {
+
+Json cell_json(const CellNotes& cell) {
+  Json margins = Json::object();
+  for (const NamedValue& v : cell.joint_margins) margins[v.name] = v.value;
+  return {{"always_touching", cell.always_touching},
+          {"uncalibrated_margin", cell.margin},
+          {"uncalibrated_joint_margins", margins}};
+}
+
 Json tool_pose_json(const Eigen::Isometry3d& X) {
   const Eigen::Quaterniond q(X.linear());
   const Eigen::Vector3d p = X.translation();
@@ -107,6 +132,10 @@ Json pose_json(const PlannedPose& pose) {
     json["actuators"] = actuators;
   }
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
+  if (!pose.sights.empty()) {
+    json["targets"] = Json::array();
+    for (const TargetSight& sight : pose.sights) json["targets"].push_back(sight_json(sight));
+  }
   json["contribution"] = pose.contribution;
   if (!pose.measured) json["efficiency_without"] = pose.without;
   return json;
@@ -126,6 +155,8 @@ Json statistics_json(const PlanStatistics& s) {
                                 {"efficiency", stage.efficiency ? Json(*stage.efficiency) : Json(nullptr)},
                                 {"seconds", stage.seconds}});
   }
+  if (!s.cell.always_touching.empty() || s.cell.margin > 0 || !s.cell.joint_margins.empty())
+    json["cell"] = cell_json(s.cell);
   if (s.poses_on_boundary) json["poses_on_boundary"] = *s.poses_on_boundary;
   if (s.coordinates_on_limits) json["coordinates_on_limits"] = *s.coordinates_on_limits;
   return json;

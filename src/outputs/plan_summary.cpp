@@ -146,13 +146,40 @@ std::string dropped_text(const Plan& plan) {
   return text.empty() ? text : "Dropped, because the measurement cannot tell them from others:\n" + text;
 }
 
+/// Where candidates were lost, most first: what to move so that fewer are.
+std::string rejection_table(const PlanStatistics& s) {
+  if (s.rejected.empty()) return {};
+  std::vector<std::pair<std::string, long>> rows = s.rejected;
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  using A = Table::Align;
+  Table table({"rejected because", "draws", "share"}, {A::left, A::right, A::right});
+  for (const auto& [reason, count] : rows)
+    table.row({reason, std::to_string(count), fmt::format("{:.1f} %", 100.0 * double(count) / double(s.drawn))});
+  return table.text();
+}
+
+std::string cell_text(const CellNotes& cell) {
+  std::string text;
+  if (!cell.always_touching.empty()) {
+    text += "Not checked, because they touch wherever the robot stands: ";
+    for (const std::string& pair : cell.always_touching)
+      text += (&pair == &cell.always_touching.front() ? "" : ", ") + pair;
+    text += "\n";
+  }
+  if (cell.margin > 0)
+    text +=
+        fmt::format("Clearances are up to {} wider while the robot is not calibrated", shown_value(cell.margin, "m"));
+  for (const NamedValue& v : cell.joint_margins)
+    text += fmt::format("{} {} {}", &v == &cell.joint_margins.front() ? ", limits by" : ",", v.name,
+                        shown_value(v.value, v.unit));
+  return cell.margin > 0 ? text + "\n" : text;
+}
+
 std::string candidates_text(const Plan& plan) {
   const PlanStatistics& s = plan.statistics;
   if (s.drawn == 0) return {};
-  std::string text = fmt::format("Candidates: {} drawn, {} feasible", s.drawn, s.feasible);
-  for (const auto& [reason, count] : s.rejected)
-    text += fmt::format("; {:.1f} % rejected: {}", 100.0 * double(count) / double(s.drawn), reason);
-  text += "\n";
+  std::string text =
+      fmt::format("Candidates: {} drawn, {} feasible\n", s.drawn, s.feasible) + rejection_table(s) + cell_text(s.cell);
   if (s.poses_on_boundary)
     text += fmt::format(
         "{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",

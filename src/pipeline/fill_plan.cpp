@@ -53,6 +53,40 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
   return pose;
 }
 
+std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q) {
+  std::vector<TargetSight> result;
+  const int first = sight.sees_from_all() ? 0 : sight.station_of(q);
+  const int last = sight.sees_from_all() ? int(sight.stations().size()) - 1 : first;
+  for (int station = first; station <= last; ++station)
+    for (const Sight& s : sight.sights(q, station)) result.push_back(target_sight(sight, s, station));
+  return result;
+}
+
+TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) {
+  TargetSight result;
+  result.target = s.target;
+  result.station = sight.stations()[std::size_t(station)];
+  result.position = s.p_StationTarget;
+  result.distance = s.distance;
+  result.azimuth = s.azimuth;
+  result.elevation = s.elevation;
+  result.incidence = s.incidence;
+  if (s.hidden_by >= 0) result.hidden_by = sight.reasons()[std::size_t(s.hidden_by)];
+  return result;
+}
+
+CellNotes cell_notes(const Cell& cell) {
+  CellNotes notes;
+  if (cell.collision != nullptr) {
+    notes.always_touching = cell.collision->always_touching();
+    notes.margin = cell.collision->margin();
+  }
+  for (const Coordinate& c : cell.model->coordinates())
+    if (const auto margin = cell.joint_margin.find(c.name); margin != cell.joint_margin.end())
+      notes.joint_margins.push_back({c.name, c.unit, margin->second});
+  return notes;
+}
+
 void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& prepared, const Settings& settings) {
   const Evaluation& first = judgement.evaluations.front();
   for (const PreparedVariant& variant : prepared.variants)
@@ -91,6 +125,8 @@ void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& c
     PlannedPose pose = pose_of(model, measured ? prepared.measured[i] : chosen[i - before]);
     pose.id = int(i) + 1;
     pose.measured = measured;
+    if (prepared.cell->sight != nullptr)
+      pose.sights = sights_of(*prepared.cell->sight, measured ? prepared.measured[i] : chosen[i - before]);
     pose.contribution = contribution[Eigen::Index(i)];
     if (!measured) {
       const int member = found.design.members[i - before];

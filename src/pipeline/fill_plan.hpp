@@ -21,6 +21,12 @@ void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& c
 /// Configuration, actuators, labels and tool pose of q.
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
 
+/// Every target of q as its station sees it.
+std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q);
+TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
+
+CellNotes cell_notes(const Cell& cell);
+
 std::string scaling_text(Scaling scaling);
 
 }  // namespace posewright

@@ -168,6 +168,7 @@ class Planning {
     plan.statistics.drawn = prepared_.configurations.drawn;
     plan.statistics.feasible = long(n);
     plan.statistics.rejected = prepared_.configurations.rejected;
+    plan.statistics.cell = cell_notes(*prepared_.cell);
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;

@@ -46,6 +46,8 @@ class LineOfSight : public Visibility {
   int violation(std::span<const double> q) const;
   /// Every target from one station, also where q belongs to another.
   std::vector<Sight> sights(std::span<const double> q, int station) const;
+  /// Whether every station looks at every pose (photogrammetry), instead of one that is chosen.
+  bool sees_from_all() const { return all_stations_; }
   /// Index of the station that q is measured from.
   int station_of(std::span<const double> q) const;
   /// Reference targets (measurement frame) from one station.

@@ -19,6 +19,15 @@ struct NamedValue {
   double value = 0.0;
 };
 
+/// A target as the instrument's station sees it from one pose.
+struct TargetSight {
+  std::string target, station;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< predicted, station frame, m
+  double distance = 0.0, azimuth = 0.0, elevation = 0.0;
+  std::optional<double> incidence;  ///< rad from the target's normal
+  std::string hidden_by;            ///< why it is not seen; empty: it is
+};
+
 struct PlannedPose {
   int id = 0;                                  ///< 1, 2, … in measuring order
   std::optional<int> candidate;                ///< zero-based index in the candidate set; none: found between them
@@ -27,6 +36,7 @@ struct PlannedPose {
   std::vector<NamedValue> actuators;           ///< of a parallel robot
   std::string load_case, station;              ///< empty where the problem has none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
+  std::vector<TargetSight> sights;             ///< where to look for the targets
   double contribution = 0.0;                   ///< share of all information, sums to 1 over the plan
   /// Efficiency of the plan without this pose relative to the plan, in [0, 1]; 0: it cannot do without.
   double without = 1.0;
@@ -81,6 +91,13 @@ struct PlanStage {
   double seconds = 0.0;
 };
 
+/// What the cell made of the constraints.
+struct CellNotes {
+  std::vector<std::string> always_touching;  ///< pairs of links that are not checked
+  double margin = 0.0;                       ///< m, largest that was added to a clearance before calibration
+  std::vector<NamedValue> joint_margins{};   ///< the same for limits
+};
+
 struct PlanStatistics {
   long drawn = 0, feasible = 0;
   std::vector<std::pair<std::string, long>> rejected;
@@ -90,6 +107,7 @@ struct PlanStatistics {
   std::optional<double> poses_on_boundary;      ///< share of poses on the boundary of the feasible set
   std::optional<double> coordinates_on_limits;  ///< share of coordinates on a limit
   std::vector<PlanStage> stages{};
+  CellNotes cell{};
 };
 
 /// Everything that is written about a plan.

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/outputs/plan.hpp"
+
+namespace posewright {
+
+/// From one stop to the next, straight from via point to via point.
+struct RouteMotion {
+  int from = 0, to = 0;                     ///< pose ids; 0: home
+  std::vector<std::vector<double>> points;  ///< both ends included, SI, in the order of Route::names
+  double seconds = 0.0;                     ///< of travel, standing still at every point
+  double change_seconds = 0.0;              ///< of moving the instrument or changing the load
+  std::string found_by;                     ///< straight, roadmap, rrt_connect or via home
+};
+
+/// Reference targets measured while the robot stands at a pose.
+struct ReferenceCheck {
+  int pose = 0;
+  std::vector<TargetSight> sights;
+};
+
+struct SkippedPose {
+  int pose = 0;
+  std::string reason;
+};
+
+/// The order of measurement and the motions between the poses.
+struct Route {
+  std::string plan_file, problem_file, problem_sha256;
+  bool problem_changed = false;  ///< the problem file is not the one the plan was made for
+  std::uint64_t seed = 0;
+  bool closed = false, from_home = false;
+  double settle = 0.0;                    ///< s, at each pose
+  std::vector<std::string> names, units;  ///< of what moves
+  std::vector<double> home;
+  std::vector<PlannedPose> poses;    ///< in measuring order, with the ids of the plan
+  std::vector<RouteMotion> motions;  ///< in order: from home (if asked), between the poses, back (if closed)
+  std::vector<ReferenceCheck> references;
+  std::vector<SkippedPose> unreachable;
+  double planned_seconds = 0.0;  ///< of the same poses in the plan's own order at least: straight motions, free or not
+  bool optimal = false;          ///< no order of these motions is shorter
+  double computing_seconds = 0.0;
+
+  double travel_seconds() const;
+  double change_seconds() const;
+};
+
+/// Schema posewright/route/1 (docs/route-file.md).
+std::string route_json(const Route& route);
+/// The table a person reads.
+std::string route_summary(const Route& route);
+/// The poses in measuring order, as poses.csv of a plan.
+std::string route_csv(const Route& route);
+
+}  // namespace posewright

@@ -1,0 +1,29 @@
+#include "packages.hpp"
+
+namespace posewright::cli {
+
+po::options_description package_options() {
+  po::options_description options("Cell");
+  options.add_options()("package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+                        "folder of package://NAME/ in the URDF (else ROS_PACKAGE_PATH, and around the URDF)");
+  return options;
+}
+
+std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values) {
+  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  if (values.count("package") == 0) return packages;
+  for (const std::string& text : values["package"].as<Words>()) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos || equal == 0 || equal + 1 == text.size())
+      throw InputError({}, "--package " + text, "NAME=DIR is expected");
+    const std::filesystem::path folder = text.substr(equal + 1);
+    std::error_code code;
+    if (!std::filesystem::is_directory(folder, code))
+      throw InputError({}, "--package " + text + ": '" + folder.string() + "' is no folder",
+                       "an existing folder is expected");
+    packages.emplace_back(text.substr(0, equal), folder);
+  }
+  return packages;
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "posewright/outputs/route.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/outputs/write_plan.hpp"
+#include "posewright/version.hpp"
+#include "sight_json.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json motion_json(const RouteMotion& motion) {
+  return {{"from", motion.from},         {"to", motion.to},
+          {"points", motion.points},     {"seconds", motion.seconds},
+          {"found_by", motion.found_by}, {"change_seconds", motion.change_seconds}};
+}
+
+Json stop_json(const PlannedPose& pose) {
+  Json values = Json::array();
+  for (const NamedValue& v : pose.configuration) values.push_back(v.value);
+  Json json = {{"id", pose.id}, {"configuration", values}};
+  json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
+  json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+  if (!pose.sights.empty()) {
+    json["targets"] = Json::array();
+    for (const TargetSight& sight : pose.sights) json["targets"].push_back(sight_json(sight));
+  }
+  return json;
+}
+
+std::string seconds_text(double seconds) {
+  return seconds < 120 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.1f} min", seconds / 60);
+}
+
+const RouteMotion* motion_to(const Route& route, int id) {
+  for (const RouteMotion& motion : route.motions)
+    if (motion.to == id) return &motion;
+  return nullptr;
+}
+
+std::string steps_table(const Route& route) {
+  using A = Table::Align;
+  Table table({"", "pose", "station", "load case", "motion", "via", "found by", "elapsed", "targets seen"},
+              {A::right, A::right, A::left, A::left, A::right, A::right, A::left, A::right, A::right});
+  double elapsed = 0;
+  for (std::size_t k = 0; k < route.poses.size(); ++k) {
+    const PlannedPose& pose = route.poses[k];
+    // A closed tour comes back to its first pose at the end only.
+    const RouteMotion* motion = k == 0 && !route.from_home ? nullptr : motion_to(route, pose.id);
+    if (motion != nullptr) elapsed += motion->seconds + motion->change_seconds;
+    const auto seen =
+        std::count_if(pose.sights.begin(), pose.sights.end(), [](const TargetSight& s) { return s.hidden_by.empty(); });
+    table.row({std::to_string(k + 1), std::to_string(pose.id), pose.station, pose.load_case,
+               motion == nullptr ? "" : seconds_text(motion->seconds),
+               motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
+               motion == nullptr ? "" : motion->found_by, seconds_text(elapsed),
+               pose.sights.empty() ? "" : fmt::format("{} of {}", seen, pose.sights.size())});
+    elapsed += route.settle;
+  }
+  return table.text();
+}
+
+std::string references_text(const Route& route) {
+  std::string text;
+  for (const ReferenceCheck& check : route.references) {
+    text += fmt::format("Reference targets at pose {}:", check.pose);
+    for (const TargetSight& s : check.sights)
+      text += fmt::format("{} {}{}", &s == &check.sights.front() ? "" : ",", s.target,
+                          s.hidden_by.empty() ? "" : " (" + s.hidden_by + ")");
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+double Route::travel_seconds() const {
+  double sum = 0;
+  for (const RouteMotion& motion : motions) sum += motion.seconds;
+  return sum;
+}
+
+double Route::change_seconds() const {
+  double sum = 0;
+  for (const RouteMotion& motion : motions) sum += motion.change_seconds;
+  return sum;
+}
+
+std::string route_json(const Route& route) {
+  Json json = {{"schema", "posewright/route/1"},
+               {"version", version},
+               {"seed", route.seed},
+               {"plan", route.plan_file},
+               {"problem", {{"file", route.problem_file}, {"sha256", route.problem_sha256}}},
+               {"problem_changed", route.problem_changed},
+               {"closed", route.closed},
+               {"from_home", route.from_home},
+               {"names", route.names},
+               {"units", route.units},
+               {"home", route.home}};
+  json["order"] = Json::array();
+  for (const PlannedPose& pose : route.poses) json["order"].push_back(pose.id);
+  json["seconds"] = {{"travel", route.travel_seconds()},
+                     {"changes", route.change_seconds()},
+                     {"settle", route.settle * double(route.poses.size())},
+                     {"planned_order_at_least", route.planned_seconds},
+                     {"optimal", route.optimal}};
+  json["poses"] = Json::array();
+  for (const PlannedPose& pose : route.poses) json["poses"].push_back(stop_json(pose));
+  json["motions"] = Json::array();
+  for (const RouteMotion& motion : route.motions) json["motions"].push_back(motion_json(motion));
+  json["references"] = Json::array();
+  for (const ReferenceCheck& check : route.references) {
+    Json sights = Json::array();
+    for (const TargetSight& s : check.sights) sights.push_back(sight_json(s));
+    json["references"].push_back({{"after_pose", check.pose}, {"targets", sights}});
+  }
+  json["unreachable"] = Json::array();
+  for (const SkippedPose& skipped : route.unreachable)
+    json["unreachable"].push_back({{"pose", skipped.pose}, {"reason", skipped.reason}});
+  return json.dump(1) + "\n";
+}
+
+std::string route_summary(const Route& route) {
+  std::string text;
+  if (route.problem_changed) text += "The problem file has changed since the plan was made.\n";
+  const double total = route.travel_seconds() + route.change_seconds();
+  text += fmt::format("{} poses in {} of motion", route.poses.size(), seconds_text(route.travel_seconds()));
+  if (route.change_seconds() > 0) text += fmt::format(" and {} of changes", seconds_text(route.change_seconds()));
+  if (route.settle > 0) text += fmt::format(", {} at rest", seconds_text(route.settle * double(route.poses.size())));
+  text += route.from_home ? ", from home" : "";
+  text += route.closed ? ", and back to the start.\n" : ".\n";
+  if (route.planned_seconds > 0)
+    text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n", seconds_text(route.planned_seconds),
+                        100 * (1 - total / route.planned_seconds),
+                        route.optimal ? "; no order of such motions is shorter" : "");
+  text += "\n" + steps_table(route) + references_text(route);
+  for (const SkippedPose& skipped : route.unreachable)
+    text += fmt::format("Pose {} is left out: {}.\n", skipped.pose, skipped.reason);
+  return text + fmt::format("Computed in {:.1f} s\n", route.computing_seconds);
+}
+
+std::string route_csv(const Route& route) {
+  Plan plan;
+  plan.poses = route.poses;
+  return poses_csv(plan);
+}
+
+}  // namespace posewright

@@ -1,0 +1,75 @@
+#include "motions.hpp"
+
+#include <algorithm>
+
+#include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
+
+namespace posewright {
+
+Motions::Motions(const MotionSpace& space, std::vector<std::vector<double>> stops, int milestones, std::uint64_t seed,
+                 int threads, const Monitor& monitor)
+    : space_(space),
+      stops_(std::move(stops)),
+      milestones_(milestones),
+      threads_(threads),
+      seed_(seed),
+      monitor_(monitor) {}
+Motions::~Motions() = default;
+
+void Motions::look_ahead(const std::vector<Pair>& pairs) {
+  std::vector<Pair> open;
+  for (const auto& [i, j] : pairs) {
+    const Pair key{std::min(i, j), std::max(i, j)};
+    if (straight_.count(key) == 0 && std::find(open.begin(), open.end(), key) == open.end()) open.push_back(key);
+  }
+  std::vector<char> free(open.size(), 0);
+  parallel_for(open.size(), thread_count(threads_), [&](std::size_t k, int) {
+    free[k] = char(!monitor_.should_stop() &&
+                   space_.is_free(stops_[std::size_t(open[k].first)], stops_[std::size_t(open[k].second)]));
+  });
+  if (monitor_.should_stop()) throw CannotDo("stopped before all motions were found");
+  for (std::size_t k = 0; k < open.size(); ++k) straight_[open[k]] = free[k] != 0;
+}
+
+Roadmap& Motions::roadmap() {
+  if (roadmap_ == nullptr) {
+    monitor_.report({"roadmap", 0, double(milestones_), {}, {}, {}});
+    roadmap_ = std::make_unique<Roadmap>(space_, milestones_, seed_);
+  }
+  return *roadmap_;
+}
+
+Motion Motions::direct(int i, int j) {
+  const auto& from = stops_[std::size_t(i)];
+  const auto& to = stops_[std::size_t(j)];
+  look_ahead({{i, j}});
+  if (straight_[{std::min(i, j), std::max(i, j)}]) return {{from, to}, space_.seconds(from, to), "straight"};
+  if (!space_.is_free(from) || !space_.is_free(to)) return {};
+  return roadmap().motion(from, to);
+}
+
+const Motion& Motions::between(int i, int j) {
+  const Pair key{std::min(i, j), std::max(i, j)};
+  auto known = found_.find(key);
+  if (known == found_.end()) {
+    Motion motion = direct(key.first, key.second);
+    if (motion.points.empty() && key.first != hub_ && key.second != hub_ && reachable(key.first) &&
+        reachable(key.second)) {
+      motion = between(key.first, hub_);
+      const Motion& rest = between(hub_, key.second);
+      motion.points.insert(motion.points.end(), rest.points.begin() + 1, rest.points.end());
+      motion.seconds += rest.seconds;
+      motion.found_by = "via home";
+    }
+    known = found_.emplace(key, std::move(motion)).first;
+    Motion back = known->second;
+    std::reverse(back.points.begin(), back.points.end());
+    turned_[key] = std::move(back);
+  }
+  return i <= j ? known->second : turned_.at(key);
+}
+
+bool Motions::reachable(int stop) { return stop == hub_ || !between(hub_, stop).points.empty(); }
+
+}  // namespace posewright

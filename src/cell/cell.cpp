@@ -12,7 +12,7 @@ namespace {
 /// An instrument does not stand in a wall. The ways out of its own body are not judged.
 void check_stations(const Problem& problem, const Cell& cell) {
   if (cell.collision == nullptr || cell.sight == nullptr || !cell.sight_is_asked) return;
-  const std::vector<double> home = home_configuration(problem, *cell.model);
+  const std::vector<double> home = home_configuration(problem, cell.model->coordinates());
   for (std::size_t s = 0; s < cell.sight->stations().size(); ++s) {
     const std::string& name = cell.sight->stations()[s];
     const std::string in = cell.collision->inside(home, cell.sight->X_MeasureStation(home, int(s)).translation(), name);
@@ -52,15 +52,15 @@ std::map<std::string, double> joint_margins(const Problem& problem, const Identi
 
 }  // namespace
 
-std::vector<double> home_configuration(const Problem& problem, const IdentificationModel& model) {
+std::vector<double> home_configuration(const Problem& problem, const std::vector<Coordinate>& coordinates) {
   std::vector<double> home;
-  for (const Coordinate& c : model.coordinates())
+  for (const Coordinate& c : coordinates)
     home.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
   for (const auto& [name, value] : problem.workspace.motion.home) {
     bool found = false;
     std::string names;
     for (std::size_t i = 0; i < home.size(); ++i) {
-      const Coordinate& c = model.coordinates()[i];
+      const Coordinate& c = coordinates[i];
       if (c.choice()) continue;
       names += (names.empty() ? "allowed: " : ", ") + c.name;
       if (c.name != name.value && c.name != name.value + ".second") continue;

@@ -22,6 +22,7 @@ Checks pose_checks(const CheckContext& context) {
   add_singularity_check(context, checks);
   add_collision_check(context, checks);
   add_sight_check(context, checks);
+  add_reachable_check(context, checks);
   return checks;
 }
 

@@ -32,5 +32,6 @@ void add_tool_check(const CheckContext& context, Checks& checks);
 void add_singularity_check(const CheckContext& context, Checks& checks);
 void add_collision_check(const CheckContext& context, Checks& checks);
 void add_sight_check(const CheckContext& context, Checks& checks);
+void add_reachable_check(const CheckContext& context, Checks& checks);
 
 }  // namespace posewright

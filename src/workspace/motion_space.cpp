@@ -79,7 +79,7 @@ class MotionSpace::Implementation {
     }
     checks = motion_checks({model, problem, all, cell.get()});
     movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem);
-    home = home_configuration(problem, model);
+    home = home_configuration(problem, all);
   }
 
   std::string violation(std::span<const double> configuration) const {

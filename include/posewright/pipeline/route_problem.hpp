@@ -14,7 +14,7 @@ struct RouteOptions {
   bool from_home = false;    ///< begins at home
   bool closed = false;       ///< ends where it began
   std::optional<int> start;  ///< pose id to begin with
-  int milestones = 300;      ///< of the roadmap, built where a straight motion is not free
+  int milestones = 200;      ///< of the roadmap, built where a straight motion is not free
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -17,6 +17,7 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
   TriangleMesh hull;
   if (failed == 0) {
     hull.vertices = mesh.vertices;
+    const Eigen::Vector3d inside(state.interior_point[0], state.interior_point[1], state.interior_point[2]);
     qhT* qh = &state;
     facetT* facet = nullptr;
     vertexT *vertex = nullptr, **vertexp = nullptr;
@@ -24,6 +25,11 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
       std::array<int, 3> triangle{};
       std::size_t k = 0;
       FOREACHvertex_(facet->vertices) if (k < 3) triangle[k++] = qh_pointid(qh, vertex->point);
+      // Qhull's facets turn either way; outward is away from a point inside.
+      const auto& v = hull.vertices;
+      const Eigen::Vector3d &a = v[std::size_t(triangle[0])], &b = v[std::size_t(triangle[1])],
+                            &c = v[std::size_t(triangle[2])];
+      if ((b - a).cross(c - a).dot(a - inside) < 0) std::swap(triangle[1], triangle[2]);
       hull.triangles.push_back(triangle);
     }
   }

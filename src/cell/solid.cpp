@@ -5,6 +5,7 @@
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
@@ -26,6 +27,13 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
   // The default tolerance overestimates distances of curved shapes by up to millimetres.
   request.gjk_solver_type = fcl::GST_LIBCCD;
   request.distance_tolerance = 1e-9;
+  // Between a mesh and a sphere that meet, FCL 0.7 leaves the distance uninitialised.
+  const std::pair<int, int> type = std::minmax({int(a.getNodeType()), int(b.getNodeType())});
+  if (type.first < fcl::GEOM_BOX && type.second == fcl::GEOM_SPHERE) {
+    fcl::CollisionRequestd touch;
+    fcl::CollisionResultd touching;
+    if (fcl::collide(&a, X_a, &b, X_b, touch, touching) > 0) return 0.0;
+  }
   // What is farther than `cap` is never looked at.
   fcl::DistanceResultd result(cap);
   fcl::distance(&a, X_a, &b, X_b, request, result);
@@ -148,11 +156,15 @@ class MeshSolid : public FclSolid {
   Eigen::Vector3d normal_of(const std::array<int, 3>& t) const {
     return (vertex(t[1]) - vertex(t[0])).cross(vertex(t[2]) - vertex(t[0]));
   }
+  /// Every edge is passed once in each direction: closed, and all triangles face the same side.
   bool is_closed() const {
     std::map<std::pair<int, int>, int> uses;
     for (const auto& t : mesh_.triangles)
-      for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax(t[k], t[(k + 1) % 3])];
-    return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second % 2 == 0; });
+      for (std::size_t k = 0; k < 3; ++k) ++uses[{t[k], t[(k + 1) % 3]}];
+    return std::all_of(uses.begin(), uses.end(), [&](const auto& use) {
+      const auto back = uses.find({use.first.second, use.first.first});
+      return back != uses.end() && back->second == use.second;
+    });
   }
 
   TriangleMesh mesh_;
@@ -176,10 +188,11 @@ double above(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_plane, cons
 }
 
 bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
-  if (b.radius() > a.radius()) return false;
   const Eigen::Vector3d c = X_a.inverse() * (X_b * b.centre());
   if ((c - a.centre()).norm() > a.radius()) return false;
-  return a.holds(b.corners().empty() ? c : Eigen::Vector3d(X_a.inverse() * (X_b * b.corners().front())));
+  // A point that is certainly of b: the middle of a convex shape, a vertex of a mesh.
+  const bool mesh = dynamic_cast<const MeshSolid*>(&b) != nullptr;
+  return a.holds(mesh ? Eigen::Vector3d(X_a.inverse() * (X_b * b.corners().front())) : c);
 }
 
 }  // namespace

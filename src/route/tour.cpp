@@ -192,7 +192,7 @@ std::vector<int> cheapest_tour(const Eigen::MatrixXd& cost, const TourOptions& o
     if (options.start == 1) std::reverse(order.begin(), order.end());
     return order;
   }
-  if (n <= exact_nodes) return by_dynamic_programming(cost, options);
+  if (options.exact && n <= exact_nodes) return by_dynamic_programming(cost, options);
   const Cycle cycle(cost, options);
   std::vector<int> best = cycle.start(by_spanning_tree(cost));
   cycle.improve(best);

@@ -1,0 +1,159 @@
+#include "tests/kit/verify_cell.hpp"
+
+#include <fcl/fcl.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace posewright {
+namespace {
+
+using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Binary STL: 80 bytes, count, then 50 bytes a triangle.
+std::vector<Eigen::Vector3d> stl_corners(const std::filesystem::path& file) {
+  const std::string bytes = bytes_of(file);
+  std::uint32_t count = 0;
+  if (bytes.size() < 84) throw std::runtime_error("no STL: " + file.string());
+  std::memcpy(&count, bytes.data() + 80, 4);
+  std::vector<Eigen::Vector3d> corners;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    float v[12];
+    std::memcpy(v, bytes.data() + 84 + 50 * std::size_t(t), 48);
+    for (int k = 1; k < 4; ++k) corners.emplace_back(v[3 * k], v[3 * k + 1], v[3 * k + 2]);
+  }
+  return corners;
+}
+
+Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.linear() =
+      Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z).toRotationMatrix();
+  X.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
+  return X;
+}
+
+}  // namespace
+
+struct CellVerifier::Implementation {
+  struct Link {
+    std::string name;
+    std::shared_ptr<Mesh> mesh;
+    std::vector<Eigen::Vector3d> corners;
+    Eigen::Isometry3d X_LinkMesh;
+  };
+  urdf::ModelInterfaceSharedPtr model;
+  std::vector<Link> links;
+  std::vector<std::pair<std::shared_ptr<fcl::Boxd>, Eigen::Isometry3d>> boxes;
+  std::vector<Wall> walls;
+  std::set<std::string> skipped;
+
+  Eigen::Isometry3d pose(const urdf::Link& link, const std::map<std::string, double>& joints) const {
+    if (link.parent_joint == nullptr) return Eigen::Isometry3d::Identity();
+    const urdf::Joint& joint = *link.parent_joint;
+    Eigen::Isometry3d X =
+        pose(*model->getLink(joint.parent_link_name), joints) * pose_of(joint.parent_to_joint_origin_transform);
+    const auto value = joints.find(joint.name);
+    const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
+    if (value == joints.end()) return X;
+    if (joint.type == urdf::Joint::PRISMATIC) X.translate(axis.normalized() * value->second);
+    else X.rotate(Eigen::AngleAxisd(value->second, axis.normalized()));
+    return X;
+  }
+
+  /// Moving joints between a link and the root: a base is where it stands.
+  int moving(const urdf::Link& link) const {
+    if (link.parent_joint == nullptr) return 0;
+    return (link.parent_joint->type == urdf::Joint::FIXED ? 0 : 1) +
+           moving(*model->getLink(link.parent_joint->parent_link_name));
+  }
+
+  bool adjacent(const Link& a, const Link& b) const {
+    for (const auto& [child, parent] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+      const auto link = model->getLink(child->name);
+      if (link->parent_joint != nullptr && link->parent_joint->parent_link_name == parent->name) return true;
+    }
+    return false;
+  }
+};
+
+CellVerifier::CellVerifier(const std::filesystem::path& urdf, const std::filesystem::path& package_root)
+    : implementation_(new Implementation) {
+  implementation_->model = urdf::parseURDF(bytes_of(urdf));
+  for (const auto& [name, link] : implementation_->model->links_) {
+    if (link->collision == nullptr) continue;
+    const auto& mesh = dynamic_cast<const urdf::Mesh&>(*link->collision->geometry);
+    Implementation::Link entry{name, std::make_shared<Mesh>(),
+                               stl_corners(package_root / mesh.filename.substr(std::strlen("package://"))),
+                               pose_of(link->collision->origin)};
+    for (auto& c : entry.corners) c = c.cwiseProduct(Eigen::Vector3d(mesh.scale.x, mesh.scale.y, mesh.scale.z));
+    entry.mesh->beginModel();
+    for (std::size_t i = 0; i < entry.corners.size(); i += 3)
+      entry.mesh->addTriangle(entry.corners[i], entry.corners[i + 1], entry.corners[i + 2]);
+    entry.mesh->endModel();
+    implementation_->links.push_back(std::move(entry));
+  }
+}
+CellVerifier::~CellVerifier() { delete implementation_; }
+
+void CellVerifier::add(const Box& box) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.translation() = Eigen::Map<const Eigen::Vector3d>(box.at);
+  implementation_->boxes.emplace_back(std::make_shared<fcl::Boxd>(box.size[0], box.size[1], box.size[2]), X);
+}
+void CellVerifier::add(const Wall& wall) { implementation_->walls.push_back(wall); }
+void CellVerifier::skip(const std::vector<std::string>& pairs) {
+  implementation_->skipped.insert(pairs.begin(), pairs.end());
+}
+
+std::string CellVerifier::violation(const std::map<std::string, double>& joints, double clearance) const {
+  const Implementation& own = *implementation_;
+  std::vector<Eigen::Isometry3d> X;
+  std::vector<int> moving;
+  for (const auto& link : own.links) {
+    X.push_back(own.pose(*own.model->getLink(link.name), joints) * link.X_LinkMesh);
+    moving.push_back(own.moving(*own.model->getLink(link.name)));
+  }
+  for (std::size_t i = 0; i < own.links.size(); ++i) {
+    if (moving[i] == 0) continue;
+    for (const Wall& wall : own.walls)
+      for (const auto& corner : own.links[i].corners)
+        if (Eigen::Map<const Eigen::Vector3d>(wall.normal)
+                .normalized()
+                .dot(X[i] * corner - Eigen::Map<const Eigen::Vector3d>(wall.at)) < clearance)
+          return own.links[i].name + " at the wall";
+    for (const auto& [box, X_box] : own.boxes) {
+      fcl::CollisionObjectd a(own.links[i].mesh, X[i]), b(box, X_box);
+      fcl::DistanceRequestd request(false);
+      request.distance_tolerance = 1e-9;
+      request.gjk_solver_type = fcl::GST_LIBCCD;
+      fcl::DistanceResultd result(clearance);  // what is farther does not matter
+      fcl::distance(&a, &b, request, result);
+      if (result.min_distance < clearance - 1e-6) return own.links[i].name + " at a box";
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string one = own.links[i].name, other = own.links[j].name;
+      if (own.adjacent(own.links[i], own.links[j]) || own.skipped.count(one + " and " + other) > 0 ||
+          own.skipped.count(other + " and " + one) > 0)
+        continue;
+      fcl::CollisionObjectd a(own.links[i].mesh, X[i]), b(own.links[j].mesh, X[j]);
+      fcl::CollisionRequestd request;
+      fcl::CollisionResultd result;
+      if (fcl::collide(&a, &b, request, result) > 0) return one + " and " + other;
+    }
+  }
+  return {};
+}
+
+}  // namespace posewright

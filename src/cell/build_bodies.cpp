@@ -1,3 +1,4 @@
+#include <array>
 #include <map>
 
 #include "mesh_file.hpp"
@@ -18,8 +19,7 @@ class Solids {
     const auto* file = std::get_if<MeshShape>(&shape);
     if (file == nullptr) return make_solid(shape, nullptr);
     const std::filesystem::path found = find_mesh(file->file, problem_, place);
-    const std::string key = found.string() + " " + std::to_string(file->scale.x()) + " " +
-                            std::to_string(file->scale.y()) + " " + std::to_string(file->scale.z());
+    const Key key{found.string(), {file->scale.x(), file->scale.y(), file->scale.z()}};
     if (const auto known = solids_.find(key); known != solids_.end()) return known->second;
     try {
       TriangleMesh mesh = read_mesh(found, file->scale, place);
@@ -34,7 +34,8 @@ class Solids {
  private:
   const Problem& problem_;
   bool hulls_;
-  std::map<std::string, std::shared_ptr<const Solid>> solids_;
+  using Key = std::pair<std::string, std::array<double, 3>>;
+  std::map<Key, std::shared_ptr<const Solid>> solids_;
 };
 
 }  // namespace

@@ -107,13 +107,14 @@ class SceneBuilder {
     }
   }
 
-  /// Links whose shapes overlap wherever the robot stands say nothing about collision. By link, not by shape; the
-  /// plain clearance decides, margins would take pairs away that do matter.
+  /// Links whose shapes overlap wherever the robot stands say nothing about collision and are left out; those that are
+  /// nearer than their clearance wherever it stands are checked for contact only.
   void drop_always_touching() {
-    std::vector<int> hits(scene_.pairs.size(), 0);
+    std::vector<int> touching(scene_.pairs.size(), 0), near(scene_.pairs.size(), 0);
     std::vector<Eigen::Isometry3d> X(std::size_t(scene_.frames->count()));
     Random random(seed, 0);
     std::vector<double> q;
+    const int misses = int(always_samples * (1 - always_share));
     for (int i = 0; i < always_samples; ++i) {
       q.clear();
       for (const Coordinate& c : model_.coordinates())
@@ -122,18 +123,25 @@ class SceneBuilder {
       for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
         const BodyPair& pair = scene_.pairs[p];
         const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
-        if (a.obstacle || b.obstacle || hits[p] < i - int(always_samples * (1 - always_share))) continue;
-        hits[p] += distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
-                            X[std::size_t(b.frame)] * b.X_FrameBody,
-                            spec_.self_clearance + motion_resolution) < spec_.self_clearance + motion_resolution;
+        if (a.obstacle || b.obstacle || near[p] < i - misses) continue;
+        const double found = distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                                      X[std::size_t(b.frame)] * b.X_FrameBody, pair.clearance);
+        near[p] += found < pair.clearance;
+        touching[p] += found <= 0;
       }
     }
-    std::set<NamePair> always;
-    for (std::size_t p = 0; p < scene_.pairs.size(); ++p)
-      if (hits[p] >= always_share * always_samples)
-        always.insert(ordered(name(scene_.pairs[p].a), name(scene_.pairs[p].b)));
+    std::set<NamePair> always, contact;
+    for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
+      const NamePair names = ordered(name(scene_.pairs[p].a), name(scene_.pairs[p].b));
+      if (touching[p] >= always_share * always_samples) always.insert(names);
+      else if (near[p] >= always_share * always_samples) {
+        contact.insert(names);
+        scene_.pairs[p].clearance = motion_resolution;
+      }
+    }
     std::erase_if(scene_.pairs, [&](const BodyPair& p) { return always.count(ordered(name(p.a), name(p.b))) > 0; });
     for (const auto& [a, b] : always) scene_.always.push_back(a + " and " + b);
+    for (const auto& [a, b] : contact) scene_.contact_only.push_back(a + " and " + b);
   }
 
   const std::string& name(int body) const { return scene_.bodies[std::size_t(body)].name; }

@@ -39,13 +39,19 @@ void check_body_stations(const Problem& problem, const Cell& cell) {
   for (const BodySpec& body : problem.workspace.collision->tool) check(body);
 }
 
+/// A pair of configurations has every coordinate twice.
+std::string first_name(const std::string& name) {
+  constexpr std::string_view second = ".second";
+  return name.ends_with(second) ? name.substr(0, name.size() - second.size()) : name;
+}
+
 std::map<std::string, double> joint_margins(const Problem& problem, const IdentificationModel& model) {
   std::map<std::string, double> margins;
   if (!(problem.workspace.uncalibrated > 0)) return margins;
   const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
   for (std::size_t c = 0; c < columns.selected.size(); ++c)
     for (const Coordinate& coordinate : model.coordinates())
-      if (model.parameters()[std::size_t(columns.selected[c])].name == coordinate.name + ".offset")
+      if (model.parameters()[std::size_t(columns.selected[c])].name == first_name(coordinate.name) + ".offset")
         margins[coordinate.name] = problem.workspace.uncalibrated * columns.parameters[c].tolerance;
   return margins;
 }
@@ -56,17 +62,22 @@ std::vector<double> home_configuration(const Problem& problem, const std::vector
   std::vector<double> home;
   for (const Coordinate& c : coordinates)
     home.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
-  for (const auto& [name, value] : problem.workspace.motion.home) {
+  for (const auto& [name, given] : problem.workspace.motion.home) {
+    const double value = given.value;
     bool found = false;
     std::string names;
     for (std::size_t i = 0; i < home.size(); ++i) {
       const Coordinate& c = coordinates[i];
       if (c.choice()) continue;
       names += (names.empty() ? "allowed: " : ", ") + c.name;
-      if (c.name != name.value && c.name != name.value + ".second") continue;
+      if (first_name(c.name) != name.value) continue;
+      if (!fits_unit(given.quantity, c.unit))
+        throw InputError(problem.at(name.line), "workspace.motion.home: '" + name.value + "' has the wrong unit",
+                         "a value in " + c.unit + " is expected");
       if (value < c.lower - 1e-9 || value > c.upper + 1e-9)
         throw InputError(problem.at(name.line),
-                         "workspace.motion.home: '" + name.value + "' is beyond the robot's limits", "");
+                         "workspace.motion.home: '" + name.value + "' is beyond the limits in force",
+                         "allowed: " + std::to_string(c.lower) + " to " + std::to_string(c.upper) + " " + c.unit);
       home[i] = std::clamp(value, c.lower, c.upper);
       found = true;
     }

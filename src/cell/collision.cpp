@@ -82,6 +82,7 @@ Collision::~Collision() = default;
 
 const std::vector<std::string>& Collision::reasons() const { return scene_->reasons; }
 const std::vector<std::string>& Collision::always_touching() const { return scene_->always; }
+const std::vector<std::string>& Collision::contact_only() const { return scene_->contact_only; }
 double Collision::margin() const { return scene_->margin; }
 std::size_t Collision::pairs() const { return scene_->pairs.size(); }
 

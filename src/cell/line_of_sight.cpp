@@ -32,6 +32,9 @@ std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const Ide
   if (sight->targets_.empty())
     throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no targets to be seen",
                      "it is for points, position, camera, and pose by photogrammetry");
+  if (sight->all_stations_ && asked->visible > 0 && asked->visible < sight->targets())
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
+                     "a pose is fitted to all its points: visible: all");
   if (asked->visible > sight->targets())
     throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
                      "there are " + std::to_string(sight->targets()) + " targets");
@@ -39,7 +42,11 @@ std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const Ide
 }
 
 LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision)
-    : spec_(problem.workspace.line_of_sight.value_or(LineOfSightSpec{})), model_(model), collision_(collision) {
+    : spec_(problem.workspace.line_of_sight.value_or(LineOfSightSpec{})),
+      model_(model),
+      // What nobody asked for is not judged: places only.
+      collision_(problem.workspace.line_of_sight ? collision : nullptr),
+      judges_(problem.workspace.line_of_sight.has_value()) {
   const auto& instrument = problem.measurement.instrument;
   std::vector<StationSpec> stations = spec_.stations;
   if (const auto* points = std::get_if<PointsMeasurement>(&instrument)) {
@@ -56,6 +63,8 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
     station_on_tip_ = camera->on_hand;
     add_board(*camera);
   }
+  const bool is_camera = std::holds_alternative<CameraMeasurement>(instrument);
+  if (!spec_.axis) spec_.axis = is_camera ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
   for (const StationSpec& station : stations) {
     station_names_.push_back(station.name);
     X_CarrierStation_.push_back(isometry(station.placement));
@@ -116,8 +125,8 @@ int LineOfSight::hidden_by(const Sight& s) const {
   if (outside(spec_.range, s.distance)) return range;
   if (outside(spec_.elevation, s.elevation)) return elevation;
   if (outside(spec_.azimuth, s.azimuth)) return azimuth;
-  if (spec_.field_of_view && std::acos(std::clamp(s.p_StationTarget.dot(spec_.axis) / std::max(s.distance, 1e-12), -1.0,
-                                                  1.0)) > *spec_.field_of_view)
+  if (spec_.field_of_view && std::acos(std::clamp(s.p_StationTarget.dot(*spec_.axis) / std::max(s.distance, 1e-12),
+                                                  -1.0, 1.0)) > *spec_.field_of_view)
     return field_of_view;
   if (s.incidence && spec_.acceptance && *s.incidence > *spec_.acceptance) return acceptance;
   return -1;

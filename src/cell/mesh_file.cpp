@@ -5,6 +5,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <cstdlib>
 
 namespace posewright {
@@ -70,9 +71,15 @@ TriangleMesh read_mesh(const fs::path& file, const Eigen::Vector3d& scale, const
   // Normals would keep the corners of triangles apart.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TEXCOORDS | aiComponent_COLORS |
                                                           aiComponent_TANGENTS_AND_BITANGENTS);
-  const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_RemoveComponent | aiProcess_Triangulate |
-                                           aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_RemoveComponent | aiProcess_Triangulate);
+  if (scene != nullptr && scene->mRootNode != nullptr && file.extension() == ".dae") {
+    // Assimp turns Collada's z-up to y-up at the root; robots' files mean what they say. Its unit is kept.
+    aiMatrix4x4& root = scene->mRootNode->mTransformation;
+    const float unit = std::hypot(root.a1, root.b1, root.c1);
+    aiMatrix4x4::Scaling(aiVector3D(unit, unit, unit), root);
+  }
+  if (scene != nullptr)
+    scene = importer.ApplyPostProcessing(aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
   if (scene == nullptr)
     throw InputError(place, "mesh '" + file.string() + "' cannot be read: " + importer.GetErrorString(), "");
   TriangleMesh mesh;

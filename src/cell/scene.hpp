@@ -41,7 +41,9 @@ struct Scene {
   std::vector<BodyPair> pairs;
   std::vector<std::string> reasons;  ///< what a pair that comes too near is called in the table of rejections
   std::vector<std::string> always;   ///< "link_1 and link_3": left out because they always touch
-  double margin = 0.0;               ///< m, largest that was added for a robot that is not calibrated yet
+  /// Checked for contact only: nearer than the clearance asked for wherever the robot stands.
+  std::vector<std::string> contact_only;
+  double margin = 0.0;  ///< m, largest that was added for a robot that is not calibrated yet
 };
 
 /// @param model  nominal one of the problem; must outlive the scene

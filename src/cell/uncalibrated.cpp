@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/support/random.hpp"
 #include "scene.hpp"
@@ -19,28 +20,51 @@ std::vector<double> random_configuration(const std::vector<Coordinate>& coordina
   return q;
 }
 
+/// The robot alone, as an instrument that reads its pose would see it: its parameters move links whatever measures
+/// them.
+std::unique_ptr<IdentificationModel> bare_robot(Problem problem) {
+  PoseMeasurement pose;
+  pose.covariance.setIdentity();
+  problem.measurement.instrument = pose;
+  problem.measurement.loaded_minus_unloaded = false;
+  VariantSpec variant = find_variant(problem, "");
+  variant.nominal.clear();  // may name the instrument's parameters
+  return make_model(problem, variant);
+}
+
 }  // namespace
 
 UncalibratedError::UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames)
     : frames_(frames), sigmas_(problem.workspace.uncalibrated) {
   if (!(sigmas_ > 0)) return;
   const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
+  const std::unique_ptr<IdentificationModel> arm = bare_robot(problem);
   Random random(seed, 0);
   Linearisation scratch;
-  for (std::size_t c = 0; c < columns.selected.size(); ++c)
-    acts_from_.push_back(frames.acts_from(model.parameters()[std::size_t(columns.selected[c])].name));
+  std::vector<int> selected;
+  std::vector<double> tolerances, of_arm;
+  for (std::size_t c = 0; c < columns.selected.size(); ++c) {
+    const std::string& name = model.parameters()[std::size_t(columns.selected[c])].name;
+    const auto& own = arm->parameters();
+    const auto found = std::find_if(own.begin(), own.end(), [&](const Parameter& p) { return p.name == name; });
+    if (found == own.end()) continue;  // the instrument's: moves no link
+    selected.push_back(int(found - own.begin()));
+    tolerances.push_back(columns.parameters[c].tolerance);
+    acts_from_.push_back(frames.acts_from(name));
+  }
   for (int i = 0; i < samples; ++i) {
     const std::vector<double> q = random_configuration(model.coordinates(), random);
     // Twists are spatial: they move a link the same way as the tip, if the parameter acts before that link.
-    if (!model.linearise(q, {}, columns.selected, scratch)) continue;
+    of_arm.clear();
+    for (const Coordinate& c : arm->coordinates())
+      for (std::size_t k = 0; k < q.size(); ++k)
+        if (model.coordinates()[k].name == c.name) of_arm.push_back(q[k]);
+    if (!arm->linearise(of_arm, {}, selected, scratch)) continue;
     poses_.emplace_back(std::size_t(frames.count()));
     frames.poses(q, 0, poses_.back());
     twists_.emplace_back();
-    for (std::size_t c = 0; c < columns.selected.size(); ++c)
-      twists_.back().push_back(
-          scratch.twists.cols() > Eigen::Index(c)
-              ? Eigen::Matrix<double, 6, 1>(scratch.twists.col(Eigen::Index(c)) * columns.parameters[c].tolerance)
-              : Eigen::Matrix<double, 6, 1>(Eigen::Matrix<double, 6, 1>::Zero()));
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      twists_.back().push_back(scratch.twists.col(Eigen::Index(c)) * tolerances[c]);
   }
 }
 

@@ -90,7 +90,7 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
           {"azimuth", sight.azimuth},
           {"elevation", sight.elevation},
           {"incidence", sight.incidence ? Json(*sight.incidence) : Json(nullptr)},
-          {"visible", sight.hidden_by.empty()},
+          {"visible", sight.judged ? Json(sight.hidden_by.empty()) : Json(nullptr)},
           {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
 }
 
@@ -100,6 +100,7 @@ Json cell_json(const CellNotes& cell) {
   Json margins = Json::object();
   for (const NamedValue& v : cell.joint_margins) margins[v.name] = v.value;
   return {{"always_touching", cell.always_touching},
+          {"contact_only", cell.contact_only},
           {"uncalibrated_margin", cell.margin},
           {"uncalibrated_joint_margins", margins}};
 }
@@ -155,7 +156,8 @@ Json statistics_json(const PlanStatistics& s) {
                                 {"efficiency", stage.efficiency ? Json(*stage.efficiency) : Json(nullptr)},
                                 {"seconds", stage.seconds}});
   }
-  if (!s.cell.always_touching.empty() || s.cell.margin > 0 || !s.cell.joint_margins.empty())
+  if (!s.cell.always_touching.empty() || !s.cell.contact_only.empty() || s.cell.margin > 0 ||
+      !s.cell.joint_margins.empty())
     json["cell"] = cell_json(s.cell);
   if (s.poses_on_boundary) json["poses_on_boundary"] = *s.poses_on_boundary;
   if (s.coordinates_on_limits) json["coordinates_on_limits"] = *s.coordinates_on_limits;

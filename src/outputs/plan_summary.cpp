@@ -160,19 +160,19 @@ std::string rejection_table(const PlanStatistics& s) {
 
 std::string cell_text(const CellNotes& cell) {
   std::string text;
-  if (!cell.always_touching.empty()) {
-    text += "Not checked, because they touch wherever the robot stands: ";
-    for (const std::string& pair : cell.always_touching)
-      text += (&pair == &cell.always_touching.front() ? "" : ", ") + pair;
-    text += "\n";
-  }
+  const auto pairs = [&](const char* lead, const std::vector<std::string>& list) {
+    for (const std::string& pair : list) text += (&pair == &list.front() ? lead : ", ") + pair;
+    if (!list.empty()) text += "\n";
+  };
+  pairs("Not checked, because they touch wherever the robot stands: ", cell.always_touching);
+  pairs("Checked for contact only, because they are never as far apart as asked for: ", cell.contact_only);
   if (cell.margin > 0)
     text +=
-        fmt::format("Clearances are up to {} wider while the robot is not calibrated", shown_value(cell.margin, "m"));
+        fmt::format("Until the robot is calibrated, clearances are up to {} wider.\n", shown_value(cell.margin, "m"));
   for (const NamedValue& v : cell.joint_margins)
-    text += fmt::format("{} {} {}", &v == &cell.joint_margins.front() ? ", limits by" : ",", v.name,
-                        shown_value(v.value, v.unit));
-  return cell.margin > 0 ? text + "\n" : text;
+    text += fmt::format("{}{} {}", &v == &cell.joint_margins.front() ? "Until then, limits are narrower by " : ", ",
+                        v.name, shown_value(v.value, v.unit));
+  return cell.joint_margins.empty() ? text : text + "\n";
 }
 
 std::string candidates_text(const Plan& plan) {

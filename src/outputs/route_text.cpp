@@ -55,11 +55,12 @@ std::string steps_table(const Route& route) {
     if (motion != nullptr) elapsed += motion->seconds + motion->change_seconds;
     const auto seen =
         std::count_if(pose.sights.begin(), pose.sights.end(), [](const TargetSight& s) { return s.hidden_by.empty(); });
-    table.row({std::to_string(k + 1), std::to_string(pose.id), pose.station, pose.load_case,
-               motion == nullptr ? "" : seconds_text(motion->seconds),
-               motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
-               motion == nullptr ? "" : motion->found_by, seconds_text(elapsed),
-               pose.sights.empty() ? "" : fmt::format("{} of {}", seen, pose.sights.size())});
+    table.row(
+        {std::to_string(k + 1), std::to_string(pose.id), pose.station, pose.load_case,
+         motion == nullptr ? "" : seconds_text(motion->seconds),
+         motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
+         motion == nullptr ? "" : motion->found_by, seconds_text(elapsed),
+         pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())});
     elapsed += route.settle;
   }
   return table.text();
@@ -136,8 +137,8 @@ std::string route_summary(const Route& route) {
   text += route.from_home ? ", from home" : "";
   text += route.closed ? ", and back to the start.\n" : ".\n";
   if (route.planned_seconds > 0)
-    text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n", seconds_text(route.planned_seconds),
-                        100 * (1 - total / route.planned_seconds),
+    text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
+                        seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
                         route.optimal ? "; no order of such motions is shorter" : "");
   text += "\n" + steps_table(route) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)

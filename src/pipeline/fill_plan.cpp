@@ -71,6 +71,7 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) 
   result.azimuth = s.azimuth;
   result.elevation = s.elevation;
   result.incidence = s.incidence;
+  result.judged = sight.judges();
   if (s.hidden_by >= 0) result.hidden_by = sight.reasons()[std::size_t(s.hidden_by)];
   return result;
 }
@@ -79,6 +80,7 @@ CellNotes cell_notes(const Cell& cell) {
   CellNotes notes;
   if (cell.collision != nullptr) {
     notes.always_touching = cell.collision->always_touching();
+    notes.contact_only = cell.collision->contact_only();
     notes.margin = cell.collision->margin();
   }
   for (const Coordinate& c : cell.model->coordinates())

@@ -70,6 +70,11 @@ const Motion& Motions::between(int i, int j) {
   return i <= j ? known->second : turned_.at(key);
 }
 
+void Motions::set_hub(int stop) {
+  hub_ = stop;
+  std::erase_if(found_, [](const auto& entry) { return entry.second.points.empty(); });
+}
+
 bool Motions::reachable(int stop) { return stop == hub_ || !between(hub_, stop).points.empty(); }
 
 }  // namespace posewright

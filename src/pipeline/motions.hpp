@@ -23,11 +23,12 @@ class Motions {
   void look_ahead(const std::vector<std::pair<int, int>>& pairs);
   /// From i to j; points are empty where there is no way, and then one of both cannot be reached from the hub.
   const Motion& between(int i, int j);
-  void set_hub(int stop) { hub_ = stop; }
+  /// Ways that were not found through another hub are looked for again.
+  void set_hub(int stop);
   /// Whether there is a motion from the hub.
   bool reachable(int stop);
-  /// Straight seconds, whether or not that motion is free: none is shorter.
-  double at_least(int i, int j) const { return space_.seconds(stops_[std::size_t(i)], stops_[std::size_t(j)]); }
+  /// Seconds that no motion between them can do without.
+  double at_least(int i, int j) const { return space_.least_seconds(stops_[std::size_t(i)], stops_[std::size_t(j)]); }
   bool known(int i, int j) const { return found_.count({std::min(i, j), std::max(i, j)}) > 0; }
 
  private:

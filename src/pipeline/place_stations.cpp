@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
 namespace {
@@ -31,27 +34,43 @@ Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
 }
 
-/// The body of the instrument stands where the instrument does.
+/// The body of the instrument stands where the instrument does. With one place it keeps its name; with several there is
+/// one at each.
 void move_bodies(Problem& problem, const std::vector<StationSpec>& before, const std::vector<StationSpec>& chosen) {
-  if (!problem.workspace.collision) return;
+  if (!problem.workspace.collision || before.empty()) return;
+  CollisionSpec& collision = *problem.workspace.collision;
   std::vector<BodySpec> bodies;
-  for (const BodySpec& body : problem.workspace.collision->obstacles) {
-    const auto own = std::find_if(before.begin(), before.end(), [&](const auto& s) { return s.name == body.station; });
-    if (body.station.empty()) bodies.push_back(body);
-    // With several stations there is one instrument that is carried on, or one a station: the first one's body is
-    // taken.
-    if (own != before.begin()) continue;
+  std::map<std::string, std::vector<std::string>> names;  // of bodies of instruments: what they are called now
+  for (const BodySpec& body : collision.obstacles) {
+    if (body.station.empty()) {
+      bodies.push_back(body);
+      continue;
+    }
+    names[body.name] = {};
+    // One instrument that is carried on, or one a station: the first one's body is taken.
+    if (body.station != before.front().name) continue;
     for (const StationSpec& station : chosen) {
       const Eigen::Isometry3d X =
-          isometry(station.placement) * isometry(own->placement).inverse() * isometry(body.placement);
+          isometry(station.placement) * isometry(before.front().placement).inverse() * isometry(body.placement);
       BodySpec moved = body;
       moved.station = station.name;
-      moved.name += " at " + station.name;
+      if (chosen.size() > 1) moved.name += " at " + station.name;
       moved.placement = {X.translation(), rpy_of(X.linear())};
+      names[body.name].push_back(moved.name);
       bodies.push_back(moved);
     }
   }
-  problem.workspace.collision->obstacles = std::move(bodies);
+  collision.obstacles = std::move(bodies);
+  for (BodySpec& part : collision.tool)
+    if (!part.station.empty()) part.station = chosen.front().name;
+  const auto ignored = std::exchange(collision.ignore, {});
+  const auto called = [&](const std::string& name) {
+    const auto now = names.find(name);
+    return now == names.end() ? std::vector<std::string>{name} : now->second;
+  };
+  for (const auto& [a, b] : ignored)
+    for (const std::string& first : called(a.value))
+      for (const std::string& second : called(b.value)) collision.ignore.push_back({{first, a.line}, {second, b.line}});
 }
 
 Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
@@ -170,13 +189,16 @@ class Ranking {
       rank.criterion_value = plan.criterion_value;
       rank.phi = determinant_ ? plan.log_det : plan.criterion_value;
       rank.rho0 = plan.rho0;
-      rank.feasible_share = double(plan.statistics.feasible) / double(plan.statistics.drawn);
-      long most = 0;
+      long most = 0, passed_over = 0;
       for (const auto& [reason, count] : plan.statistics.rejected)
-        if (count > most && reason != "passed over by the sampler") {
+        if (reason == passed_over_reason) {
+          passed_over = count;
+        } else if (count > most) {
           most = count;
           rank.main_rejection = reason;
         }
+      // What a sampler passes over is feasible.
+      rank.feasible_share = double(plan.statistics.feasible + passed_over) / double(plan.statistics.drawn);
     } catch (const CannotDo& error) {
       rank.why_not = error.what();
     } catch (const InputError& error) {

@@ -57,6 +57,8 @@ class Router {
     if (is_broken(order)) {
       keep_reachable();
       order = find_order();
+      if (is_broken(order))
+        throw CannotDo("no motion was found between poses that can both be reached; try more --milestones");
     }
     write(order);
     return std::move(route_);
@@ -122,6 +124,7 @@ class Router {
   /// connected with.
   void keep_reachable() {
     std::vector<int> hubs, best, poses = open_;
+    int best_hub = 0;
     std::erase(poses, 0);
     if (space_.is_free(space_.home())) hubs.push_back(0);
     if (!options_.from_home) hubs.insert(hubs.end(), poses.begin(), poses.end());
@@ -132,9 +135,13 @@ class Router {
         if (motions_->reachable(i)) reached.push_back(i);
         monitor_.report({"reachable poses", double(&i - poses.data()) + 1, double(poses.size()), {}, {}, {}});
       }
-      if (reached.size() > best.size()) best = reached;
+      if (reached.size() > best.size()) {
+        best = reached;
+        best_hub = hub;
+      }
       if (2 * best.size() > poses.size()) break;
     }
+    motions_->set_hub(best_hub);
     if (best.empty()) throw CannotDo("no pose can be reached from home without a collision");
     for (const int i : poses)
       if (std::find(best.begin(), best.end(), i) == best.end())

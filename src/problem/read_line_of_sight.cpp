@@ -116,7 +116,7 @@ MotionSpec read_motion(const Value& value) {
   const auto read = [&](const char* key, std::initializer_list<Quantity> quantities, Sign sign, auto& into) {
     if (const Value* found = section.find(key))
       for (const yaml::Entry& entry : Section(*found).entries())
-        into.emplace_back(entry.key, entry.value.measured(quantities, sign).value);
+        into.emplace_back(entry.key, entry.value.measured(quantities, sign));
   };
   read("velocity", {Quantity::turn_rate, Quantity::speed}, Sign::positive, motion.velocity);
   read("acceleration", {Quantity::turn_acceleration, Quantity::acceleration}, Sign::positive, motion.acceleration);

@@ -20,6 +20,7 @@ CoupledLimits read_coupled(const Value& value) {
   const yaml::Range range = read_range(section.at("range"), {Quantity::angle, Quantity::length});
   coupled.lower = range.lower;
   coupled.upper = range.upper;
+  coupled.quantity = range.quantity;
   return coupled;
 }
 
@@ -90,9 +91,11 @@ std::vector<std::pair<SamplerKind, double>> read_samplers(const Section& section
                                                               {"clearance", Kind::clearance}}};
   std::vector<std::pair<Kind, double>> samplers;
   for (const auto& [name, kind] : kinds)
-    if (const Value* share = section.find(name))
-      if (const double number = share->number(Quantity::number, Sign::not_negative); number > 0)
-        samplers.emplace_back(kind, number);
+    if (const Value* share = section.find(name)) {
+      const double number = share->number(Quantity::number, Sign::not_negative);
+      if (number > 1e6) share->fail("is too large", "shares up to 1000000 are allowed");
+      if (number > 0) samplers.emplace_back(kind, number);
+    }
   if (samplers.empty()) section.value().fail("draws nothing", "a share > 0 is needed");
   return samplers;
 }

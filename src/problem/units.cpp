@@ -69,6 +69,21 @@ double take_number(std::string_view& text, const std::string& allowed) {
 
 }  // namespace
 
+bool fits_unit(Quantity quantity, std::string_view unit) {
+  switch (quantity) {
+    case Quantity::angle:
+    case Quantity::turn_rate:
+    case Quantity::turn_acceleration:
+      return unit == "rad";
+    case Quantity::length:
+    case Quantity::speed:
+    case Quantity::acceleration:
+      return unit == "m";
+    default:
+      return true;
+  }
+}
+
 std::string allowed_units(std::initializer_list<Quantity> accepted) {
   std::string names;
   for (const Unit& unit : units)

@@ -25,6 +25,8 @@ constexpr int bisections = 30;
 constexpr int bisections_in_cell = 13;
 // Draws that one OMPL sampler makes in a row; the next ones begin afresh, so that threads can share them out.
 constexpr int ompl_run = 16;
+// Share of its draws that an OMPL sampler must yield to go on.
+constexpr double least_yield = 0.01;
 // Corners of a box of more dimensions are drawn, not enumerated.
 constexpr std::size_t max_enumerated = 10;
 constexpr std::uint64_t interior_stream = 1, boundary_stream = 2;
@@ -38,12 +40,13 @@ class Sampler {
     for (std::size_t k = 0; k < workspace.coordinates().size(); ++k)
       if (const Coordinate& c = workspace.coordinates()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
     reasons_.push_back("drawn before");
-    reasons_.push_back("passed over by the sampler");
+    reasons_.push_back(passed_over_reason);
     rejected_.assign(reasons_.size(), 0);
   }
 
   void interior(std::size_t wanted, const Monitor& monitor) {
-    LowDiscrepancy points(result_.dimension, options_.seed);
+    // A second go must not draw the same again.
+    LowDiscrepancy points(result_.dimension, result_.count() == 0 ? options_.seed : mix_bits(options_.seed + 3));
     draw(
         wanted, monitor, [&](std::size_t, std::span<double> q) { points.next(q); }, false);
   }
@@ -60,8 +63,14 @@ class Sampler {
         true);
   }
 
+  /// What samplers did not find is drawn evenly.
+  void fill_up(std::size_t count, const Monitor& monitor) {
+    if (result_.count() > 0 && result_.count() < count && has_ompl_) interior(count - result_.count(), monitor);
+  }
+
   /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
   void valid_states(SamplerKind kind, std::size_t wanted, const Monitor& monitor) {
+    has_ompl_ = true;
     const std::size_t target = result_.count() + wanted;
     const long limit = result_.drawn + long(wanted * options_.draws_per_candidate);
     constexpr std::size_t runs = 32;
@@ -70,10 +79,13 @@ class Sampler {
          first += runs) {
       parallel_for(runs, thread_count(options_.threads),
                    [&](std::size_t r, int) { batch_of_runs[r] = run(kind, first + r); });
+      const std::size_t before = result_.count();
       for (const Run& done : batch_of_runs) {
         if (result_.count() >= target) break;
         add(done, target);
       }
+      // Where little is near, a sampler that looks for obstacles finds none: the rest is drawn evenly.
+      if (double(result_.count() - before) < least_yield * runs * ompl_run) break;
       monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
     }
   }
@@ -216,7 +228,7 @@ class Sampler {
   }
 
   [[noreturn]] void fail() const {
-    const auto most = std::max_element(rejected_.begin(), rejected_.end());
+    const auto most = std::max_element(rejected_.begin(), rejected_.end() - 1);
     const double share = result_.drawn > 0 ? 100.0 * double(*most) / double(result_.drawn) : 0.0;
     throw CannotDo("no feasible configuration among " + std::to_string(result_.drawn) + " drawn: '" +
                    reasons_[std::size_t(most - rejected_.begin())] + "' rejects " +
@@ -231,6 +243,7 @@ class Sampler {
   std::vector<std::size_t> bounded_;        // coordinates with ends
   std::unordered_set<std::uint64_t> seen_;  // hashes of accepted configurations
   std::size_t anchors_ = 0;
+  bool has_ompl_ = false;
 };
 
 }  // namespace
@@ -249,6 +262,7 @@ Configurations sample_configurations(const Workspace& workspace, const SamplingO
     else if (kind == SamplerKind::boundary) sampler.boundary(wanted, monitor);
     else sampler.valid_states(kind, wanted, monitor);
   }
+  sampler.fill_up(options.count, monitor);
   return sampler.take();
 }
 

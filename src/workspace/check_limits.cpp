@@ -51,6 +51,9 @@ std::vector<double> factors_of(const CheckContext& context, const CoupledLimits&
       const Coordinate& c = context.coordinates[i];
       if (!c.choice() && !c.name.ends_with(".second")) names += (names.empty() ? "allowed: " : ", ") + c.name;
       if (c.choice() || c.name != name.value + suffix) continue;
+      if (!fits_unit(coupled.quantity, c.unit))
+        throw InputError(context.problem.at(coupled.line), "coupled limits of '" + name.value + "' have the wrong unit",
+                         "a range in " + c.unit + " is expected");
       factors[i] += factor;
       found = any = true;
     }

@@ -30,7 +30,7 @@ class ReachableCheck : public SingleCheck {
   bool holds(std::span<const double> q) const override {
     const std::vector<double> at = space_.reduced(q);
     std::vector<std::pair<double, std::size_t>> near;
-    for (std::size_t i = 0; i < milestones_.size(); ++i) near.emplace_back(space_.seconds(at, milestones_[i]), i);
+    for (std::size_t i = 0; i < milestones_.size(); ++i) near.emplace_back(space_.distance(at, milestones_[i]), i);
     const std::size_t count = std::min(tries, near.size());
     std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
     return std::any_of(near.begin(), near.begin() + std::ptrdiff_t(count),

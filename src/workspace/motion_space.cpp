@@ -19,7 +19,7 @@ constexpr int actuator_steps = 50;
 
 /// What has a speed: a coordinate of an arm, an actuator of a parallel robot.
 struct Mover {
-  std::string name;
+  std::string name, unit;
   double speed, acceleration;
 };
 
@@ -29,7 +29,7 @@ double seconds_of(double way, const Mover& mover) {
   return way > ramp ? way / mover.speed + mover.speed / mover.acceleration : 2 * std::sqrt(way / mover.acceleration);
 }
 
-void replace(const std::vector<std::pair<Located<std::string>, double>>& given, std::vector<Mover>& movers,
+void replace(const std::vector<std::pair<Located<std::string>, Measured>>& given, std::vector<Mover>& movers,
              double Mover::*value, const Problem& problem) {
   for (const auto& [name, number] : given) {
     std::string names;
@@ -37,7 +37,10 @@ void replace(const std::vector<std::pair<Located<std::string>, double>>& given, 
     for (Mover& mover : movers) {
       names += (names.empty() ? "allowed: " : ", ") + mover.name;
       if (mover.name != name.value) continue;
-      mover.*value = number;
+      if (!fits_unit(number.quantity, mover.unit))
+        throw InputError(problem.at(name.line), "the motion of '" + mover.name + "' has the wrong unit",
+                         "a value in " + mover.unit + "/s or " + mover.unit + "/s2 is expected");
+      mover.*value = number.value;
       found = true;
     }
     if (!found) throw InputError(problem.at(name.line), "'" + name.value + "' does not move by itself", names);
@@ -47,7 +50,7 @@ void replace(const std::vector<std::pair<Located<std::string>, double>>& given, 
 std::vector<Mover> movers_of(const std::vector<Coordinate>& things, const Problem& problem) {
   const MotionSpec& spec = problem.workspace.motion;
   std::vector<Mover> movers;
-  for (const Coordinate& c : things) movers.push_back({c.name, c.speed, 0.0});
+  for (const Coordinate& c : things) movers.push_back({c.name, c.unit, c.speed, 0.0});
   replace(spec.velocity, movers, &Mover::speed, problem);
   replace(spec.acceleration, movers, &Mover::acceleration, problem);
   for (Mover& mover : movers) {
@@ -94,6 +97,12 @@ class MotionSpace::Implementation {
       if (all[i].choice()) configuration[i] = all[i].values.front();
     for (std::size_t k = 0; k < moving.size(); ++k) configuration[moving[k]] = q[k];
     return configuration;
+  }
+
+  /// False where q is unreachable.
+  bool actuators(std::span<const double> q, std::vector<double>& values) const {
+    values.resize(movers.size());
+    return model.actuator_values(whole(q), values);
   }
 
   std::shared_ptr<const Cell> cell;
@@ -145,19 +154,40 @@ bool MotionSpace::is_free(std::span<const double> from, std::span<const double> 
          own.cell->collision->motion_is_free(whole(from), whole(to));
 }
 
-double MotionSpace::seconds(std::span<const double> from, std::span<const double> to) const {
+double MotionSpace::least_seconds(std::span<const double> from, std::span<const double> to) const {
   const Implementation& own = *implementation_;
   std::vector<double> a(from.begin(), from.end()), b(to.begin(), to.end());
-  if (!own.model.actuators().empty()) {
-    a.assign(own.movers.size(), 0.0);
-    b = a;
-    own.model.actuator_values(whole(from), a);
-    own.model.actuator_values(whole(to), b);
-  }
+  if (!own.model.actuators().empty() && (!own.actuators(from, a) || !own.actuators(to, b))) return 0.0;
   double slowest = 0;
   for (std::size_t i = 0; i < own.movers.size(); ++i)
     slowest = std::max(slowest, seconds_of(std::abs(b[i] - a[i]), own.movers[i]));
   return slowest;
+}
+
+double MotionSpace::seconds(std::span<const double> from, std::span<const double> to) const {
+  const Implementation& own = *implementation_;
+  if (own.model.actuators().empty()) return least_seconds(from, to);
+  // The whole way of every actuator, also where it turns back.
+  std::vector<double> way(own.movers.size(), 0.0), q(from.size()), before, now;
+  own.actuators(from, before);
+  for (int k = 1; k <= actuator_steps; ++k) {
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + k * (to[i] - from[i]) / actuator_steps;
+    if (!own.actuators(q, now)) continue;
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] += std::abs(now[i] - before[i]);
+    before = now;
+  }
+  double slowest = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) slowest = std::max(slowest, seconds_of(way[i], own.movers[i]));
+  return slowest;
+}
+
+double MotionSpace::distance(std::span<const double> from, std::span<const double> to) const {
+  const Implementation& own = *implementation_;
+  if (own.model.actuators().empty()) return least_seconds(from, to);
+  double largest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    largest = std::max(largest, std::abs(to[i] - from[i]) / (own.coordinates[i].upper - own.coordinates[i].lower));
+  return largest;
 }
 
 }  // namespace posewright

@@ -25,7 +25,7 @@ using State = ob::RealVectorStateSpace::StateType;
 constexpr int most_extensions = 4000;
 constexpr int shortcuts = 60;
 
-/// Configurations a motion's duration apart: what is near is soon reached.
+/// Configurations as far apart as MotionSpace says: what is near is soon reached.
 class TimeSpace : public ob::RealVectorStateSpace {
  public:
   explicit TimeSpace(const MotionSpace& space)
@@ -38,7 +38,7 @@ class TimeSpace : public ob::RealVectorStateSpace {
     setBounds(bounds);
   }
   double distance(const ob::State* a, const ob::State* b) const override {
-    return space_.seconds(values(a), values(b));
+    return space_.distance(values(a), values(b));
   }
   std::span<const double> values(const ob::State* state) const {
     return {state->as<StateType>()->values, std::size_t(getDimension())};

@@ -156,7 +156,8 @@ TEST(ExampleCell, HomeInCollisionIsSaidWithWhatCollides) {
   const TemporaryFolder folder;
   const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick(0), Monitor{})));
   // Stretched out over the fixture and down into it.
-  problem.workspace.motion.home = {{{"joint_a2", 1}, -0.1}, {{"joint_a3", 1}, 0.4}};
+  problem.workspace.motion.home = {{{"joint_a2", 1}, {-0.1, Quantity::angle}},
+                                   {{"joint_a3", 1}, {0.4, Quantity::angle}}};
   RouteOptions options;
   options.from_home = true;
   try {

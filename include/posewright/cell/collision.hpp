@@ -24,6 +24,8 @@ class Collision {
   const std::vector<std::string>& reasons() const;
   /// Pairs of links that touch wherever the robot stands, and are therefore not checked.
   const std::vector<std::string>& always_touching() const;
+  /// Pairs that are nearer than their clearance wherever the robot stands: checked for contact.
+  const std::vector<std::string>& contact_only() const;
   /// Largest margin (m) that was added to a clearance for a robot that is not calibrated yet.
   double margin() const;
   /// Bodies checked against each other: pairs.

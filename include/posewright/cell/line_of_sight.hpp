@@ -46,6 +46,8 @@ class LineOfSight : public Visibility {
   int violation(std::span<const double> q) const;
   /// Every target from one station, also where q belongs to another.
   std::vector<Sight> sights(std::span<const double> q, int station) const;
+  /// Whether the problem asks for line of sight; else every target counts as visible.
+  bool judges() const { return judges_; }
   /// Whether every station looks at every pose (photogrammetry), instead of one that is chosen.
   bool sees_from_all() const { return all_stations_; }
   /// Index of the station that q is measured from.
@@ -80,6 +82,7 @@ class LineOfSight : public Visibility {
   std::vector<Eigen::Isometry3d> X_CarrierStation_;
   std::vector<Target> targets_, references_;
   Eigen::Isometry3d X_CarrierTarget_ = Eigen::Isometry3d::Identity();
+  bool judges_ = false;
   bool station_on_tip_ = false, targets_on_tip_ = true, all_stations_ = false;
   int station_coordinate_ = -1;
 };

@@ -25,7 +25,8 @@ struct TargetSight {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< predicted, station frame, m
   double distance = 0.0, azimuth = 0.0, elevation = 0.0;
   std::optional<double> incidence;  ///< rad from the target's normal
-  std::string hidden_by;            ///< why it is not seen; empty: it is
+  bool judged = false;              ///< whether the problem asks for line of sight
+  std::string hidden_by;            ///< why it is not seen; empty: it is, if that was judged
 };
 
 struct PlannedPose {
@@ -94,6 +95,7 @@ struct PlanStage {
 /// What the cell made of the constraints.
 struct CellNotes {
   std::vector<std::string> always_touching;  ///< pairs of links that are not checked
+  std::vector<std::string> contact_only;     ///< pairs that are always nearer than the clearance asked for
   double margin = 0.0;                       ///< m, largest that was added to a clearance before calibration
   std::vector<NamedValue> joint_margins{};   ///< the same for limits
 };

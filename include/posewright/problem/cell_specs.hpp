@@ -59,9 +59,9 @@ struct CollisionSpec {
 struct LineOfSightSpec {
   int visible = 0;  ///< targets that must be seen; 0: all
   std::optional<std::pair<double, double>> range, elevation, azimuth;
-  std::optional<double> field_of_view;              ///< half angle of a cone about `axis`
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, station frame
-  std::optional<double> acceptance;  ///< largest angle between a target's normal and the line to the station
+  std::optional<double> field_of_view;  ///< half angle of a cone about `axis`
+  std::optional<Eigen::Vector3d> axis;  ///< unit, station frame; none: x, z of a camera
+  std::optional<double> acceptance;     ///< largest angle between a target's normal and the line to the station
   std::vector<std::pair<Located<std::string>, Eigen::Vector3d>> normals;  ///< unit, tip frame (board frame of a camera)
   double beam = 0.004;                                                    ///< m, radius that must be free
   double target_radius = 0.01905;      ///< m, about the target, where nothing hides it: a 1.5 inch reflector
@@ -75,6 +75,7 @@ struct LineOfSightSpec {
 struct CoupledLimits {
   std::vector<std::pair<Located<std::string>, double>> factors;
   double lower = 0.0, upper = 0.0;
+  Quantity quantity = Quantity::number;  ///< kind of unit written
   int line = 0;
 };
 
@@ -93,8 +94,8 @@ struct SingularitySpec {
 
 /// How the robot travels between poses.
 struct MotionSpec {
-  std::vector<std::pair<Located<std::string>, double>> velocity, acceleration;  ///< replace the robot's own; SI
-  std::vector<std::pair<Located<std::string>, double>> home;                    ///< coordinates left out are zero
+  std::vector<std::pair<Located<std::string>, Measured>> velocity, acceleration;  ///< replace the robot's own
+  std::vector<std::pair<Located<std::string>, Measured>> home;                    ///< coordinates left out are zero
   double speed = 1.0;           ///< share of the velocities that is used
   double settle = 0.0;          ///< s, standstill at each pose
   double station_change = 900;  ///< s, from one station to another

@@ -35,6 +35,9 @@ Measured parse_measured(std::string_view text, std::initializer_list<Quantity> a
 /// The same for one quantity; only a plain number passes as `Quantity::number`.
 double parse_value(std::string_view text, Quantity quantity);
 
+/// Whether a value of that quantity, or its rate, belongs to a coordinate in `unit` ("rad" or "m"); plain numbers do.
+bool fits_unit(Quantity quantity, std::string_view unit);
+
 /// Units that may be written, for messages: "m, mm, um, nm".
 std::string allowed_units(std::initializer_list<Quantity> accepted);
 

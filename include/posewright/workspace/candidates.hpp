@@ -13,6 +13,9 @@
 
 namespace posewright {
 
+/// Feasible configurations that OMPL's samplers drew on the way to what they return; told among the rejected.
+inline constexpr const char* passed_over_reason = "passed over by the sampler";
+
 /// Feasible configurations and why others were not: drawn = feasible + Σ rejected.
 struct Configurations {
   std::vector<double> values;  ///< count × dimension, one configuration after the other

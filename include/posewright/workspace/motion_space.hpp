@@ -36,6 +36,11 @@ class MotionSpace {
   /// Seconds of the straight motion from standstill to standstill: every coordinate accelerates, travels and brakes
   /// together with the slowest. Coordinates of a parallel robot are timed by its actuators.
   double seconds(std::span<const double> from, std::span<const double> to) const;
+  /// The same for the shortest conceivable motion: what moves knows both ends only.
+  double least_seconds(std::span<const double> from, std::span<const double> to) const;
+  /// A distance that shrinks on the straight way from one to the other, for planners: seconds of an arm, the largest
+  /// share of a coordinate's range for a parallel robot, whose actuators may go back and forth on the way.
+  double distance(std::span<const double> from, std::span<const double> to) const;
 
  private:
   class Implementation;

@@ -25,6 +25,7 @@ void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.name; }
 
 const std::string& arm = example::serial;
 const std::string& platform = example::six_pus;
+const std::string& cell = example::cell;
 
 class BadProblem : public testing::TestWithParam<BadFile> {};
 
@@ -154,7 +155,7 @@ const BadFile rest[] = {
     {"NuisanceIsText", arm, "[\"base.*\"]", "base", 21, "variants.geometric.nuisance is 'base'; a list of names"},
     {"ToleranceZero", arm, "0.001}", "0}", 23, "variants.geometric.tolerance.*.gear is '0'; a value > 0"},
     {"ToleranceInSeconds", arm, "0.5 mm", "0.5 s", 23,
-     "unknown unit 's'; allowed: m, mm, um, nm, rad, mrad, urad, deg"},
+     "wrong unit 's'; allowed: m, mm, um, nm, rad, mrad, urad, deg"},
     {"TolerancePatternTwice", arm, "\"*.gear\"", "\"*.x\"", 23, "duplicate key '*.x'"},
     {"JointsOfPlatform", platform, "  pose: {", "  joints: {", 21, "unknown key 'joints'; allowed: pose"},
     {"PoseOfArm", arm, "  joints:", "  pose:", 27, "unknown key 'pose'; allowed: joints"},
@@ -217,6 +218,63 @@ TEST(ReadProblem, LongAndDeepNonsenseGivesAShortMessage) {
       EXPECT_LT(std::string(error.what()).size(), 400U);
     }
   }
+}
+
+const BadFile cells[] = {
+    {"CoupledWithoutNames", cell, "sum: {j2: 1, j3: -1}", "sum: {}", 10, "is empty"},
+    {"CoupledWithoutRange", cell, ", range: [\"-90 deg\", \"60 deg\"]", "", 10, "has no key 'range'"},
+    {"ToolLimitsNothing", cell, ", z: [0, \"2 m\"]", "", 11, "limits nothing"},
+    {"ToolInDegrees", cell, "\"2 m\"", "\"2 deg\"", 11, "wrong unit"},
+    {"SingularityNegative", cell, "smallest: 0.05", "smallest: -1", 12, "> 0"},
+    {"UncalibratedNegative", cell, "uncalibrated: 3", "uncalibrated: -3", 13, ">= 0"},
+    {"SamplerUnknown", cell, "gaussian: 1", "gauss: 1", 14, "unknown key 'gauss'"},
+    {"SamplersDrawNothing", cell, "{even: 2, boundary: 1, obstacle_based: 1, gaussian: 1, clearance: 0}", "{even: 0}",
+     14, "draws nothing"},
+    {"SamplerShareTooLarge", cell, "even: 2", "even: 1e308", 14, "too large"},
+    {"SelfIsAWord", cell, "self: true", "self: maybe", 16, "allowed: true, false"},
+    {"ClearanceNegative", cell, "clearance: \"20 mm\"", "clearance: -1", 17, ">= 0"},
+    {"IgnoreOfThree", cell, "[upper, hand]", "[upper, hand, base]", 21, "3 entries"},
+    {"CylinderWithoutLength", cell, ", length: 0.2}", "}", 22, "has no key 'length'"},
+    {"BoxOfTwo", cell, "[1, 2, \"50 mm\"]", "[1, 2]", 24, "2 entries"},
+    {"PlaneWithoutDirection", cell, "plane: [0, 0, 2]", "plane: [0, 0, 0]", 25, "is zero"},
+    {"ShapeUnknown", cell, "plane: [0, 0, 2]", "cone: 1", 25, "unknown key 'cone'"},
+    {"ScaleWithoutMesh", cell, "plane: [0, 0, 2]", "plane: [0, 0, 2], scale: 2", 25, "stands without mesh"},
+    {"ScaleZero", cell, "scale: 0.001", "scale: 0", 26, "> 0"},
+    {"VisibleNone", cell, "visible: 1", "visible: 0", 28, "from 1 to"},
+    {"RangeBelowZero", cell, "[\"0.5 m\", 20]", "[-1, 20]", 29, "below zero"},
+    {"ElevationTurnedRound", cell, "[\"-60 deg\", \"77 deg\"]", "[1, -1]", 30, "empty range"},
+    {"ConeTooWide", cell, "half_angle: \"40 deg\"", "half_angle: \"200 deg\"", 32, "half turn"},
+    {"AcceptanceWithoutNormals", cell, "    normals: {P1: [0, 0, 1], \"*\": [1, 0, 0]}\n", "", 33, "without normals"},
+    {"NormalsWithoutAcceptance", cell, "    acceptance: \"30 deg\"\n", "", 33, "without acceptance"},
+    {"BeamZero", cell, "beam: \"4 mm\"", "beam: 0", 35, "> 0"},
+    {"ReferencesWithoutEvery", cell, "    every: 5\n", "", 27, "one of references, every"},
+    {"ChooseTooMany", cell, "choose: 1", "choose: 7", 40, "from 1 to 6"},
+    {"PointsWithoutRange", cell, "z: 0.5, points: [3, 2, 1]", "z: 0.5, points: [3, 2, 2]", 41, "is one place"},
+    {"PlacesTwice", cell, "choose: 1", "among: {A: [0, 0, 0]}", 41, "stands beside among"},
+    {"VelocityInMetres", cell, "\"100 deg/s\"", "\"100 mm\"", 43, "wrong unit"},
+    {"VelocityZero", cell, "\"100 deg/s\"", "0", 43, "> 0"},
+    {"SpeedMoreThanAll", cell, "speed: 0.5", "speed: 1.5", 46, "more than 1"},
+    {"SettleInMetres", cell, "\"5 s\"", "\"5 m\"", 47, "wrong unit"},
+    {"ReachableIsANumber", cell, "reachable: true", "reachable: 1", 50, "allowed: true, false"},
+};
+INSTANTIATE_TEST_SUITE_P(Cell, BadProblem, testing::ValuesIn(cells), test_name);
+
+TEST(GoodProblem, EveryKeyOfACellIsRead) {
+  const WorkspaceSpec w = parse_problem(cell, "good.yaml").workspace;
+  EXPECT_EQ(w.coupled.front().factors.back().second, -1);
+  EXPECT_EQ(w.tool->upper.z(), 2);
+  EXPECT_EQ(w.singularity->length, 0.5);
+  EXPECT_EQ(w.samplers.size(), 4U);
+  EXPECT_EQ(w.collision->obstacles.size(), 3U);
+  EXPECT_EQ(w.collision->obstacles.back().name, "obstacle 3");
+  EXPECT_EQ(w.collision->obstacles.back().station, "A");
+  EXPECT_EQ(std::get<HalfSpaceShape>(w.collision->obstacles[1].shape).normal.z(), 1);
+  EXPECT_EQ(w.line_of_sight->visible, 1);
+  EXPECT_EQ(w.line_of_sight->every, 5);
+  EXPECT_EQ(w.stations->list.size(), 6U);
+  EXPECT_EQ(w.stations->list.back().placement.position, Eigen::Vector3d(3, 1, 0.5));
+  EXPECT_DOUBLE_EQ(w.motion.station_change, 600);
+  EXPECT_TRUE(w.motion.reachable);
 }
 
 }  // namespace

@@ -70,6 +70,60 @@ workspace:
   pose: {rz: ["-6 deg", "6 deg"], x: ["-2 mm", "2 mm"], y: [-3e-3, 3e-3], z: [-0.1, 0.1], rx: [-0.1, 0.1], ry: [-0.2, 0.1]}
 )";
 
+/// Every key of a cell.
+inline const std::string cell =
+    R"(posewright: 1
+robot: {urdf: arm.urdf, base: base, tip: tip}
+measurement:
+  type: points
+  targets: {P1: [0, 0, 0.1], P2: [0, 0.1, 0]}
+  device: {type: laser_tracker, stations: {A: [3, 0, 1]}}
+variants: {all: {parameters: auto}}
+workspace:
+  joints:
+    coupled: [{sum: {j2: 1, j3: -1}, range: ["-90 deg", "60 deg"]}]
+  tool: {point: [0, 0, 0.1], z: [0, "2 m"]}
+  singularity: {smallest: 0.05, length: "500 mm"}
+  uncalibrated: 3
+  samplers: {even: 2, boundary: 1, obstacle_based: 1, gaussian: 1, clearance: 0}
+  collision:
+    self: true
+    clearance: "20 mm"
+    self_clearance: 0
+    hulls: false
+    srdf: arm.srdf
+    ignore: [[upper, hand]]
+    tool: [{name: hand, cylinder: {radius: 0.1, length: 0.2}, at: [0, 0, 0.1]}]
+    obstacles:
+      - {name: table, box: [1, 2, "50 mm"], at: [0, 0, -0.1], rpy: [0, 0, "30 deg"]}
+      - {name: floor, plane: [0, 0, 2]}
+      - {mesh: wall.stl, scale: 0.001, station: A}
+  line_of_sight:
+    visible: 1
+    range: ["0.5 m", 20]
+    elevation: ["-60 deg", "77 deg"]
+    azimuth: [-2, 2]
+    field_of_view: {axis: [0, 0, 1], half_angle: "40 deg"}
+    acceptance: "30 deg"
+    normals: {P1: [0, 0, 1], "*": [1, 0, 0]}
+    beam: "4 mm"
+    target_radius: "19 mm"
+    references: {R1: [1, 1, 0]}
+    every: 5
+  stations:
+    choose: 1
+    box: {x: [1, 3], y: [-1, 1], z: 0.5, points: [3, 2, 1]}
+  motion:
+    velocity: {j1: "100 deg/s"}
+    acceleration: {j1: "3 rad/s2"}
+    home: {j2: "-90 deg"}
+    speed: 0.5
+    settle: "5 s"
+    station_change: "10 min"
+    load_change: 60
+    reachable: true
+)";
+
 /// `text` with the first `from` replaced; an absent `from` is a mistake in the test.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);  // throws std::out_of_range

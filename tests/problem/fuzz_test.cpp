@@ -121,6 +121,7 @@ void sweep(const std::string& good, std::uint64_t seed) {
 }
 
 TEST(FuzzProblem, MutatedSerialFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::serial, 1); }
+TEST(FuzzProblem, MutatedCellFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::cell, 3); }
 TEST(FuzzProblem, MutatedSixPusFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::six_pus, 2); }
 
 }  // namespace

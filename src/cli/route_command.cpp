@@ -19,7 +19,7 @@ po::options_description options() {
       ("closed", "end where the route began")                                                //
       ("start", text("ID"), "pose to begin with")                                            //
       ("problem", text("FILE"), "problem file (the one the plan names)")                     //
-      ("milestones", text("n"), "of the roadmap for motions that cannot be straight (300)")  //
+      ("milestones", text("n"), "of the roadmap for motions that cannot be straight (200)")  //
       ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                   //
       ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                  //
       ("force", "replace files that posewright did not write")                               //
@@ -35,7 +35,7 @@ int run(const po::variables_map& values, const Words& positional) {
   route_options.from_home = values.count("from-home") > 0;
   route_options.closed = values.count("closed") > 0;
   route_options.start = whole_number(values, "start", 1, 1000000);
-  route_options.milestones = whole_number(values, "milestones", 1, 100000).value_or(300);
+  route_options.milestones = whole_number(values, "milestones", 1, 100000).value_or(200);
   route_options.seed = common.seed;
   route_options.threads = common.threads;
   if (route_options.from_home && route_options.start)

@@ -34,8 +34,7 @@ void Motions::look_ahead(const std::vector<Pair>& pairs) {
 
 Roadmap& Motions::roadmap() {
   if (roadmap_ == nullptr) {
-    monitor_.report({"roadmap", 0, double(milestones_), {}, {}, {}});
-    roadmap_ = std::make_unique<Roadmap>(space_, milestones_, seed_);
+    roadmap_ = std::make_unique<Roadmap>(space_, milestones_, seed_, monitor_);
   }
   return *roadmap_;
 }

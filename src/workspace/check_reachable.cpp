@@ -22,7 +22,8 @@ class ReachableCheck : public SingleCheck {
     const std::vector<double> home = space_.home();
     if (const std::string why = space_.violation(home); !why.empty())
       throw CannotDo("home is not free: " + why + "; set workspace: motion: home to a configuration that is");
-    Roadmap roadmap(space_, milestones, roadmap_seed);
+    const Monitor unwatched;
+    Roadmap roadmap(space_, milestones, roadmap_seed, unwatched);
     milestones_ = roadmap.connected(home);
   }
 

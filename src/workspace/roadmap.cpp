@@ -118,7 +118,8 @@ class CountedPrm : public og::PRM {
 
 class Roadmap::Implementation {
  public:
-  Implementation(const MotionSpace& motion_space, int milestones, std::uint64_t seed) : motions(motion_space) {
+  Implementation(const MotionSpace& motion_space, int milestones, std::uint64_t seed, const Monitor& monitor_in)
+      : motions(motion_space), monitor(monitor_in) {
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     ompl::RNG::setSeed(std::uint_fast32_t(mix_bits(seed) % 4294967291U) + 1);
     space = std::make_shared<TimeSpace>(motions);
@@ -138,9 +139,12 @@ class Roadmap::Implementation {
     const ob::StateSamplerPtr sampler = information->allocStateSampler();
     ob::State* state = information->allocState();
     // A cell that is nearly full is not searched for ever.
-    for (long draws = 0; int(order.size()) < milestones && draws < 200L * milestones; ++draws) {
+    for (long draws = 0; int(order.size()) < milestones && draws < 200L * milestones && !monitor.should_stop();
+         ++draws) {
       sampler->sampleUniform(state);
-      if (information->isValid(state)) order.push_back(prm->add(state));
+      if (!information->isValid(state)) continue;
+      order.push_back(prm->add(state));
+      monitor.report({"roadmap", double(order.size()), double(milestones), {}, {}, {}});
     }
     information->freeState(state);
   }
@@ -185,13 +189,14 @@ class Roadmap::Implementation {
     planner.setProblemDefinition(definition);
     planner.setup();
     int extensions = 0;
-    const ob::PlannerStatus status =
-        planner.solve(ob::PlannerTerminationCondition([&] { return ++extensions > most_extensions; }));
+    const ob::PlannerStatus status = planner.solve(
+        ob::PlannerTerminationCondition([&] { return ++extensions > most_extensions || monitor.should_stop(); }));
     if (status != ob::PlannerStatus::EXACT_SOLUTION) return {};
     return finish(*definition->getSolutionPath()->as<og::PathGeometric>(), "rrt_connect");
   }
 
   const MotionSpace& motions;
+  const Monitor& monitor;
   std::shared_ptr<TimeSpace> space;
   ob::SpaceInformationPtr information;
   std::shared_ptr<CountedPrm> prm;
@@ -199,8 +204,8 @@ class Roadmap::Implementation {
   std::vector<CountedPrm::Vertex> order;
 };
 
-Roadmap::Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed)
-    : implementation_(std::make_unique<Implementation>(space, milestones, seed)) {}
+Roadmap::Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, const Monitor& monitor)
+    : implementation_(std::make_unique<Implementation>(space, milestones, seed, monitor)) {}
 Roadmap::~Roadmap() = default;
 
 Motion Roadmap::motion(std::span<const double> from, std::span<const double> to) {

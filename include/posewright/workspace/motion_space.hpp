@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posewright/cell/cell.hpp"
+#include "posewright/support/monitor.hpp"
 
 namespace posewright {
 
@@ -58,8 +59,8 @@ struct Motion {
 /// and RRT-Connect where it does not connect. Not for several threads.
 class Roadmap {
  public:
-  /// @param space  must outlive the roadmap
-  Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed);
+  /// @param space, monitor  must outlive the roadmap; where the monitor says stop, it stays smaller and finds less
+  Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, const Monitor& monitor);
   ~Roadmap();
   Roadmap(const Roadmap&) = delete;
   Roadmap& operator=(const Roadmap&) = delete;

@@ -215,7 +215,7 @@ class Sampler {
       for (std::size_t k = 0; k < q.size(); ++k)
         trial[k] = workspace_.coordinates()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
     };
-    const int steps = workspace_.cell() == nullptr ? bisections : bisections_in_cell;
+    const int steps = workspace_.cut_by_cell() ? bisections_in_cell : bisections;
     double feasible = 0.0, infeasible = 1.0;
     for (int i = 0; i < steps; ++i) {
       const double middle = 0.5 * (feasible + infeasible);

@@ -93,10 +93,12 @@ class Workspace::Implementation {
     sampler_shares = problem.workspace.samplers;
     if (!sampler_shares.empty()) return;
     using Kind = SamplerKind;
-    const bool cut = cell != nullptr && (cell->collision != nullptr || cell->sight_is_asked);
-    if (cut) sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};
+    if (cut_by_cell())
+      sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};
     else sampler_shares = {{Kind::even, 1}, {Kind::boundary, 1}};
   }
+
+  bool cut_by_cell() const { return cell != nullptr && (cell->collision != nullptr || cell->sight_is_asked); }
 
   const IdentificationModel& model;
   std::shared_ptr<const Cell> cell;
@@ -117,6 +119,7 @@ int Workspace::violation(std::span<const double> q) const { return implementatio
 const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() const {
   return implementation_->sampler_shares;
 }
+bool Workspace::cut_by_cell() const { return implementation_->cut_by_cell(); }
 const Cell* Workspace::cell() const { return implementation_->cell.get(); }
 const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_information() const {
   return implementation_->space;

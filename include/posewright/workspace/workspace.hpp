@@ -34,6 +34,8 @@ class Workspace {
   int violation(std::span<const double> q) const;
   /// Null where there is none.
   const Cell* cell() const;
+  /// Whether collisions or sights constrain configurations: checks then cost much more.
+  bool cut_by_cell() const;
   /// Shares of the candidates that each sampler draws: the problem's, or half evenly and half on the boundary, with a
   /// part near obstacles where collisions or sights cut the space.
   const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;

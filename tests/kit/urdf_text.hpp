@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct NamedChain {
   std::vector<UrdfJoint> joints;
   int dh_deficit = 0;  ///< Denavit–Hartenberg parameters fewer than 4R + 2P + 6: where the convention is incomplete
 };
+
+inline void PrintTo(const NamedChain& chain, std::ostream* out) { *out << chain.name; }
 
 /// Kinds of arms.
 inline std::vector<NamedChain> named_chains() {

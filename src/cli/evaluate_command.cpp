@@ -6,7 +6,6 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -42,14 +41,11 @@ int run(const po::variables_map& values, const Words& positional) {
   evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
-  Problem problem = read_problem(positional[0]);
-  problem.packages = packages_of(values);
-  PoseListEvaluation result;
-  {
-    const Watch watch(common, time_limit(values));
-    result = evaluate_problem(problem, positional[1], evaluate, watch.monitor());
-    if (watch.was_interrupted()) return interrupted;
-  }
+  const Problem problem = problem_with_packages(positional[0], values);
+  const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
+    return evaluate_problem(problem, positional[1], evaluate, monitor);
+  });
+  if (was_interrupted) return interrupted;
   if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
   else fmt::print("{}", evaluation_text(result));
   return done;

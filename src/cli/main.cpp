@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "posewright/version.hpp"
+#include "session.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -102,6 +103,8 @@ int main(int count, char** arguments) {
     const int code = cli::run(cli::Words(arguments + 1, arguments + count));
     if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
     return code;
+  } catch (const cli::Interrupted&) {
+    return cli::interrupted;
   } catch (const InputError& error) {
     return complain(error.what(), cli::bad_input);
   } catch (const cli::po::error& error) {

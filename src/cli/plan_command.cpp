@@ -5,7 +5,6 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -51,8 +50,7 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
-  Problem problem = read_problem(file);
-  problem.packages = packages_of(values);
+  const Problem problem = problem_with_packages(file, values);
   std::vector<std::filesystem::path> inputs{file};
   if (!plan_options.augment.empty()) inputs.push_back(plan_options.augment);
   if (problem.design.measured) inputs.push_back(*problem.design.measured);

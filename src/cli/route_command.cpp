@@ -4,9 +4,9 @@
 #include "packages.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/pipeline/route_problem.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "posewright/support/file.hpp"
 #include "session.hpp"
+#include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -42,38 +42,17 @@ int run(const po::variables_map& values, const Words& positional) {
     throw InputError({}, "--start stands beside --from-home", "one of both is allowed");
   const std::filesystem::path given = text_of(values, "problem");
   const std::filesystem::path file = given.empty() ? problem_of_plan(plan) : given;
-  Problem problem = read_problem(file);
-  problem.packages = packages_of(values);
-  std::filesystem::path json = values.count("output") > 0 ? text_of(values, "output") : "route.json";
-  std::filesystem::path csv = text_of(values, "poses-csv");
-  std::vector<std::filesystem::path> outputs;
-  for (auto* output : {&json, &csv}) {
-    if (*output == "-") output->clear();
-    if (!output->empty()) outputs.push_back(*output);
-  }
-  check_outputs(outputs, {plan, file}, values.count("force") > 0);
-  Route route;
-  {
-    const Watch watch(common, time_limit(values));
-    try {
-      route = route_problem(problem, plan, route_options, watch.monitor());
-    } catch (const CannotDo&) {
-      if (watch.was_interrupted()) return interrupted;
-      throw;
-    }
-  }
+  const Problem problem = problem_with_packages(file, values);
+  const std::filesystem::path json = output_file(values, "output", "route.json");
+  const std::filesystem::path csv = output_file(values, "poses-csv", "-");
+  check_output_files(values, {json, csv}, {plan, file});
+  const Route route = watched(common, time_limit(values), [&](const Monitor& monitor) {
+                        return route_problem(problem, plan, route_options, monitor);
+                      }).result;
   if (!json.empty()) write_file_atomically(json, route_json(route));
   if (!csv.empty()) write_file_atomically(csv, route_csv(route));
-  if (common.json) {
-    fmt::print("{}", route_json(route));
-  } else {
-    fmt::print("{}", route_summary(route));
-    if (!outputs.empty()) {
-      std::string names;
-      for (const auto& output : outputs) names += (names.empty() ? "" : ", ") + output.string();
-      fmt::print("Written: {}\n", names);
-    }
-  }
+  if (common.json) fmt::print("{}", route_json(route));
+  else fmt::print("{}{}", route_summary(route), written_text({json, csv}));
   return done;
 }
 

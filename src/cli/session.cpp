@@ -31,7 +31,8 @@ bool is_earlier_result(const fs::path& file) {
   std::string head(64, '\0');
   in.read(head.data(), std::streamsize(head.size()));
   head.resize(std::size_t(in.gcount()));
-  return head.starts_with("pose,") || head.find("\"schema\": \"posewright/") != std::string::npos;
+  return head.starts_with("pose,") || head.starts_with("<!doctype html><!-- posewright report -->") ||
+         head.find("\"schema\": \"posewright/") != std::string::npos;
 }
 
 }  // namespace

@@ -1,0 +1,39 @@
+import { h } from './dom.js';
+import { PoseList } from './pose_list.js';
+import { watchTheme } from './theme.js';
+import { summarySection } from './sections/summary.js';
+import { posesSection } from './sections/poses.js';
+import { parametersSection } from './sections/parameters.js';
+import { accuracySection, informationSection } from './sections/plots.js';
+import { correlationSection } from './sections/correlation.js';
+import { certificateSection, searchSection } from './sections/certificate.js';
+import { reproduceSection } from './sections/reproduce.js';
+
+/** @returns {import('./types.js').Report} */
+function readReport() {
+  const report = JSON.parse(document.getElementById('report-data').textContent);
+  if (report.schema !== 'posewright/report/1') throw new Error(`schema ${report.schema}; posewright/report/1 is expected`);
+  return report;
+}
+
+/** @param {import('./types.js').Report} report */
+function build(report) {
+  document.title = `Measurement plan: ${report.title}`;
+  const list = new PoseList(report);
+  const sections = [summarySection(list), posesSection(list), parametersSection(list), accuracySection(list), informationSection(list),
+    correlationSection(list), certificateSection(report.plan), searchSection(report.plan), reproduceSection(report)].filter((s) => s !== null);
+  const titles = { summary: 'In short', poses: 'Poses', parameters: 'Parameters', accuracy: 'Accuracy', information: 'Information',
+    correlation: 'Correlation', certificate: 'Certificate', search: 'Search', reproduce: 'Repeat' };
+  document.getElementById('title').textContent = report.title;
+  document.getElementById('contents').append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])));
+  document.getElementById('page').append(...sections);
+  document.getElementById('version').textContent = `posewright ${report.version}`;
+}
+
+watchTheme();
+try {
+  build(readReport());
+} catch (error) {
+  document.getElementById('page').append(h('p', { class: 'warnings' }, `This report cannot be shown: ${error.message}.`));
+  throw error;
+}

@@ -1,0 +1,179 @@
+import {
+  DirectionalLight, GridHelper, HemisphereLight, AxesHelper, MOUSE, PerspectiveCamera, Raycaster, Scene, TOUCH, Vector2, Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { colour } from '../theme.js';
+import { Bodies } from './bodies3d.js';
+import { Skeleton } from './skeleton3d.js';
+import { directions } from './directions.js';
+import { Sights, Tips, candidateCloud } from './marks3d.js';
+
+/** The 3-D picture. Drawn only when something has changed. */
+export class Scene3d {
+  /**
+   * @param {HTMLElement} holder
+   * @param {import('./picture.js').Picture} picture
+   * @param {(id: number) => void} pick called with the pose whose tip was clicked
+   */
+  constructor(holder, picture, pick) {
+    this.picture = picture;
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.canvas = this.renderer.domElement;
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(40, 1, picture.extent.radius / 500, picture.extent.radius * 60);
+    this.camera.up.set(0, 0, 1);
+    holder.append(this.canvas);
+    this.#light();
+    this.#furnish();
+    this.#control();
+    this.#picking(pick);
+    this.look('free', picture.extent);
+    this.paint();
+  }
+
+  #light() {
+    this.scene.add(new HemisphereLight(0xffffff, 0x8a8f99, 2.2));
+    const sun = new DirectionalLight(0xffffff, 1.6);
+    sun.position.set(1, -0.8, 2);
+    this.scene.add(sun);
+  }
+
+  #furnish() {
+    const { report, extent } = this.picture;
+    const unit = this.picture.size;
+    const solid = report.bodies.some((b) => b.kind === 'robot');
+    this.bodies = new Bodies(report, extent);
+    this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.01));
+    this.tips = new Tips(this.picture.tips, unit * 0.009);
+    this.sights = new Sights(report, unit * 0.008);
+    this.scene.add(this.bodies.root, this.skeleton.root, this.tips.mesh, this.sights.root);
+    const step = this.picture.grid;
+    this.grid = new GridHelper(step * 20, 20);
+    this.grid.rotation.x = Math.PI / 2;
+    this.grid.position.set(Math.round(extent.centre[0] / step) * step, Math.round(extent.centre[1] / step) * step, this.picture.ground);
+    this.grid.material.transparent = true;
+    this.grid.material.opacity = 0.5;
+    this.scene.add(this.grid, new AxesHelper(unit * 0.12));
+  }
+
+  #control() {
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
+    this.controls.addEventListener('change', () => this.request());
+    // The wheel scrolls the page until the picture has been clicked; a finger moved up or down scrolls it, too.
+    this.controls.enableZoom = false;
+    this.canvas.style.touchAction = 'pan-y';
+    this.canvas.addEventListener('pointerdown', (event) => {
+      this.controls.enableZoom = true;
+      if (event.pointerType !== 'touch') this.canvas.focus({ preventScroll: true });
+    });
+    this.canvas.addEventListener('blur', () => (this.controls.enableZoom = false));
+    this.canvas.tabIndex = 0;
+    this.canvas.addEventListener('keydown', (event) => this.#key(event));
+  }
+
+  /** Arrows turn, plus and minus zoom. @param {KeyboardEvent} event */
+  #key(event) {
+    const turns = { ArrowLeft: [0.12, 0], ArrowRight: [-0.12, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
+    const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    if (turns[event.key]) {
+      const [around, up] = turns[event.key];
+      offset.applyAxisAngle(new Vector3(0, 0, 1), around);
+      const side = new Vector3().crossVectors(new Vector3(0, 0, 1), offset).normalize();
+      const raised = offset.clone().applyAxisAngle(side, -up);
+      if (Math.abs(raised.z) < 0.995 * raised.length()) offset.copy(raised);
+    } else if (zooms[event.key]) offset.multiplyScalar(zooms[event.key]);
+    else return;
+    event.preventDefault();
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.request();
+  }
+
+  /** @param {(id: number) => void} pick */
+  #picking(pick) {
+    let down = null;
+    this.canvas.addEventListener('pointerdown', (event) => (down = [event.clientX, event.clientY]));
+    this.canvas.addEventListener('pointerup', (event) => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5) return;
+      const box = this.canvas.getBoundingClientRect();
+      const at = new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+      const ray = new Raycaster();
+      ray.setFromCamera(at, this.camera);
+      const hit = ray.intersectObject(this.tips.mesh)[0];
+      if (hit?.instanceId !== undefined) pick(this.picture.tips[hit.instanceId].id);
+    });
+  }
+
+  /** @param {keyof typeof directions} from @param {import('./extent.js').Extent} extent */
+  look(from, extent) {
+    const centre = new Vector3(...extent.centre);
+    const distance = (1.08 * extent.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
+    this.camera.position.copy(centre).addScaledVector(new Vector3(...directions[from]).normalize(), distance);
+    this.controls.target.copy(centre);
+    this.controls.update();
+    this.request();
+  }
+
+  /** @param {import('./picture.js').Shown} shown */
+  show(shown) {
+    if (shown.drawn) {
+      this.bodies.move(shown.drawn.frames);
+      this.skeleton.move(shown.drawn.lines);
+      this.sights.move(shown.drawn.targets, shown.sights);
+    }
+    this.tips.update(shown.current, shown.on);
+    this.bodies.root.visible = shown.layers.bodies;
+    this.sights.lines.visible = shown.layers.sights;
+    if (shown.layers.candidates && !this.cloud) {
+      const { positions, sensitivity } = this.picture.report.candidates;
+      this.cloud = candidateCloud(this.picture.enlarged(positions), sensitivity);
+      this.scene.add(this.cloud);
+    }
+    if (this.cloud) this.cloud.visible = shown.layers.candidates;
+    this.request();
+  }
+
+  paint() {
+    this.renderer.setClearColor(colour('scene'));
+    for (const part of [this.bodies, this.skeleton, this.sights]) part.paint();
+    const lines = this.grid.geometry.getAttribute('color');
+    this.grid.material.vertexColors = lines === undefined;
+    this.grid.material.color.set(colour('grid'));
+    this.grid.material.needsUpdate = true;
+    this.request();
+  }
+
+  /** @param {number} width @param {number} height */
+  resize(width, height) {
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.setSize(width, height);
+    const before = Math.min(1, this.camera.aspect);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(offset, before / Math.min(1, this.camera.aspect));
+    this.draw();
+  }
+
+  request() {
+    this.waiting ??= requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    cancelAnimationFrame(this.waiting);
+    this.waiting = undefined;
+    this.renderer.render(this.scene, this.camera);
+    this.onDraw?.((p) => this.#project(p));
+  }
+
+  /** @param {number[]} p @returns {[number, number]|null} pixels from the upper left corner */
+  #project(p) {
+    const v = new Vector3(...p).project(this.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return v.z > 1 ? null : [((v.x + 1) / 2) * clientWidth, ((1 - v.y) / 2) * clientHeight];
+  }
+}

@@ -1,6 +1,7 @@
 import { h } from './dom.js';
 import { PoseList } from './pose_list.js';
 import { watchTheme } from './theme.js';
+import { percent } from './text/units.js';
 import { summarySection } from './sections/summary.js';
 import { posesSection } from './sections/poses.js';
 import { parametersSection } from './sections/parameters.js';
@@ -16,6 +17,16 @@ function readReport() {
   return report;
 }
 
+/** That the reader has changed the list, wherever on the page they are. @param {PoseList} list */
+function reminder(list) {
+  const link = h('a', { class: 'reminder', href: '#poses', hidden: true });
+  list.addEventListener('list', () => {
+    link.hidden = !list.changed;
+    link.textContent = `Your list: ${list.ids.length} of ${list.entries.length} poses, ${list.figures.identifiable ? percent(list.efficiency) : 'not identifiable'}`;
+  });
+  return link;
+}
+
 /** @param {import('./types.js').Report} report */
 function build(report) {
   document.title = `Measurement plan: ${report.title}`;
@@ -25,7 +36,7 @@ function build(report) {
   const titles = { summary: 'In short', poses: 'Poses', parameters: 'Parameters', accuracy: 'Accuracy', information: 'Information',
     correlation: 'Correlation', certificate: 'Certificate', search: 'Search', reproduce: 'Repeat' };
   document.getElementById('title').textContent = report.title;
-  document.getElementById('contents').append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])));
+  document.getElementById('contents').append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])), reminder(list));
   document.getElementById('page').append(...sections);
   document.getElementById('version').textContent = `posewright ${report.version}`;
 }

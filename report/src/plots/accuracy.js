@@ -1,4 +1,4 @@
-import { curve, dots, figure, level, logValues } from './figure.js';
+import { curve, dots, figure, level, logGrid, logValues } from './figure.js';
 import { h } from '../dom.js';
 import { number } from '../text/units.js';
 
@@ -13,7 +13,7 @@ export function testPosePlot(list) {
   const plot = figure({
     id: 'plot-test-poses', title: 'Position error at the test poses',
     caption: 'Each dot is how far off (1σ) the tip is expected to be at one test pose after calibration; the dashed line is the root mean square of all.',
-    options: { series: [{ label: 'test pose' }, dots('plan, mm', 'plan'), dots('your list, mm', 'yours', 5), level('plan, root mean square, mm', 'ink-soft')],
+    options: { series: [{ label: 'test pose' }, dots('plan, mm', 'plan'), { ...dots('your list, mm', 'yours', 5), show: false, optional: true }, level('plan, root mean square, mm', 'ink-soft')],
       scales: { x: { time: false, range: (u, low, high) => [low - 0.5, high + 0.5] }, y: { range: (u, low, high) => [0, 1.1 * high] } },
       axes: [{ label: 'test pose', incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500] }, { label: 'error, mm', size: 62 }] },
     data: data(),
@@ -40,7 +40,7 @@ export function curvePlot(list) {
     offered.map(([key, q]) => h('option', { value: key }, q.title)));
   const show = (key) => figures.forEach((f, k) => (f.hidden = offered[k][0] !== key));
   show(offered[0][0]);
-  return h('div', { class: 'choice' }, figures.length > 1 ? h('label', { class: 'pick' }, 'Show ', choice) : null, ...figures);
+  return h('div', { class: 'choice' }, h('h3', {}, 'Number of poses and ', figures.length > 1 ? choice : offered[0][1].title), ...figures);
 }
 
 /** @param {import('../pose_list.js').PoseList} list @param {string} key */
@@ -49,7 +49,7 @@ function one(list, key, quantity) {
   const grown = () => (!list.changed ? [] : list.engine.growing(list.ids).map((f, k) =>
     ({ poses: k + 1, log_det: f.logDet, rho0: f.rho0, largest_sigma_ratio: f.worst?.ratio ?? null })));
   const data = () => {
-    const parts = [prefix, searched, grown()];
+    const parts = [prefix, ...(searched.length > 0 ? [searched] : []), grown()];
     const x = [...new Set(parts.flat().map((p) => p.poses))].sort((a, b) => a - b);
     return [x, ...parts.map((part) => {
       const at = new Map(part.map((p) => [p.poses, quantity.of(p)]));
@@ -57,17 +57,18 @@ function one(list, key, quantity) {
     })];
   };
   const plot = figure({
-    id: `plot-curve-${key}`, title: `Number of poses and ${quantity.title}`,
+    id: `plot-curve-${key}`, headed: false, title: `Number of poses and ${quantity.title}`,
     caption: 'The line shows what is known after so many poses in measuring order, so what remains if you stop early'
-      + (searched.length > 0 ? '; rings are the best plans found for other numbers of poses.' : '.') + ' It begins where all parameters can be told apart.',
-    options: { series: [{ label: 'poses' }, curve('measured so far', 'plan', true), { ...dots('plans of other sizes', 'accent', 9), show: searched.length > 0 },
-      curve('your list so far', 'yours', true)],
+      + (searched.length > 0 ? '; orange dots are the best plans found for other numbers of poses.' : '.') + ' It begins where all parameters can be told apart.',
+    options: { series: [{ label: 'poses' }, curve('measured so far', 'plan', true), ...(searched.length > 0 ? [dots('plans of other sizes', 'accent', 9)] : []),
+      { ...curve('your list so far', 'yours', true), show: false, optional: true }],
       scales: { x: { time: false, range: (u, low, high) => [low - 0.5, high + 0.5] }, ...(quantity.log ? { y: { distr: 3 } } : {}) },
-      axes: [{ label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] }, { label: quantity.axis, size: 62, ...(quantity.log ? { values: logValues } : {}) }] },
+      axes: [{ label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] }, { label: quantity.axis, size: 62, ...(quantity.log ? { values: logValues, grid: logGrid } : {}) }] },
     data: data(),
     numbers: () => {
-      const [x, a, b, c] = data();
-      return { header: ['#poses', '#measured so far', '#plans of other sizes', '#your list'], rows: x.map((n, k) => [n, number(a[k]), number(b[k]), number(c[k])]) };
+      const [x, ...parts] = data();
+      return { header: ['#poses', '#measured so far', ...(searched.length > 0 ? ['#plans of other sizes'] : []), '#your list'],
+        rows: x.map((n, k) => [n, ...parts.map((part) => number(part[k]))]) };
     },
   });
   let late;

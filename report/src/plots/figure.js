@@ -1,10 +1,11 @@
 import uPlot from 'uplot';
 import { h, table } from '../dom.js';
 import { colour, onTheme } from '../theme.js';
+import { number } from '../text/units.js';
 
 /** @param {import('uplot').Axis} axis */
-const styled = (axis) => ({ stroke: () => colour('ink-soft'), font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif',
-  labelSize: 18, ...axis, grid: { stroke: () => colour('rule'), width: 1, ...axis.grid }, ticks: { stroke: () => colour('rule'), width: 1 } });
+const styled = (axis, k) => ({ stroke: () => colour('ink-soft'), font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif',
+  labelSize: 18, ...(k === 0 ? { size: 30 } : {}), ...axis, grid: { stroke: () => colour('rule'), width: 1, ...axis.grid }, ticks: { stroke: () => colour('rule'), width: 1 } });
 
 /** Bars from zero. @param {string} label @param {string} tint @param {number} width share of the room */
 export const bars = (label, tint, width = 0.7) => ({ label, fill: () => colour(tint), stroke: () => colour(tint), width: 0,
@@ -21,18 +22,23 @@ export const curve = (label, tint, marked = false) => ({ label, stroke: () => co
 /** A level to compare with. @param {string} label @param {string} tint */
 export const level = (label, tint) => ({ label, stroke: () => colour(tint), width: 1.5, dash: [6, 4], points: { show: false } });
 
+/** What the legend shows under the pointer. */
+const shownValue = (plot, value) => (value === null || value === undefined ? '' : number(value));
+
 /**
  * A plot with a caption that says how to read it, and its numbers as a table.
  * @param {object} what
  * @param {string} what.id
  * @param {string} what.title
+ * @param {boolean} [what.headed] false: the title stands elsewhere
  * @param {string} what.caption
  * @param {any} what.options of uPlot: series, axes, scales
  * @param {any[]} what.data
  * @param {() => {header: string[], rows: any[][]}} what.numbers made when asked for
  */
-export function figure({ id, title, caption, options, data, numbers }) {
+export function figure({ id, title, headed = true, caption, options, data, numbers }) {
   const holder = h('div', { class: 'plot' });
+  const series = options.series.map((s) => ({ value: shownValue, ...s }));
   const details = h('details', { class: 'numbers' }, h('summary', {}, 'Numbers'));
   const fillNumbers = () => {
     const { header, rows } = numbers();
@@ -40,9 +46,9 @@ export function figure({ id, title, caption, options, data, numbers }) {
       rows.length > 60 ? h('p', { class: 'note' }, `The first 60 of ${rows.length.toLocaleString('en')}.`) : '');
   };
   details.addEventListener('toggle', () => details.open && fillNumbers());
-  const element = h('figure', { id, class: 'figure' }, h('h3', {}, title), holder, h('figcaption', {}, caption), details);
+  const element = h('figure', { id, class: 'figure' }, headed ? h('h3', {}, title) : null, holder, h('figcaption', {}, caption), details);
   const plot = new uPlot({ width: 520, height: 260, cursor: { drag: { x: false, y: false }, y: false }, ...options,
-    axes: options.axes.map(styled) }, data, holder);
+    series, axes: options.axes.map(styled) }, data, holder);
   plot.root.setAttribute('role', 'img');
   plot.root.setAttribute('aria-label', `${title}. ${caption}`);
   const fit = () => holder.clientWidth > 0 && plot.setSize({ width: Math.floor(holder.clientWidth), height: 260 });
@@ -51,13 +57,18 @@ export function figure({ id, title, caption, options, data, numbers }) {
   element.plot = plot;
   return { element, setData: (changed) => {
     plot.setData(changed);
+    series.forEach((s, k) => s.optional && plot.setSeries(k, { show: changed[k].some((v) => v !== null) }));
     if (details.open) fillNumbers();
   } };
 }
 
+const isDecade = (v) => v !== null && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
+
+/** Lines at powers of ten alone, where there are several. */
+export const logGrid = { filter: (plot, splits) => (splits.filter(isDecade).length < 2 ? splits : splits.map((v) => (isDecade(v) ? v : null))) };
+
 /** Numbers on a logarithmic axis: powers of ten alone, unless there is hardly one. */
 export const logValues = (plot, splits) => {
-  const decades = splits.filter((v) => v !== null && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9);
-  return splits.map((v) => (v === null ? '' : decades.length < 2 || Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9
-    ? String(Number(v.toPrecision(3))) : ''));
+  const decades = splits.filter(isDecade);
+  return splits.map((v) => (v === null ? '' : decades.length < 2 || isDecade(v) ? String(Number(v.toPrecision(3))) : ''));
 };

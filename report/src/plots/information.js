@@ -1,4 +1,4 @@
-import { bars, curve, dots, figure, level, logValues } from './figure.js';
+import { bars, curve, dots, figure, level, logGrid, logValues } from './figure.js';
 import { number, percent } from '../text/units.js';
 
 const wholeNumbers = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000];
@@ -14,7 +14,7 @@ export function spectrumPlot(report) {
     caption: 'Each dot is one independent combination of parameters: at 100 its σ is a hundredth of the tolerance; below the dashed line at 1 measuring tells less than the tolerance did.',
     options: { series: [{ label: 'combination' }, dots('tolerance / σ', 'plan'), level('as good as the tolerance', 'ink-soft')],
       scales: { x: { time: false, range: around }, y: { distr: 3 } },
-      axes: [{ label: 'combination, best known first', incrs: wholeNumbers }, { label: 'tolerance / σ (singular value)', size: 66, values: logValues }] },
+      axes: [{ label: 'combination, best known first', incrs: wholeNumbers }, { label: 'tolerance / σ (singular value)', size: 66, values: logValues, grid: logGrid }] },
     data: [x, values.map((v) => (v > 0 ? v : null)), x.map(() => 1)],
     numbers: () => ({ header: ['#combination', '#tolerance / σ'], rows: values.map((v, k) => [k + 1, number(v)]) }),
   }).element;

@@ -9,7 +9,7 @@ export function certificateSection(plan) {
   if (c) {
     facts.push(['at least this share of the best', percentDown(c.efficiency)], ['bound that no plan of these candidates exceeds', number(c.bound, 8)],
       ['candidates', c.count.toLocaleString('en') + (c.found > 0 ? `, ${c.found} of them found by searches beyond those drawn` : '')],
-      ['how near the bound is to the least possible one', `largest sensitivity ${number(c.max_sensitivity_ratio, 8)} (1 is exact)`]);
+      ['largest sensitivity at the bound (1: there is no tighter one)', number(c.max_sensitivity_ratio, 8)]);
     if (say.isDeterminant(plan)) facts.push(['log det of the plan, in SI units', number(plan.criterion.log_det, 8)]);
   }
   const space = w ? [['share of the best, as far as the search saw', percentDown(w.efficiency)], ['bound', number(w.bound, 8)], ['largest sensitivity found', number(w.max_sensitivity_ratio, 6)], ['method', w.method]] : [];
@@ -43,6 +43,9 @@ function indices(plan) {
     table(['index', '#value', 'meaning'], rows.map(([title, value, meaning]) => [title, number(value), meaning]), 'Observability indices'));
 }
 
+/** @param {number} part */
+const share = (part) => (part > 0 && part < 5e-4 ? '< 0.1 %' : percent(part));
+
 /** @param {any} plan */
 export function searchSection(plan) {
   const s = plan.statistics;
@@ -55,7 +58,7 @@ export function searchSection(plan) {
     h('div', { class: 'split' },
       h('div', {}, h('h3', {}, 'Where candidates were lost'),
         rejected.length === 0 ? h('p', {}, 'None was rejected.')
-          : table(['rejected because', '#draws', '#share'], rejected.map(([reason, count]) => [reason, count.toLocaleString('en'), percent(count / s.candidates_drawn)]), 'Rejected candidates'),
+          : table(['rejected because', '#draws', '#share'], rejected.map(([reason, count]) => [reason, count.toLocaleString('en'), share(count / s.candidates_drawn)]), 'Rejected candidates'),
         cell(s.cell)),
       h('div', {}, h('h3', {}, 'Search'), list(facts), stages(s.stages))));
 }

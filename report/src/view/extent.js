@@ -26,7 +26,7 @@ function corners(shape) {
 }
 
 /** @param {number[]} low @param {number[]} high */
-const boxCorners = (low, high) =>
+export const boxCorners = (low, high) =>
   Array.from({ length: 8 }, (_, k) => [k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]]);
 
 /** @param {number[]} x placement @param {number[]} p */

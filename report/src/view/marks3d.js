@@ -6,20 +6,22 @@ import { colour, viridisAt } from '../theme.js';
 
 /** The tip at every pose of the plan; the pose shown is larger, poses that are ticked off are pale. */
 export class Tips {
-  /** @param {{id: number, position: number[]}[]} tips @param {number} radius m */
-  constructor(tips, radius) {
-    this.tips = tips;
-    this.radius = radius;
-    this.mesh = new InstancedMesh(new SphereGeometry(1, 18, 12), new MeshBasicMaterial(), Math.max(1, tips.length));
+  /** @param {import('./picture.js').Picture} picture */
+  constructor(picture) {
+    this.picture = picture;
+    this.mesh = new InstancedMesh(new SphereGeometry(1, 18, 12), new MeshBasicMaterial(), Math.max(1, picture.tips.length));
     this.mesh.frustumCulled = false;
-    this.mesh.count = tips.length;
+    this.mesh.renderOrder = 2;
+    this.mesh.material.transparent = true;
+    this.mesh.count = picture.tips.length;
   }
 
   /** @param {number|null} current @param {Set<number>} on */
   update(current, on) {
     const matrix = new Matrix4();
-    this.tips.forEach((tip, k) => {
-      const size = this.radius * (tip.id === current ? 1.9 : 1);
+    const { tips, dot } = this.picture;
+    tips.forEach((tip, k) => {
+      const size = dot * (tip.id === current ? 1.9 : 1);
       this.mesh.setMatrixAt(k, matrix.makeScale(size, size, size).setPosition(new Vector3(...tip.position)));
       this.mesh.setColorAt(k, new Color(colour(tip.id === current ? 'now' : on.has(tip.id) ? 'tip' : 'off')));
     });
@@ -52,7 +54,7 @@ export function candidateCloud(positions, sensitivity) {
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
   geometry.setAttribute('color', new BufferAttribute(colours, 3));
   return new Points(geometry, new PointsMaterial({
-    size: 5, sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5, transparent: true, opacity: 0.85,
+    size: 4, sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5, transparent: true, opacity: 0.7,
   }));
 }
 

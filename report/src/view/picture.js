@@ -31,7 +31,7 @@ export class Picture {
     if (this.stops.length < 2) return 1;
     const moving = tipExtent(this.stops).radius, all = sceneExtent(this.report).radius;
     if (!(moving > 0) || moving > smallMovement * all) return 1;
-    const wanted = (2 * smallMovement * all) / moving;
+    const wanted = (3 * smallMovement * all) / moving;
     const decade = 10 ** Math.floor(Math.log10(wanted));
     return Math.max(1, ([5, 2, 1].find((d) => d * decade <= wanted) ?? 1) * decade);
   }
@@ -69,6 +69,11 @@ export class Picture {
     if (this.factor === 1 || !this.rest) return flat;
     const rest = this.rest.tip;
     return flat.map((value, k) => rest[k % 3] + this.factor * (value - rest[k % 3]));
+  }
+
+  /** Radius of a tip's dot: small beside the robot, and beside the cloud of them. */
+  get dot() {
+    return Math.min(0.009 * this.size, this.tipExtent.radius / 14);
   }
 
   /** Tips of the poses, as they are drawn. */

@@ -4,9 +4,11 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { colour } from '../theme.js';
+import { quantity } from '../text/units.js';
 import { Bodies } from './bodies3d.js';
 import { Skeleton } from './skeleton3d.js';
 import { directions } from './directions.js';
+import { boxCorners } from './extent.js';
 import { Sights, Tips, candidateCloud } from './marks3d.js';
 
 /** The 3-D picture. Drawn only when something has changed. */
@@ -23,6 +25,7 @@ export class Scene3d {
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(40, 1, picture.extent.radius / 500, picture.extent.radius * 60);
     this.camera.up.set(0, 0, 1);
+    this.legend = `axes: x red, y green, z blue; grid ${quantity(picture.grid, 'm')}`;
     holder.append(this.canvas);
     this.#light();
     this.#furnish();
@@ -44,8 +47,8 @@ export class Scene3d {
     const unit = this.picture.size;
     const solid = report.bodies.some((b) => b.kind === 'robot');
     this.bodies = new Bodies(report, extent);
-    this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.01));
-    this.tips = new Tips(this.picture.tips, unit * 0.009);
+    this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.008));
+    this.tips = new Tips(this.picture);
     this.sights = new Sights(report, unit * 0.008);
     this.scene.add(this.bodies.root, this.skeleton.root, this.tips.mesh, this.sights.root);
     const step = this.picture.grid;
@@ -69,6 +72,7 @@ export class Scene3d {
       this.controls.enableZoom = true;
       if (event.pointerType !== 'touch') this.canvas.focus({ preventScroll: true });
     });
+    this.controls.addEventListener('start', () => (this.turned = true));
     this.canvas.addEventListener('blur', () => (this.controls.enableZoom = false));
     this.canvas.tabIndex = 0;
     this.canvas.addEventListener('keydown', (event) => this.#key(event));
@@ -110,9 +114,21 @@ export class Scene3d {
 
   /** @param {keyof typeof directions} from @param {import('./extent.js').Extent} extent */
   look(from, extent) {
+    this.looking = { from, extent };
     const centre = new Vector3(...extent.centre);
-    const distance = (1.08 * extent.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
-    this.camera.position.copy(centre).addScaledVector(new Vector3(...directions[from]).normalize(), distance);
+    const direction = new Vector3(...directions[from]).normalize();
+    const corners = boxCorners(extent.low, extent.high).map((p) => new Vector3(...p));
+    const inside = (distance) => {
+      this.camera.position.copy(centre).addScaledVector(direction, distance);
+      this.camera.lookAt(centre);
+      this.camera.updateMatrixWorld();
+      return corners.every((corner) => {
+        const p = corner.clone().project(this.camera);
+        return p.z < 1 && Math.max(Math.abs(p.x), Math.abs(p.y)) < 0.93;
+      });
+    };
+    let distance = 1.1 * extent.radius;
+    while (!inside(distance) && distance < 50 * extent.radius) distance *= 1.05;
     this.controls.target.copy(centre);
     this.controls.update();
     this.request();
@@ -128,12 +144,16 @@ export class Scene3d {
     this.tips.update(shown.current, shown.on);
     this.bodies.root.visible = shown.layers.bodies;
     this.sights.lines.visible = shown.layers.sights;
-    if (shown.layers.candidates && !this.cloud) {
+    if (shown.layers.candidates && this.cloudFactor !== this.picture.factor) {
+      this.scene.remove(...(this.cloud ? [this.cloud] : []));
+      this.cloudFactor = this.picture.factor;
       const { positions, sensitivity } = this.picture.report.candidates;
       this.cloud = candidateCloud(this.picture.enlarged(positions), sensitivity);
       this.scene.add(this.cloud);
     }
     if (this.cloud) this.cloud.visible = shown.layers.candidates;
+    // Among thousands of candidates the poses chosen would not be seen.
+    this.tips.mesh.material.depthTest = !shown.layers.candidates;
     this.request();
   }
 
@@ -151,11 +171,9 @@ export class Scene3d {
   resize(width, height) {
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.setSize(width, height);
-    const before = Math.min(1, this.camera.aspect);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    this.camera.position.copy(this.controls.target).addScaledVector(offset, before / Math.min(1, this.camera.aspect));
+    if (!this.turned) this.look(this.looking.from, this.looking.extent);
     this.draw();
   }
 

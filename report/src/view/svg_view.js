@@ -1,5 +1,5 @@
 import { svg } from '../dom.js';
-import { bodyCorners } from './extent.js';
+import { bodyCorners, boxCorners } from './extent.js';
 import { directions } from './directions.js';
 
 const boxEdges = [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
@@ -14,6 +14,7 @@ export class SvgView {
     this.pick = pick;
     this.canvas = svg('svg', { class: 'wire', tabindex: 0 });
     holder.append(this.canvas);
+    this.legend = '';
     [this.width, this.height] = [600, 400];
     this.canvas.addEventListener('keydown', (event) => this.#key(event));
     this.canvas.addEventListener('pointermove', (event) => event.buttons === 1 && this.#turn(-event.movementX, event.movementY));
@@ -24,7 +25,7 @@ export class SvgView {
   #key(event) {
     const turns = { ArrowLeft: [12, 0], ArrowRight: [-12, 0], ArrowUp: [0, 10], ArrowDown: [0, -10] };
     const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
-    if (zooms[event.key]) this.extent = { ...this.extent, radius: this.extent.radius * zooms[event.key] };
+    if (zooms[event.key]) this.span = this.span.map((s) => s * zooms[event.key]);
     else if (!turns[event.key]) return;
     event.preventDefault();
     this.#turn(...(turns[event.key] ?? [0, 0]));
@@ -42,7 +43,9 @@ export class SvgView {
     const [x, y, z] = directions[from];
     this.azimuth = Math.atan2(y, x);
     this.elevation = Math.atan2(z, Math.hypot(x, y));
-    this.extent = extent;
+    this.centre = extent.centre;
+    const corners = boxCorners(extent.low, extent.high).map((p) => this.#turned(p));
+    this.span = [0, 1].map((k) => 2.2 * Math.max(1e-9, ...corners.map((p) => Math.abs(p[k]))));
     this.draw();
   }
 
@@ -61,13 +64,17 @@ export class SvgView {
     this.draw();
   }
 
-  /** @param {number[]} p @returns {[number, number]} */
-  #project(p) {
-    const [x, y, z] = p.map((v, k) => v - this.extent.centre[k]);
+  /** To the right and upwards, m from the middle. @param {number[]} p @returns {[number, number]} */
+  #turned(p) {
+    const [x, y, z] = p.map((v, k) => v - this.centre[k]);
     const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
-    const scale = Math.min(this.width, this.height) / (2.1 * this.extent.radius);
-    const right = -sa * x + ca * y;
-    const up = -se * (ca * x + sa * y) + ce * z;
+    return [-sa * x + ca * y, -se * (ca * x + sa * y) + ce * z];
+  }
+
+  /** @param {number[]} p @returns {[number, number]} pixels */
+  #project(p) {
+    const scale = Math.min(this.width / this.span[0], this.height / this.span[1]);
+    const [right, up] = this.#turned(p);
     return [this.width / 2 + scale * right, this.height / 2 - scale * up];
   }
 

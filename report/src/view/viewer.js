@@ -1,6 +1,6 @@
 import { h } from '../dom.js';
 import { onTheme } from '../theme.js';
-import { duration, number, quantity } from '../text/units.js';
+import { duration, number } from '../text/units.js';
 import { Picture } from './picture.js';
 import { Player } from './player.js';
 import { SvgView } from './svg_view.js';
@@ -9,14 +9,10 @@ import { poseCard } from './pose_card.js';
 import { layerBoxes, lookButtons } from './viewer_controls.js';
 import { Scene3d } from './scene3d.js';
 
-/** @param {HTMLElement} holder @param {Picture} picture @param {(id: number) => void} pick */
-function makeView(holder, picture, pick) {
-  try {
-    return { view: new Scene3d(holder, picture, pick), solid: true };
-  } catch {
-    holder.replaceChildren();
-    return { view: new SvgView(holder, picture, pick), solid: false };
-  }
+function hasWebGl() {
+  const context = document.createElement('canvas').getContext('webgl2');
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return context !== null;
 }
 
 /**
@@ -30,7 +26,9 @@ export function viewer(list) {
   const layers = { bodies: true, sights: true, candidates: false };
   const holder = h('div', { class: 'view' });
   const labels = h('div', { class: 'labels', 'aria-hidden': 'true' });
-  const { view, solid } = makeView(holder, picture, (id) => player.goTo(id) || list.show(id));
+  const pick = (id) => player.goTo(id) || list.show(id);
+  const solid = hasWebGl();
+  const view = solid ? new Scene3d(holder, picture, pick) : new SvgView(holder, picture, pick);
   holder.append(labels);
   view.canvas.setAttribute('role', 'img');
   view.canvas.setAttribute('aria-label', 'Robot and its surroundings at the pose shown. Arrow keys turn the picture, plus and minus zoom.');
@@ -63,14 +61,14 @@ export function viewer(list) {
   list.addEventListener('list', () => player.rebuild());
   list.addEventListener('current', show);
   onTheme(() => (view.paint(), show()));
-  view.onDraw = (project) => placeLabels(labels, picture, player, list, project);
+  view.onDraw = (project) => placeLabels(labels, picture, list, view.legend, project);
   new ResizeObserver(() => holder.clientWidth > 0 && view.resize(holder.clientWidth, holder.clientHeight)).observe(holder);
 
   const element = h('div', { class: 'viewer' },
     holder,
     h('div', { class: 'player' },
-      h('button', { onclick: () => player.step(-1), 'aria-label': 'Previous pose' }, '⏮\uFE0E'), play,
-      h('button', { onclick: () => player.step(1), 'aria-label': 'Next pose' }, '⏭\uFE0E'), slider),
+      h('button', { onclick: () => player.step(-1), 'aria-label': 'Previous pose' }, '‹ Back'), play,
+      h('button', { onclick: () => player.step(1), 'aria-label': 'Next pose' }, 'Next ›'), slider),
     h('div', { class: 'tools' }, lookButtons(view, picture), layerBoxes(report, layers, show)),
     picture.possibleFactor > 1 ? enlarger(picture, view, show) : null,
     solid ? null : h('p', { class: 'note' }, 'This browser has no WebGL, so the picture is drawn in lines; bodies appear as boxes.'),
@@ -99,7 +97,6 @@ function stopText(player) {
 function enlarger(picture, view, show) {
   const set = (on) => {
     picture.enlarge(on ? picture.possibleFactor : 1);
-    view.refit?.();
     show();
   };
   set(true);
@@ -109,16 +106,15 @@ function enlarger(picture, view, show) {
 }
 
 /** Names of stations, and the number of the pose beside the tip. */
-function placeLabels(labels, picture, player, list, project) {
+function placeLabels(labels, picture, list, legend, project) {
   const wanted = picture.report.stations.map((s) => ({ text: `station ${s.name}`, at: s.placement.slice(0, 3), name: '' }));
   const tip = picture.tips.find((t) => t.id === list.current);
   if (tip) wanted.push({ text: `pose ${tip.id}`, at: tip.position, name: 'current' });
-  const frame = `axes: x red, y green, z blue; grid ${quantity(picture.grid, 'm')}`;
   labels.replaceChildren(...wanted.map(({ text, at, name }) => {
     const place = project(at);
     const label = h('span', { class: `label ${name}` }, text);
     if (place) label.style.transform = `translate(${place[0].toFixed(0)}px, ${place[1].toFixed(0)}px)`;
     else label.hidden = true;
     return label;
-  }), h('span', { class: 'legend' }, frame));
+  }), h('span', { class: 'legend' }, legend));
 }

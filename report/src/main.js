@@ -35,7 +35,8 @@ function build(report) {
     correlationSection(list), certificateSection(report.plan), searchSection(report.plan), reproduceSection(report)].filter((s) => s !== null);
   const titles = { summary: 'In short', poses: 'Poses', parameters: 'Parameters', accuracy: 'Accuracy', information: 'Information',
     correlation: 'Correlation', certificate: 'Certificate', search: 'Search', reproduce: 'Repeat' };
-  document.getElementById('title').textContent = report.title;
+  // A long path may break after its slashes.
+  document.getElementById('title').replaceChildren(...report.title.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
   document.getElementById('contents').append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])), reminder(list));
   document.getElementById('page').append(...sections);
   document.getElementById('version').textContent = `posewright ${report.version}`;

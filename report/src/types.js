@@ -30,6 +30,7 @@
  * @typedef {object} Report
  * @property {string} version
  * @property {string} title
+ * @property {string[]} [notes]
  * @property {any} plan plan.json
  * @property {any} route route.json or null
  * @property {string[]} frames
@@ -42,7 +43,7 @@
  * @property {number[]} singular_values
  * @property {Candidates|null} candidates
  * @property {CurvePoint[]} curve
- * @property {CurvePoint[]} prefix
+ * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet
  * @property {Object<string, string>} [actuator_units]
  */
 export {};

@@ -5,7 +5,7 @@ import { add, at, cholesky, inverse, logDet, traceOfProduct } from './packed.js'
  * @typedef {object} Figures
  * @property {boolean} identifiable
  * @property {string|null} stuck name of a parameter that the poses cannot tell from those before it
- * @property {number|null} logDet of the parameters of interest, nuisance eliminated, in units of tolerance
+ * @property {number|null} logDet of the parameters of interest, nuisance eliminated, in SI units as in plan.json
  * @property {number[]|null} sigma predicted 1σ of each column, SI
  * @property {{name: string, ratio: number}|null} worst largest σ/tolerance among the parameters of interest
  * @property {number[]|null} testErrors predicted position error at each test pose, m
@@ -26,6 +26,8 @@ export class PlanFigures {
     this.size = (columns.length * (columns.length + 1)) / 2;
     this.nuisance = columns.filter((c) => c.role === 'nuisance').length;
     this.interest = columns.length - this.nuisance;
+    // det of D⁻¹ M D⁻¹, D the tolerances
+    this.inSi = -2 * columns.slice(this.nuisance).reduce((sum, c) => sum + Math.log(c.tolerance), 0);
     this.blocks = new Map(information.poses.map((p) => [p.id, p.packed]));
   }
 
@@ -77,7 +79,7 @@ export class PlanFigures {
     return {
       identifiable: true,
       stuck: null,
-      logDet: logDet(factor, this.nuisance),
+      logDet: logDet(factor, this.nuisance) + this.inSi,
       sigma: ratios.map((ratio, j) => ratio * this.columns[j].tolerance),
       worst: this.#worst(ratios),
       testErrors: variances.map((v) => Math.sqrt(Math.max(0, v))),

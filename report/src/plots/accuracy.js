@@ -30,9 +30,13 @@ const quantities = {
   log_det: { title: 'log det', axis: 'log det', of: (p) => p.log_det, log: false },
 };
 
+/** @param {import('../types.js').Report} report @returns {import('../types.js').CurvePoint[]} */
+const prefixOf = (report) => report.prefix.map((point, k) => point ?? { poses: k + 1, log_det: null, rho0: null, largest_sigma_ratio: null });
+
 /** What fewer or more poses reach. @param {import('../pose_list.js').PoseList} list */
 export function curvePlot(list) {
-  const { curve: searched, prefix } = list.report;
+  const { curve: searched } = list.report;
+  const prefix = prefixOf(list.report);
   const offered = Object.entries(quantities).filter(([, q]) => [...searched, ...prefix].some((p) => q.of(p) !== null));
   if (offered.length === 0) return null;
   const figures = offered.map(([key, q]) => one(list, key, q));
@@ -45,7 +49,8 @@ export function curvePlot(list) {
 
 /** @param {import('../pose_list.js').PoseList} list @param {string} key */
 function one(list, key, quantity) {
-  const { curve: searched, prefix } = list.report;
+  const { curve: searched } = list.report;
+  const prefix = prefixOf(list.report);
   const grown = () => (!list.changed ? [] : list.engine.growing(list.ids).map((f, k) =>
     ({ poses: k + 1, log_det: f.logDet, rho0: f.rho0, largest_sigma_ratio: f.worst?.ratio ?? null })));
   const data = () => {

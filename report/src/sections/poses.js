@@ -2,13 +2,14 @@ import { h } from '../dom.js';
 import { number, percent, quantity } from '../text/units.js';
 import { download, posesCsv } from '../save_csv.js';
 import { poseRows } from './pose_rows.js';
+import { poseCard } from '../view/pose_card.js';
 import { viewer } from '../view/viewer.js';
 
 /** The robot in 3-D beside the list of poses, and what the list is worth.
  * @param {import('../pose_list.js').PoseList} list */
 export function posesSection(list) {
-  const { element, player } = viewer(list);
-  const rows = poseRows(list, (id) => player.goTo(id) || list.show(id));
+  const { element, show } = list.report.keyframes.length > 0 ? viewer(list) : noPicture(list);
+  const rows = poseRows(list, show);
   const worth = h('dl', { class: 'worth', 'aria-live': 'polite' });
   const warning = h('p', { class: 'note warn', hidden: true });
   const reset = h('button', { onclick: () => list.reset() }, 'Reset');
@@ -33,6 +34,19 @@ export function posesSection(list) {
           + 'The saved file is what posewright evaluate reads.'))));
 }
 
+/** Models without a single tip are not drawn; their poses can be read all the same. @param {import('../pose_list.js').PoseList} list */
+function noPicture(list) {
+  const card = h('div', { class: 'pose-card' });
+  const title = h('output', { class: 'stop', 'aria-live': 'polite' });
+  const fill = () => {
+    title.textContent = list.current ? `Pose ${list.current}` : 'Choose a pose to read its values.';
+    card.replaceChildren(...(list.current ? poseCard(list) : []));
+  };
+  list.addEventListener('current', fill);
+  fill();
+  return { element: h('div', { class: 'viewer' }, h('p', { class: 'note' }, 'This kind of robot is not drawn.'), title, card), show: (id) => list.show(id) };
+}
+
 /** @param {import('../pose_list.js').PoseList} list */
 function saveList(list) {
   const poses = list.ids.map((id) => list.poses.get(id));
@@ -42,22 +56,21 @@ function saveList(list) {
 /** Figures of the list beside the plan's. @param {import('../pose_list.js').PoseList} list */
 function worthOf(list) {
   const { figures, planned } = list;
-  const entry = (id, title, value, before, hint = '') => h('div', { title: hint },
-    h('dt', {}, title), h('dd', { id: `list-${id}` }, value), h('dd', { class: 'before' }, before));
+  const entry = (id, title, exact, value, before, hint) => h('div', { title: hint },
+    h('dt', {}, title), h('dd', { id: `list-${id}`, 'data-value': exact }, value), h('dd', { class: 'before' }, before));
   const total = list.entries.length;
-  const efficiency = entry('efficiency', 'Efficiency', figures.identifiable ? percent(list.efficiency, 2) : 'not identifiable',
+  const efficiency = entry('efficiency', 'Efficiency', list.efficiency, figures.identifiable ? percent(list.efficiency, 2) : 'not identifiable',
     figures.identifiable ? `${list.ids.length} of ${total} poses` : `${figures.stuck} cannot be told`,
     'Information per parameter compared with the whole plan');
-  efficiency.querySelector('dd').dataset.value = String(list.efficiency);
   if (!figures.identifiable) efficiency.classList.add('bad');
   const parts = [efficiency,
-    entry('sigma', 'Largest σ/tolerance', number(figures.worst?.ratio, 3),
+    entry('sigma', 'Largest σ/tolerance', figures.worst?.ratio, number(figures.worst?.ratio, 3),
       figures.worst ? `${figures.worst.name}; plan ${number(planned.worst?.ratio, 3)}` : `plan ${number(planned.worst?.ratio, 3)}`,
       'Predicted standard deviation of the parameter that is known worst, compared with its tolerance'),
-    entry('logdet', 'log det', figures.logDet === null ? '–' : number(figures.logDet, 6), `plan ${number(planned.logDet, 6)}`,
-      'Logarithm of the determinant of the information on the parameters of interest, in units of tolerance')];
+    entry('logdet', 'log det', figures.logDet, figures.logDet === null ? '–' : number(figures.logDet, 6), `plan ${number(planned.logDet, 6)}`,
+      'Logarithm of the determinant of the information on the parameters of interest, SI units')];
   if (planned.rho0 !== null)
-    parts.push(entry('rho0', 'Position error', quantity(figures.rho0, 'm', 4), `plan ${quantity(planned.rho0, 'm', 4)}`,
+    parts.push(entry('rho0', 'Position error', figures.rho0, quantity(figures.rho0, 'm', 4), `plan ${quantity(planned.rho0, 'm', 4)}`,
       'Predicted root mean square of the tip’s position error at the test poses'));
   return parts;
 }

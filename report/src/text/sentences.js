@@ -90,6 +90,7 @@ export function warnings(report) {
     plan.criterion.name.startsWith('test_pose') && plan.accuracy.test_poses.length === 1
       && 'There is a single test pose: the plan crowds around it and tells little of other places. Give several.',
     route?.problem_changed && 'The problem file has changed since the plan was made; the route belongs to the new one. Plan again.',
+    ...(report.notes ?? []),
     ...(route?.unreachable ?? []).map((u) => `Pose ${u.pose} is left out of the route: ${u.reason}.`),
     (plan.variants ?? []).length > 1
       && `The plan serves ${plan.variants.length} variants. Figures that change with the list below, spectrum and correlations are those of ${plan.variants[0].name} only.`,

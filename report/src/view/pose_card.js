@@ -3,13 +3,13 @@ import { coordinate, percent, quantity } from '../text/units.js';
 
 /**
  * What there is to know of the pose that is shown.
- * @param {import('../pose_list.js').PoseList} list @param {import('./player.js').Player} player
+ * @param {import('../pose_list.js').PoseList} list
  */
-export function poseCard(list, player) {
+export function poseCard(list) {
   const pose = list.poses.get(list.current ?? -1);
-  if (!pose) return [h('p', { class: 'note' }, player.pose ? '' : 'Joint values are shown where the robot stands still.')];
+  if (!pose) return [h('p', { class: 'note' }, 'Joint values are shown where the robot stands still.')];
   const parts = [];
-  if (!list.keyframes.has(pose.id))
+  if (list.keyframes.size > 0 && !list.keyframes.has(pose.id))
     parts.push(h('p', { class: 'note' }, `Not drawn: ${list.unreachable.get(pose.id) ?? 'the route leaves it out'}.`));
   parts.push(h('dl', { class: 'values' }, ...coordinates(pose, list.report.actuator_units ?? {})
     .map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value)))));

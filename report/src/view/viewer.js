@@ -50,7 +50,7 @@ export function viewer(list) {
     const text = stopText(player);
     if (stop.textContent !== text) stop.textContent = text;
     slider.setAttribute('aria-valuetext', text);
-    card.replaceChildren(...poseCard(list, player));
+    card.replaceChildren(...poseCard(list));
   };
   const playText = () => {
     play.textContent = player.playing ? '❚❚ Pause' : '▶ Play';
@@ -75,7 +75,7 @@ export function viewer(list) {
     h('div', { class: 'now' }, stop, card));
   playText();
   player.go(0);
-  return { element, player };
+  return { element, show: pick };
 }
 
 /** @param {Player} player */

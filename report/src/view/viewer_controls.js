@@ -16,7 +16,7 @@ export function layerBoxes(report, layers, show) {
   const offers = [];
   if (report.bodies.length > 0) offers.push(['bodies', 'Bodies']);
   if (report.stations.length > 0) offers.push(['sights', 'Lines of sight']);
-  if (report.candidates) offers.push(['candidates', 'Candidates']);
+  if (report.candidates?.positions.length > 0) offers.push(['candidates', 'Candidates']);
   const scale = h('span', { class: 'ramp', hidden: true },
     h('span', { class: 'ramp-bar' }), ' colour: how much a measurement there would tell, from little (dark) to most (bright)');
   return h('div', { class: 'layers' }, offers.map(([key, title]) => {

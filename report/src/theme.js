@@ -15,6 +15,7 @@ export function watchTheme() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
   addEventListener('beforeprint', () => {
     document.documentElement.dataset.theme = 'light';
+    for (const details of document.querySelectorAll('details.printed')) details.open = true;
     changed();
   });
   addEventListener('afterprint', () => {

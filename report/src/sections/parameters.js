@@ -73,7 +73,7 @@ export function parametersSection(list) {
 function droppedList(plan) {
   const dropped = plan.parameters.filter((p) => !p.identifiable);
   if (dropped.length === 0) return null;
-  return h('details', { open: dropped.length <= 8 }, h('summary', {}, `Left out: ${dropped.length} that cannot be told from others`),
+  return h('details', { class: 'printed', open: dropped.length <= 8 }, h('summary', {}, `Left out: ${dropped.length} that cannot be told from others`),
     h('p', { class: 'note' }, 'A change of the parameter on the left has the same effect on every measurement as changes of those on the right; the robot is described as well without it.'),
     h('ul', { class: 'equations' }, dropped.map((p) => h('li', {}, p.dropped_because ?? p.name))));
 }

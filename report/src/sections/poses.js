@@ -1,5 +1,5 @@
-import { h } from '../dom.js';
-import { number, percent, quantity } from '../text/units.js';
+import { h, table } from '../dom.js';
+import { fixed, number, percent, quantity, shownUnit } from '../text/units.js';
 import { download, posesCsv } from '../save_csv.js';
 import { poseRows } from './pose_rows.js';
 import { poseCard } from '../view/pose_card.js';
@@ -31,7 +31,8 @@ export function posesSection(list) {
       h('div', { class: 'side' }, worth, rows, warning,
         h('div', { class: 'buttons' }, save, reset),
         h('p', { class: 'note' }, 'Efficiency: information per parameter compared with the whole plan; 90 % means that errors grow by 1/√0.9 = 1.05 on average. '
-          + 'The saved file is what posewright evaluate reads.'))));
+          + 'The saved file is what posewright evaluate reads.'))),
+    allValues(list));
 }
 
 /** Models without a single tip are not drawn; their poses can be read all the same. @param {import('../pose_list.js').PoseList} list */
@@ -45,6 +46,24 @@ function noPicture(list) {
   list.addEventListener('current', fill);
   fill();
   return { element: h('div', { class: 'viewer' }, h('p', { class: 'note' }, 'This kind of robot is not drawn.'), title, card), show: (id) => list.show(id) };
+}
+
+/** Every coordinate of every pose, as the list has them now. @param {import('../pose_list.js').PoseList} list */
+function allValues(list) {
+  const details = h('details', { class: 'printed' }, h('summary', {}, 'All poses in numbers'));
+  const fill = () => {
+    if (!details.open) return;
+    const poses = list.ids.map((id) => list.poses.get(id));
+    const { names = [], units = [], station, load_case: load } = poses[0] ?? {};
+    const shown = units.map((unit) => shownUnit(unit));
+    const header = ['pose', ...(station ? ['station'] : []), ...(load ? ['load case'] : []), ...names.map((name, k) => `#${name}${shown[k].name ? `, ${shown[k].name}` : ''}`)];
+    details.replaceChildren(details.firstElementChild, table(header, poses.map((p) => [`${p.id}`, ...(station ? [p.station] : []), ...(load ? [p.load_case] : []),
+      ...p.configuration.map((v, k) => fixed(v * shown[k].factor, 3))]), 'All poses in numbers'));
+  };
+  details.addEventListener('toggle', fill);
+  list.addEventListener('list', fill);
+  addEventListener('beforeprint', fill);
+  return details;
 }
 
 /** @param {import('../pose_list.js').PoseList} list */

@@ -61,6 +61,7 @@ export function viewer(list) {
   list.addEventListener('list', () => player.rebuild());
   list.addEventListener('current', show);
   onTheme(() => (view.paint(), show()));
+  if (solid) printed(view, holder);
   view.onDraw = (project) => placeLabels(labels, picture, list, view.legend, project);
   new ResizeObserver(() => holder.clientWidth > 0 && view.resize(holder.clientWidth, holder.clientHeight)).observe(holder);
 
@@ -76,6 +77,16 @@ export function viewer(list) {
   playText();
   player.go(0);
   return { element, show: pick };
+}
+
+/** Browsers print what a WebGL canvas showed last, in the screen's colours: an image takes its place. @param {Scene3d} view @param {HTMLElement} holder */
+function printed(view, holder) {
+  const image = h('img', { class: 'printed-picture', alt: 'Robot and its surroundings', decoding: 'sync' });
+  holder.append(image);
+  addEventListener('beforeprint', () => {
+    view.draw();
+    image.src = view.canvas.toDataURL();
+  });
 }
 
 /** @param {Player} player */

@@ -14,6 +14,8 @@ export class PoseList extends EventTarget {
     this.keyframes = new Map(report.keyframes.filter((k) => k.pose).map((k) => [k.pose, k]));
     this.unreachable = new Map((report.route?.unreachable ?? []).map((u) => [u.pose, u.reason]));
     this.engine = new PlanFigures(report.columns, report.information);
+    /** Poses measured before count whatever the reader ticks. */
+    this.measured = report.plan.poses.filter((p) => p.measured).map((p) => p.id);
     this.planned = this.engine.of(this.engine.blocks.keys());
     this.current = /** @type {number|null} */ (null);
     this.reset();
@@ -43,7 +45,12 @@ export class PoseList extends EventTarget {
   }
 
   get figures() {
-    return (this.memo ??= this.engine.of(this.ids));
+    return (this.memo ??= this.engine.of([...this.measured, ...this.ids]));
+  }
+
+  /** Figures after each of the ticked poses. */
+  get growing() {
+    return this.engine.growing(this.ids, this.measured);
   }
 
   get efficiency() {

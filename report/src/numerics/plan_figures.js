@@ -40,10 +40,11 @@ export class PlanFigures {
 
   /**
    * The same after each pose of a list.
-   * @param {number[]} ids in measuring order @returns {Figures[]}
+   * @param {number[]} ids in measuring order @param {number[]} before ids of poses measured before @returns {Figures[]}
    */
-  growing(ids) {
+  growing(ids, before = []) {
     const sum = this.#start();
+    for (const id of before) add(sum, this.blocks.get(id) ?? []);
     return ids.map((id) => {
       add(sum, this.blocks.get(id) ?? []);
       return this.#figures(sum);

@@ -51,7 +51,7 @@ export function curvePlot(list) {
 function one(list, key, quantity) {
   const { curve: searched } = list.report;
   const prefix = prefixOf(list.report);
-  const grown = () => (!list.changed ? [] : list.engine.growing(list.ids).map((f, k) =>
+  const grown = () => (!list.changed ? [] : list.growing.map((f, k) =>
     ({ poses: k + 1, log_det: f.logDet, rho0: f.rho0, largest_sigma_ratio: f.worst?.ratio ?? null })));
   const data = () => {
     const parts = [prefix, ...(searched.length > 0 ? [searched] : []), grown()];

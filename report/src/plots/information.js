@@ -20,7 +20,7 @@ export function spectrumPlot(report) {
   }).element;
 }
 
-/** Sensitivities in order, the bound, and what was chosen. @param {import('../types.js').Report} report */
+/** Sensitivities in order, the level from which a candidate is worth measuring, and what was chosen. @param {import('../types.js').Report} report */
 export function sensitivityPlot(report) {
   if (!report.candidates) return null;
   const { sensitivity, bound, chosen } = report.candidates;
@@ -29,10 +29,10 @@ export function sensitivityPlot(report) {
   const x = order.map((_, k) => k + 1);
   return figure({
     id: 'plot-sensitivity', title: 'What every candidate would tell',
-    caption: 'All candidates, most telling first, at the weights that would be best if poses could be measured in fractions: none exceeds the dashed line there, which is what proves the bound; dots were chosen for the plan.',
-    options: { series: [{ label: 'candidate, in order' }, curve('sensitivity', 'plan'), { ...dots('chosen', 'accent', 6) }, level('bound', 'ink-soft')],
+    caption: 'All candidates, most telling first, judged at the weights that would be best if poses could be measured in fractions: above the dashed line a candidate is worth measuring in full, on it in part, below it not at all. Orange dots are in the plan; poses found between the candidates have none.',
+    options: { series: [{ label: 'candidate, in order' }, curve('sensitivity', 'plan'), { ...dots('chosen', 'accent', 6) }, level('worth measuring', 'ink-soft')],
       scales: { x: { time: false }, y: { range: (u, low, high) => [0, 1.08 * Math.max(high, bound)] } },
-      axes: [{ label: 'candidates, most telling first', incrs: wholeNumbers }, { label: 'sensitivity / bound', size: 56 }] },
+      axes: [{ label: 'candidates, most telling first', incrs: wholeNumbers }, { label: 'sensitivity / what is worth it', size: 56 }] },
     data: [x, order.map((k) => sensitivity[k]), order.map((k) => (taken.has(k) ? sensitivity[k] : null)), x.map(() => bound)],
     numbers: () => ({ header: ['#place', '#candidate', '#sensitivity', 'chosen'], rows: order.map((k, n) => [n + 1, k, number(sensitivity[k]), taken.has(k) ? 'yes' : '']) }),
   }).element;

@@ -1,12 +1,16 @@
-/** @typedef {{centre: number[], radius: number, low: number[], high: number[]}} Extent */
+/** @typedef {{centre: number[], radius: number, low: number[], high: number[], points: number[][]}} Extent points: some that must be in view */
+
+const enoughPoints = 1000;
 
 /** @param {number[][]} points @returns {Extent} */
 export function extentOf(points) {
-  const low = [0, 1, 2].map((k) => Math.min(...points.map((p) => p[k])));
-  const high = [0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])));
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const p of points)
+    for (let k = 0; k < 3; ++k) [low[k], high[k]] = [Math.min(low[k], p[k]), Math.max(high[k], p[k])];
   const centre = low.map((value, k) => (value + high[k]) / 2);
   const radius = Math.max(1e-6, Math.hypot(...high.map((value, k) => value - low[k])) / 2);
-  return { centre, radius, low, high };
+  const step = Math.ceil(points.length / enoughPoints);
+  return { centre, radius, low, high, points: points.filter((_, k) => k % step === 0) };
 }
 
 /** The eight corners of what a body fills in its own frame; none of a plane. @param {import('../types.js').Shape} shape */
@@ -26,7 +30,7 @@ function corners(shape) {
 }
 
 /** @param {number[]} low @param {number[]} high */
-export const boxCorners = (low, high) =>
+const boxCorners = (low, high) =>
   Array.from({ length: 8 }, (_, k) => [k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]]);
 
 /** @param {number[]} x placement @param {number[]} p */
@@ -53,7 +57,7 @@ export function sceneExtent(report) {
   }
   const first = report.keyframes[0];
   if (first) for (const body of report.bodies) points.push(...bodyCorners(body, first.frames));
-  return points.length > 0 ? extentOf(points) : { centre: [0, 0, 0], radius: 1, low: [-1, -1, -1], high: [1, 1, 1] };
+  return points.length > 0 ? extentOf(points) : extentOf([[-1, -1, -1], [1, 1, 1]]);
 }
 
 /** @param {import('../types.js').Keyframe[]} stops @returns {Extent} of the tip alone */

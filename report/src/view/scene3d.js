@@ -8,7 +8,6 @@ import { quantity } from '../text/units.js';
 import { Bodies } from './bodies3d.js';
 import { Skeleton } from './skeleton3d.js';
 import { directions } from './directions.js';
-import { boxCorners } from './extent.js';
 import { Sights, Tips, candidateCloud } from './marks3d.js';
 
 /** The 3-D picture. Drawn only when something has changed. */
@@ -47,7 +46,7 @@ export class Scene3d {
     const unit = this.picture.size;
     const solid = report.bodies.some((b) => b.kind === 'robot');
     this.bodies = new Bodies(report, extent);
-    this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.008));
+    this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.009));
     this.tips = new Tips(this.picture);
     this.sights = new Sights(report, unit * 0.008);
     this.scene.add(this.bodies.root, this.skeleton.root, this.tips.mesh, this.sights.root);
@@ -117,17 +116,17 @@ export class Scene3d {
     this.looking = { from, extent };
     const centre = new Vector3(...extent.centre);
     const direction = new Vector3(...directions[from]).normalize();
-    const corners = boxCorners(extent.low, extent.high).map((p) => new Vector3(...p));
+    const points = extent.points.map((p) => new Vector3(...p));
     const inside = (distance) => {
       this.camera.position.copy(centre).addScaledVector(direction, distance);
       this.camera.lookAt(centre);
       this.camera.updateMatrixWorld();
-      return corners.every((corner) => {
-        const p = corner.clone().project(this.camera);
-        return p.z < 1 && Math.max(Math.abs(p.x), Math.abs(p.y)) < 0.93;
+      return points.every((point) => {
+        const p = point.clone().project(this.camera);
+        return p.z < 1 && Math.max(Math.abs(p.x), Math.abs(p.y)) < 0.9;
       });
     };
-    let distance = 1.1 * extent.radius;
+    let distance = 0.5 * extent.radius;
     while (!inside(distance) && distance < 50 * extent.radius) distance *= 1.05;
     this.controls.target.copy(centre);
     this.controls.update();

@@ -1,5 +1,5 @@
 import { svg } from '../dom.js';
-import { bodyCorners, boxCorners } from './extent.js';
+import { bodyCorners } from './extent.js';
 import { directions } from './directions.js';
 
 const boxEdges = [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
@@ -44,8 +44,8 @@ export class SvgView {
     this.azimuth = Math.atan2(y, x);
     this.elevation = Math.atan2(z, Math.hypot(x, y));
     this.centre = extent.centre;
-    const corners = boxCorners(extent.low, extent.high).map((p) => this.#turned(p));
-    this.span = [0, 1].map((k) => 2.2 * Math.max(1e-9, ...corners.map((p) => Math.abs(p[k]))));
+    const points = extent.points.map((p) => this.#turned(p));
+    this.span = [0, 1].map((k) => 2.2 * Math.max(1e-9, ...points.map((p) => Math.abs(p[k]))));
     this.draw();
   }
 

@@ -92,8 +92,6 @@ export function warnings(report) {
     route?.problem_changed && 'The problem file has changed since the plan was made; the route belongs to the new one. Plan again.',
     ...(report.notes ?? []),
     ...(route?.unreachable ?? []).map((u) => `Pose ${u.pose} is left out of the route: ${u.reason}.`),
-    (plan.variants ?? []).length > 1
-      && `The plan serves ${plan.variants.length} variants. Figures that change with the list below, spectrum and correlations are those of ${plan.variants[0].name} only.`,
     plan.criterion.prior === 'tolerance' && 'Tolerances count as prior knowledge: σ is what is known after the measurement together with them.',
   ].filter((text) => typeof text === 'string');
 }

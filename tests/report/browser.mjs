@@ -29,7 +29,7 @@ export const launch = ({ webgl }) => driver().launch({ executablePath: program,
  * @param {any} browser @param {string} file @param {object} [options] of the page
  */
 export async function open(browser, file, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, colorScheme: 'light', ...options });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, colorScheme: 'light', reducedMotion: 'reduce', ...options });
   const complaints = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(String(error)));

@@ -81,7 +81,7 @@ export async function checkList(page, { plan, folder, problem, data }, program) 
   const lines = readFileSync(csv, 'utf8').trim().split('\n');
   check(lines.slice(1).map((l) => Number(l.split(',')[0])).join() === expected.filter((id) => id !== start[2]).join(), 'the saved list has the ticked poses in order', lines.length);
   check(lines[0].startsWith(`pose,${plan.poses[0].names[0]} [${plan.poses[0].units[0]}],`), 'its header names and units', lines[0]);
-  const judged = JSON.parse(execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet', '--force'],
+  const judged = JSON.parse(execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet'],
     { cwd: new URL('../../', import.meta.url), encoding: 'utf8', maxBuffer: 1e9 }));
   near(judged.criterion.log_det, await value(page, 'logdet'), 1e-8, 'posewright evaluate reads it and finds the same log det');
   check(await page.locator('.reminder').isVisible(), 'the page says that the list has been changed');
@@ -94,6 +94,7 @@ export async function checkList(page, { plan, folder, problem, data }, program) 
 
 /** By the handle, as with a mouse. */
 async function drag(page, id, before) {
+  await page.locator(`.rows li[data-id="${before}"]`).scrollIntoViewIfNeeded();
   const handle = await page.locator(`.rows li[data-id="${id}"] .handle`).boundingBox();
   const goal = await page.locator(`.rows li[data-id="${before}"]`).boundingBox();
   await page.mouse.move(handle.x + handle.width / 2, handle.y + handle.height / 2);

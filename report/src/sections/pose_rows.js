@@ -62,6 +62,9 @@ function row(list, entry, place, preview) {
     move('up', -1, '↑', place > 0), move('down', 1, '↓', place < list.entries.length - 1));
 }
 
+/** Nearer than this to the end of the list, dragging scrolls it, px. */
+const edge = 20;
+
 /** By pointer, so that fingers can do it, too. @param {HTMLElement} rows @param {import('../pose_list.js').PoseList} list */
 function dragging(rows, list) {
   rows.addEventListener('pointerdown', (event) => {
@@ -72,6 +75,9 @@ function dragging(rows, list) {
     rows.setPointerCapture(event.pointerId);
     dragged.classList.add('dragged');
     const follow = (move) => {
+      const { top, bottom } = rows.getBoundingClientRect();
+      if (move.clientY < top + edge) rows.scrollTop -= edge / 2;
+      if (move.clientY > bottom - edge) rows.scrollTop += edge / 2;
       const others = [...rows.children].filter((r) => r !== dragged);
       const next = others.find((r) => move.clientY < r.getBoundingClientRect().top + r.offsetHeight / 2);
       if (next ? next.previousElementSibling !== dragged : rows.lastElementChild !== dragged) rows.insertBefore(dragged, next ?? null);

@@ -19,11 +19,12 @@ export class Tips {
   /** @param {number|null} current @param {Set<number>} on */
   update(current, on) {
     const matrix = new Matrix4();
+    const [now, measured, off] = ['now', 'tip', 'off'].map((name) => new Color(colour(name)));
     const { tips, dot } = this.picture;
     tips.forEach((tip, k) => {
       const size = dot * (tip.id === current ? 1.9 : 1);
       this.mesh.setMatrixAt(k, matrix.makeScale(size, size, size).setPosition(new Vector3(...tip.position)));
-      this.mesh.setColorAt(k, new Color(colour(tip.id === current ? 'now' : on.has(tip.id) ? 'tip' : 'off')));
+      this.mesh.setColorAt(k, tip.id === current ? now : on.has(tip.id) ? measured : off);
     });
     this.mesh.instanceMatrix.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;

@@ -4,10 +4,13 @@
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 
-const build = await import('esbuild').then((esbuild) => esbuild.build, () => {
-  console.log('Skipped: npm packages are missing (npm ci in report/ installs them).');
-  process.exit(77);
-});
+const build = await import('esbuild').then(
+  (esbuild) => esbuild.build,
+  () => {
+    console.log('Skipped: npm packages are missing (npm ci in report/ installs them).');
+    process.exit(77);
+  },
+);
 
 const here = new URL('.', import.meta.url);
 const read = (path) => readFileSync(new URL(path, here), 'utf8');
@@ -25,30 +28,49 @@ function inline(text, tag) {
 const hash = (text) => `sha256-${createHash('sha256').update(text).digest('base64')}`;
 
 function licences() {
-  return bundled.map((name) => {
-    const { version, license } = JSON.parse(read(`node_modules/${name}/package.json`));
-    return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`).trim()}\n`;
-  }).join('\n\n');
+  return bundled
+    .map((name) => {
+      const { version, license } = JSON.parse(read(`node_modules/${name}/package.json`));
+      return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`).trim()}\n`;
+    })
+    .join('\n\n');
 }
 
 async function script() {
   const result = await build({
-    entryPoints: [new URL('src/main.js', here).pathname], bundle: true, minify: true, format: 'iife', target: 'es2022',
-    legalComments: 'none', charset: 'ascii', write: false, absWorkingDir: new URL('.', here).pathname,
+    entryPoints: [new URL('src/main.js', here).pathname],
+    bundle: true,
+    minify: true,
+    format: 'iife',
+    target: 'es2022',
+    legalComments: 'none',
+    charset: 'ascii',
+    write: false,
+    absWorkingDir: new URL('.', here).pathname,
   });
   return result.outputFiles[0].text.trim();
 }
 
 async function style() {
-  const text = [read('node_modules/uplot/dist/uPlot.min.css'), ...styles.map((name) => read(`src/styles/${name}.css`))].join('\n');
+  const text = [
+    read('node_modules/uplot/dist/uPlot.min.css'),
+    ...styles.map((name) => read(`src/styles/${name}.css`)),
+  ].join('\n');
   const result = await build({ stdin: { contents: text, loader: 'css' }, minify: true, write: false });
   return result.outputFiles[0].text.trim();
 }
 
 async function page() {
-  const parts = { STYLE: inline(await style(), 'style'), SCRIPT: inline(await script(), 'script'), LICENSES: licences().replaceAll('--', '- -') };
+  const parts = {
+    STYLE: inline(await style(), 'style'),
+    SCRIPT: inline(await script(), 'script'),
+    LICENSES: licences().replaceAll('--', '- -'),
+  };
   const all = { ...parts, SCRIPT_HASH: hash(parts.SCRIPT), STYLE_HASH: hash(parts.STYLE) };
-  const text = read('src/index.html').replace(/@(STYLE|SCRIPT|LICENSES|SCRIPT_HASH|STYLE_HASH)@/g, (_, name) => all[name]);
+  const text = read('src/index.html').replace(
+    /@(STYLE|SCRIPT|LICENSES|SCRIPT_HASH|STYLE_HASH)@/g,
+    (_, name) => all[name],
+  );
   if (text.split(placeholder).length !== 2) throw new Error(`${placeholder} must occur exactly once`);
   return text;
 }

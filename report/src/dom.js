@@ -33,8 +33,13 @@ function assign(element, attributes) {
  * @param {string} id @param {string} title @param {string|null} lead what it is, in one sentence @param {...any} children
  */
 export function section(id, title, lead, ...children) {
-  return h('section', { id, 'aria-labelledby': `${id}-title` },
-    h('h2', { id: `${id}-title` }, title), lead ? h('p', { class: 'lead' }, lead) : null, ...children);
+  return h(
+    'section',
+    { id, 'aria-labelledby': `${id}-title` },
+    h('h2', { id: `${id}-title` }, title),
+    lead ? h('p', { class: 'lead' }, lead) : null,
+    ...children,
+  );
 }
 
 /**
@@ -45,8 +50,32 @@ export function table(header, rows, label) {
   const numeric = header.map((title) => title.startsWith('#'));
   const cell = (tag, content, column, extra = {}) =>
     h(tag, { class: numeric[column] ? 'number' : null, ...extra }, ...[content].flat());
-  return h('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': label },
-    h('table', {},
-      h('thead', {}, h('tr', {}, header.map((title, c) => cell('th', title.replace(/^#/, ''), c, { scope: 'col' })))),
-      h('tbody', {}, rows.map((row) => h('tr', {}, row.map((content, c) => cell('td', content, c)))))));
+  return h(
+    'div',
+    { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': label },
+    h(
+      'table',
+      {},
+      h(
+        'thead',
+        {},
+        h(
+          'tr',
+          {},
+          header.map((title, c) => cell('th', title.replace(/^#/, ''), c, { scope: 'col' })),
+        ),
+      ),
+      h(
+        'tbody',
+        {},
+        rows.map((row) =>
+          h(
+            'tr',
+            {},
+            row.map((content, c) => cell('td', content, c)),
+          ),
+        ),
+      ),
+    ),
+  );
 }

@@ -13,7 +13,8 @@ import { reproduceSection } from './sections/reproduce.js';
 /** @returns {import('./types.js').Report} */
 function readReport() {
   const report = JSON.parse(document.getElementById('report-data').textContent);
-  if (report.schema !== 'posewright/report/1') throw new Error(`schema ${report.schema}; posewright/report/1 is expected`);
+  if (report.schema !== 'posewright/report/1')
+    throw new Error(`schema ${report.schema}; posewright/report/1 is expected`);
   return report;
 }
 
@@ -31,13 +32,35 @@ function reminder(list) {
 function build(report) {
   document.title = `Measurement plan: ${report.title}`;
   const list = new PoseList(report);
-  const sections = [summarySection(list), posesSection(list), parametersSection(list), accuracySection(list), informationSection(list),
-    correlationSection(list), certificateSection(report.plan), searchSection(report.plan), reproduceSection(report)].filter((s) => s !== null);
-  const titles = { summary: 'In short', poses: 'Poses', parameters: 'Parameters', accuracy: 'Accuracy', information: 'Information',
-    correlation: 'Correlation', certificate: 'Certificate', search: 'Search', reproduce: 'Repeat' };
+  const sections = [
+    summarySection(list),
+    posesSection(list),
+    parametersSection(list),
+    accuracySection(list),
+    informationSection(list),
+    correlationSection(list),
+    certificateSection(report.plan),
+    searchSection(report.plan),
+    reproduceSection(report),
+  ].filter((s) => s !== null);
+  const titles = {
+    summary: 'In short',
+    poses: 'Poses',
+    parameters: 'Parameters',
+    accuracy: 'Accuracy',
+    information: 'Information',
+    correlation: 'Correlation',
+    certificate: 'Certificate',
+    search: 'Search',
+    reproduce: 'Repeat',
+  };
   // A long path may break after its slashes.
-  document.getElementById('title').replaceChildren(...report.title.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
-  document.getElementById('contents').append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])), reminder(list));
+  document
+    .getElementById('title')
+    .replaceChildren(...report.title.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
+  document
+    .getElementById('contents')
+    .append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])), reminder(list));
   document.getElementById('page').append(...sections);
   document.getElementById('version').textContent = `posewright ${report.version}`;
 }
@@ -46,6 +69,8 @@ watchTheme();
 try {
   build(readReport());
 } catch (error) {
-  document.getElementById('page').append(h('p', { class: 'warnings' }, `This report cannot be shown: ${error.message}.`));
+  document
+    .getElementById('page')
+    .append(h('p', { class: 'warnings' }, `This report cannot be shown: ${error.message}.`));
   throw error;
 }

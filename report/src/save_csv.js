@@ -11,12 +11,20 @@ export function posesCsv(poses, actuatorUnits = {}) {
   const first = poses[0];
   const actuators = Object.keys(first.actuators ?? {});
   const withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
-  const header = ['pose', ...first.names.map((name, k) => withUnit(name, first.units[k])),
+  const header = [
+    'pose',
+    ...first.names.map((name, k) => withUnit(name, first.units[k])),
     ...actuators.map((name) => withUnit(name, actuatorUnits[name])),
-    ...['load_case', 'station'].filter((choice) => first[choice])];
+    ...['load_case', 'station'].filter((choice) => first[choice]),
+  ];
   const lines = poses.map((pose) =>
-    [pose.id, ...pose.configuration, ...actuators.map((name) => pose.actuators[name]),
-      ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice]))].join(','));
+    [
+      pose.id,
+      ...pose.configuration,
+      ...actuators.map((name) => pose.actuators[name]),
+      ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice])),
+    ].join(','),
+  );
   return [header.join(','), ...lines, ''].join('\n');
 }
 

@@ -25,7 +25,13 @@ export function watchTheme() {
 }
 
 /** Viridis at five places. */
-const viridis = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+const viridis = [
+  [68, 1, 84],
+  [59, 82, 139],
+  [33, 145, 140],
+  [94, 201, 98],
+  [253, 231, 37],
+];
 
 /** @param {number} share 0 to 1 @returns {[number, number, number]} 0 to 255 */
 export function viridisAt(share) {

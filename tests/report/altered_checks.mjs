@@ -13,7 +13,10 @@ async function altered(browser, c, name, alter) {
   alter(data);
   const file = join(c.folder, `${name.replaceAll(' ', '_')}.html`);
   const text = JSON.stringify(data).replaceAll('<', '\\u003c');
-  writeFileSync(file, readFileSync(c.page, 'utf8').replace(slot, (_, begin, __, end) => begin + text + end));
+  writeFileSync(
+    file,
+    readFileSync(c.page, 'utf8').replace(slot, (_, begin, __, end) => begin + text + end),
+  );
   const { page, complaints } = await open(browser, file);
   check(complaints.length === 0, 'no complaint', complaints.join(' | '));
   return page;
@@ -33,7 +36,10 @@ export async function checkAltered(browser, c) {
   const warnings = await page.locator('.warnings').innerText();
   for (const word of ['ended early', 'has changed since', `Pose ${lost} is left out of the route`, 'Ill-conditioned'])
     check(warnings.includes(word), `it warns: ${word}`, warnings);
-  check(!(await page.getByRole('checkbox', { name: `Measure pose ${lost}`, exact: true }).isChecked()), 'a pose that cannot be reached is ticked off');
+  check(
+    !(await page.getByRole('checkbox', { name: `Measure pose ${lost}`, exact: true }).isChecked()),
+    'a pose that cannot be reached is ticked off',
+  );
   await page.close();
 
   page = await altered(browser, c, 'hostile names', (data) => {
@@ -41,17 +47,31 @@ export async function checkAltered(browser, c) {
     data.title = data.plan.parameters[0].name = data.columns.at(-1).name = name;
     Object.assign(data.plan.statistics.rejected, { [name]: 12 });
   });
-  check(await page.locator('img:not(.printed-picture)').count() === 0 && (await page.locator('h1').innerText()).includes('<img'), 'names are text, never markup');
+  check(
+    (await page.locator('img:not(.printed-picture)').count()) === 0 &&
+      (await page.locator('h1').innerText()).includes('<img'),
+    'names are text, never markup',
+  );
   await page.close();
 
   page = await altered(browser, c, 'little data', (data) => {
-    Object.assign(data, { candidates: null, keyframes: [], bodies: [], stations: [], targets: [], curve: [], route: null });
+    Object.assign(data, {
+      candidates: null,
+      keyframes: [],
+      bodies: [],
+      stations: [],
+      targets: [],
+      curve: [],
+      route: null,
+    });
     data.plan.certificate = { candidates: null, workspace: null };
     delete data.plan.statistics.cell;
   });
-  check((await page.locator('#summary').innerText()).includes('no bound is computed'), 'it says that nothing is proved');
+  check(
+    (await page.locator('#summary').innerText()).includes('no bound is computed'),
+    'it says that nothing is proved',
+  );
   await page.locator('.rows .preview').first().click();
-  check(await page.locator('.values dd').count() > 0, 'poses can be read where the robot is not drawn');
+  check((await page.locator('.values dd').count()) > 0, 'poses can be read where the robot is not drawn');
   await page.close();
-
 }

@@ -31,15 +31,29 @@ const cases = [
  */
 export function makeReports(program, out, names = cases.map((c) => c.name), full = false) {
   const run = (...words) => execFileSync(resolve(program), words, { cwd: root, encoding: 'utf8', maxBuffer: 1e9 });
-  return cases.filter((c) => names.includes(c.name)).map((c) => {
-    const folder = resolve(out, c.name);
-    mkdirSync(folder, { recursive: true });
-    const problem = c.problem(folder);
-    const [plan, route, page] = ['plan.json', 'route.json', 'report.html'].map((name) => join(folder, name));
-    const size = full ? ['--candidates', '3000'] : ['--poses', String(c.poses), '--candidates', '150', '--restarts', '1', '--method', 'exchange'];
-    run('plan', problem, ...size, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
-    if (c.route) run('route', plan, '--from-home', '--closed', '-o', route, '--force', '--quiet');
-    const data = JSON.parse(run('report', plan, ...(c.route ? ['--route', route] : []), '-o', page, '--force', '--quiet', '--json'));
-    return { name: c.name, problem, folder, page, plan: JSON.parse(readFileSync(plan, 'utf8')), data, route: Boolean(c.route) };
-  });
+  return cases
+    .filter((c) => names.includes(c.name))
+    .map((c) => {
+      const folder = resolve(out, c.name);
+      mkdirSync(folder, { recursive: true });
+      const problem = c.problem(folder);
+      const [plan, route, page] = ['plan.json', 'route.json', 'report.html'].map((name) => join(folder, name));
+      const size = full
+        ? ['--candidates', '3000']
+        : ['--poses', String(c.poses), '--candidates', '150', '--restarts', '1', '--method', 'exchange'];
+      run('plan', problem, ...size, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
+      if (c.route) run('route', plan, '--from-home', '--closed', '-o', route, '--force', '--quiet');
+      const data = JSON.parse(
+        run('report', plan, ...(c.route ? ['--route', route] : []), '-o', page, '--force', '--quiet', '--json'),
+      );
+      return {
+        name: c.name,
+        problem,
+        folder,
+        page,
+        plan: JSON.parse(readFileSync(plan, 'utf8')),
+        data,
+        route: Boolean(c.route),
+      };
+    });
 }

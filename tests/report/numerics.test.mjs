@@ -1,14 +1,25 @@
 // What the page recomputes, against known answers: node --test tests/report
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { add, cholesky, correlation, inverse, logDet, rowsOf, traceOfProduct } from '../../report/src/numerics/packed.js';
+import {
+  add,
+  cholesky,
+  correlation,
+  inverse,
+  logDet,
+  rowsOf,
+  traceOfProduct,
+} from '../../report/src/numerics/packed.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { posesCsv } from '../../report/src/save_csv.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
 
 const near = (value, expected, tolerance = 1e-12) =>
-  assert.ok(Math.abs(value - expected) <= tolerance * Math.max(1, Math.abs(expected)), `${value}, expected ${expected}`);
+  assert.ok(
+    Math.abs(value - expected) <= tolerance * Math.max(1, Math.abs(expected)),
+    `${value}, expected ${expected}`,
+  );
 const packed = (rows) => Float64Array.from(rows.flatMap((row, i) => row.slice(0, i + 1)));
 
 test('determinant, inverse and correlation of a 2 by 2 matrix', () => {
@@ -50,13 +61,23 @@ function twoLinks(angles) {
     const [c, s] = [Math.cos(q), Math.sin(q)];
     return { id: k + 1, packed: [1, 0, 1, c, s, 1, -s, c, 0, 1] };
   });
-  const columns = ['l1', 't1', 'l2', 't2'].map((name) => ({ name, unit: 'm', tolerance: 1, role: 'interest', variant: '' }));
+  const columns = ['l1', 't1', 'l2', 't2'].map((name) => ({
+    name,
+    unit: 'm',
+    tolerance: 1,
+    role: 'interest',
+    variant: '',
+  }));
   const weight = [1, 0, 1, 1, 0, 1, 0, 1, 0, 1]; // stretched arm: the tip moves by the sum of both links
   return new PlanFigures(columns, { poses: blocks, prior: null, test: [{ weight: 2, packed: weight }] });
 }
 
 test('a two-link arm has the determinant and the error of theory', () => {
-  for (const degrees of [[0, 120, 240], [0, 90], [10, 75, 200, 310]]) {
+  for (const degrees of [
+    [0, 120, 240],
+    [0, 90],
+    [10, 75, 200, 310],
+  ]) {
     const angles = degrees.map((d) => (d * Math.PI) / 180);
     const n = angles.length;
     const [re, im] = [Math.cos, Math.sin].map((f) => angles.reduce((sum, q) => sum + f(q), 0));
@@ -75,12 +96,15 @@ test('too few poses are not identifiable, and the parameter is named', () => {
 
 test('measuring everything twice doubles the efficiency and halves variances; tolerances are units', () => {
   const engine = twoLinks([0.1, 1.7, 4]);
-  const once = engine.of([1, 2, 3]), twice = engine.of([1, 2, 3, 1, 2, 3]);
+  const once = engine.of([1, 2, 3]),
+    twice = engine.of([1, 2, 3, 1, 2, 3]);
   near(engine.efficiency(twice, once), 2);
   near(twice.sigma[2] ** 2, once.sigma[2] ** 2 / 2);
   const scaled = twoLinks([0.1, 1.7, 4]);
-  const millimetres = new PlanFigures(scaled.columns.map((c) => ({ ...c, tolerance: 1e-3 })),
-    { poses: [1, 2, 3].map((id) => ({ id, packed: scaled.blocks.get(id) })), prior: null, test: [] }).of([1, 2, 3]);
+  const millimetres = new PlanFigures(
+    scaled.columns.map((c) => ({ ...c, tolerance: 1e-3 })),
+    { poses: [1, 2, 3].map((id) => ({ id, packed: scaled.blocks.get(id) })), prior: null, test: [] },
+  ).of([1, 2, 3]);
   near(millimetres.sigma[0], 1e-3 * once.sigma[0]);
   near(millimetres.logDet, once.logDet - 8 * Math.log(1e-3)); // log det of D⁻¹ M D⁻¹
 });
@@ -88,7 +112,10 @@ test('measuring everything twice doubles the efficiency and halves variances; to
 test('growing lists end where the whole list is', () => {
   const engine = twoLinks([0, 1, 2, 3]);
   const steps = engine.growing([4, 2, 1, 3]);
-  assert.deepEqual(steps.map((s) => s.identifiable), [false, true, true, true]);
+  assert.deepEqual(
+    steps.map((s) => s.identifiable),
+    [false, true, true, true],
+  );
   near(steps[3].logDet, engine.of([1, 2, 3, 4]).logDet);
 });
 
@@ -107,8 +134,17 @@ test('sums are of lower triangles', () => {
 });
 
 test('between two keyframes a frame turns at even speed and points go straight', () => {
-  const at = (angle, x) => ({ frames: [[x, 0, 0, 0, 0, Math.sin(angle / 2), Math.cos(angle / 2)]], lines: [[[0, 0, 0], [x, 0, 0]]],
-    tip: [x, 0, 0, 0, 0, 0, 1], targets: [[x, 0, 0], null] });
+  const at = (angle, x) => ({
+    frames: [[x, 0, 0, 0, 0, Math.sin(angle / 2), Math.cos(angle / 2)]],
+    lines: [
+      [
+        [0, 0, 0],
+        [x, 0, 0],
+      ],
+    ],
+    tip: [x, 0, 0, 0, 0, 0, 1],
+    targets: [[x, 0, 0], null],
+  });
   const half = between(at(0, 0), at(Math.PI / 2, 2), 0.5);
   near(2 * Math.atan2(half.frames[0][5], half.frames[0][6]), Math.PI / 4);
   assert.deepEqual(half.lines[0][1], [1, 0, 0]);
@@ -119,10 +155,19 @@ test('between two keyframes a frame turns at even speed and points go straight',
 });
 
 test('the saved list has the header of poses.csv, quotes names and keeps all digits', () => {
-  const pose = (id, station) => ({ id, names: ['x', 'rz'], units: ['m', 'rad'], configuration: [0.1 + 0.2, -1e-7],
-    actuators: { 'leg.rho': 0.25 }, load_case: null, station });
-  assert.equal(posesCsv([pose(7, 'A'), pose(3, 'B, "left"')], { 'leg.rho': 'm' }),
-    'pose,x [m],rz [rad],leg.rho [m],station\n7,0.30000000000000004,-1e-7,0.25,A\n3,0.30000000000000004,-1e-7,0.25,"B, ""left"""\n');
+  const pose = (id, station) => ({
+    id,
+    names: ['x', 'rz'],
+    units: ['m', 'rad'],
+    configuration: [0.1 + 0.2, -1e-7],
+    actuators: { 'leg.rho': 0.25 },
+    load_case: null,
+    station,
+  });
+  assert.equal(
+    posesCsv([pose(7, 'A'), pose(3, 'B, "left"')], { 'leg.rho': 'm' }),
+    'pose,x [m],rz [rad],leg.rho [m],station\n7,0.30000000000000004,-1e-7,0.25,A\n3,0.30000000000000004,-1e-7,0.25,"B, ""left"""\n',
+  );
 });
 
 test('numbers are shown in mm and deg, and proofs are rounded down', () => {

@@ -10,7 +10,7 @@ const ids = (page) => page.locator('.rows li').evaluateAll((rows) => rows.map((r
 
 /** The slider and the buttons move the robot. */
 export async function checkViewer(page, { data, route }) {
-  check(await page.locator('.view canvas').count() === 1, 'there is a picture in WebGL');
+  check((await page.locator('.view canvas').count()) === 1, 'there is a picture in WebGL');
   const slider = page.getByRole('slider', { name: 'Place in the measuring order' });
   const before = { tip: await tip(page), picture: await page.locator('.view canvas').screenshot() };
   await slider.fill(String(Math.floor(Number(await slider.getAttribute('max')) / 2)));
@@ -24,34 +24,61 @@ export async function checkViewer(page, { data, route }) {
   const second = route ? order[0] : order[1];
   check((await page.locator('.stop').textContent()).includes(`pose ${second}`), 'the next stop is named');
   const values = await page.locator('.values dd').allTextContents();
-  check(values.length >= data.plan.poses[0].names.length && values.every((v) => / (deg|mm)$/.test(v)), 'all joint values are shown in deg or mm', values.join());
+  check(
+    values.length >= data.plan.poses[0].names.length && values.every((v) => / (deg|mm)$/.test(v)),
+    'all joint values are shown in deg or mm',
+    values.join(),
+  );
   await page.getByRole('button', { name: 'Play' }).click();
   const start = await tip(page);
   await page.waitForFunction((was) => document.querySelector('.view canvas').dataset.tip !== was, start);
   await page.getByRole('button', { name: 'Pause' }).click();
   await page.locator(`.rows li[data-id="${order.at(-1)}"] .preview`).click();
-  check((await page.locator('.stop').textContent()).includes(`pose ${order.at(-1)}`), 'a click on a row shows that pose');
+  check(
+    (await page.locator('.stop').textContent()).includes(`pose ${order.at(-1)}`),
+    'a click on a row shows that pose',
+  );
   if (data.candidates) await page.getByRole('checkbox', { name: 'Candidates' }).check();
 }
 
 /** Every plot has its points. */
 export async function checkPlots(page, { data, plan }) {
-  const points = (id) => page.locator(`#${id}`).evaluate((f) => f.plot.data.map((s) => s.filter((v) => v !== null).length));
+  const points = (id) =>
+    page.locator(`#${id}`).evaluate((f) => f.plot.data.map((s) => s.filter((v) => v !== null).length));
   const [, contributions, losses] = await points('plot-contribution');
-  check(contributions === plan.poses.length && losses === plan.poses.length, 'one bar and one dot a pose', [contributions, losses]);
-  check((await points('plot-spectrum'))[1] === data.singular_values.length, 'one singular value a parameter of interest');
-  check(data.singular_values.length === data.columns.filter((c) => c.role === 'interest').length, 'as many as there are parameters of interest');
+  check(contributions === plan.poses.length && losses === plan.poses.length, 'one bar and one dot a pose', [
+    contributions,
+    losses,
+  ]);
+  check(
+    (await points('plot-spectrum'))[1] === data.singular_values.length,
+    'one singular value a parameter of interest',
+  );
+  check(
+    data.singular_values.length === data.columns.filter((c) => c.role === 'interest').length,
+    'as many as there are parameters of interest',
+  );
   if (data.candidates) {
     const [, all, chosen] = await points('plot-sensitivity');
-    check(all === data.candidates.sensitivity.length && chosen === new Set(data.candidates.chosen).size, 'all candidates, and those chosen', [all, chosen]);
+    check(
+      all === data.candidates.sensitivity.length && chosen === new Set(data.candidates.chosen).size,
+      'all candidates, and those chosen',
+      [all, chosen],
+    );
     // At the best weights a candidate above the level has all the weight that it may have, one part in as many as there are poses.
     const above = data.candidates.sensitivity.filter((s) => s > 1.001).length;
     check(above <= plan.poses.length, 'no more candidates are worth measuring in full than there are poses', above);
   }
   const known = data.prefix.filter((p) => p && p.log_det !== null).length;
-  check((await points('plot-curve-log_det'))[1] === known, 'the curve has a point for each number of poses that suffices');
+  check(
+    (await points('plot-curve-log_det'))[1] === known,
+    'the curve has a point for each number of poses that suffices',
+  );
   const tests = plan.accuracy.test_poses.length;
-  check(await page.locator('#plot-test-poses').count() === (tests > 0 ? 1 : 0), 'test poses are plotted where there are some');
+  check(
+    (await page.locator('#plot-test-poses').count()) === (tests > 0 ? 1 : 0),
+    'test poses are plotted where there are some',
+  );
   if (tests > 0) check((await points('plot-test-poses'))[1] === tests, 'one dot a test pose');
   const rows = await page.locator('.parameters tbody tr').count();
   check(rows === plan.parameters.filter((p) => p.identifiable).length, 'one row a parameter', rows);
@@ -79,16 +106,45 @@ export async function checkList(page, { plan, folder, problem, data }, program) 
   const csv = join(folder, 'poses.csv');
   await (await promise).saveAs(csv);
   const lines = readFileSync(csv, 'utf8').trim().split('\n');
-  check(lines.slice(1).map((l) => Number(l.split(',')[0])).join() === expected.filter((id) => id !== start[2]).join(), 'the saved list has the ticked poses in order', lines.length);
-  check(lines[0].startsWith(`pose,${plan.poses[0].names[0]} [${plan.poses[0].units[0]}],`), 'its header names and units', lines[0]);
-  const judged = JSON.parse(execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet'],
-    { cwd: new URL('../../', import.meta.url), encoding: 'utf8', maxBuffer: 1e9 }));
-  near(judged.criterion.log_det, await value(page, 'logdet'), 1e-8, 'posewright evaluate reads it and finds the same log det');
+  check(
+    lines
+      .slice(1)
+      .map((l) => Number(l.split(',')[0]))
+      .join() === expected.filter((id) => id !== start[2]).join(),
+    'the saved list has the ticked poses in order',
+    lines.length,
+  );
+  check(
+    lines[0].startsWith(`pose,${plan.poses[0].names[0]} [${plan.poses[0].units[0]}],`),
+    'its header names and units',
+    lines[0],
+  );
+  const judged = JSON.parse(
+    execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet'], {
+      cwd: new URL('../../', import.meta.url),
+      encoding: 'utf8',
+      maxBuffer: 1e9,
+    }),
+  );
+  near(
+    judged.criterion.log_det,
+    await value(page, 'logdet'),
+    1e-8,
+    'posewright evaluate reads it and finds the same log det',
+  );
   check(await page.locator('.reminder').isVisible(), 'the page says that the list has been changed');
   await page.getByRole('button', { name: 'Reset' }).click();
-  check(String(await ids(page)) === String(start) && !(await page.locator('.reminder').isVisible()), 'reset brings the plan’s list back');
-  for (const id of start.slice(1)) await page.getByRole('checkbox', { name: `Measure pose ${id}`, exact: true }).uncheck();
-  check((await page.locator('#list-efficiency').textContent()) === 'not identifiable', 'one pose alone is said not to do', data.columns.length);
+  check(
+    String(await ids(page)) === String(start) && !(await page.locator('.reminder').isVisible()),
+    'reset brings the plan’s list back',
+  );
+  for (const id of start.slice(1))
+    await page.getByRole('checkbox', { name: `Measure pose ${id}`, exact: true }).uncheck();
+  check(
+    (await page.locator('#list-efficiency').textContent()) === 'not identifiable',
+    'one pose alone is said not to do',
+    data.columns.length,
+  );
   await page.getByRole('button', { name: 'Reset' }).click();
 }
 
@@ -103,23 +159,3 @@ async function drag(page, id, before) {
   await page.mouse.move(handle.x + 5, goal.y + 3, { steps: 3 });
   await page.mouse.up();
 }
-
-/** Sorting, heat map, and that everything has a name. */
-export async function checkReading(page, { plan }) {
-  await page.getByRole('button', { name: 'σ / tolerance' }).click();
-  const ratios = await page.locator('.parameters .ratio-value').allTextContents();
-  const numbers = ratios.map((t) => Number(t.replace('−', '-').replace(/ · 10\^/, 'e').replace('−', '-')));
-  check(numbers.every((v, k) => k === 0 || v <= numbers[k - 1]), 'the table sorts by σ/tolerance, largest first');
-  await page.locator('.heat').focus();
-  await page.keyboard.press('ArrowRight');
-  check(/ and .*: −?\d\.\d{4}/.test(await page.locator('.readout').textContent()), 'the heat map names a pair and its value', await page.locator('.readout').textContent());
-  const nameless = await page.locator('button, input, select, canvas.heat').evaluateAll((all) =>
-    all.filter((e) => !e.textContent.trim() && !e.getAttribute('aria-label') && !e.closest('label')).map((e) => e.outerHTML));
-  check(nameless.length === 0, 'every control has a name', nameless);
-  const text = await page.locator('main').innerText();
-  check(text.includes(plan.problem.sha256) && text.includes(`--seed ${plan.seed}`), 'sha256 and seed are there');
-  check(!/\b(undefined|NaN|null|Infinity)\b/.test(text), 'no leftover of the program shows', text.match(/.{20}\b(undefined|NaN|null|Infinity)\b.{20}/)?.[0]);
-}
-
-/** @param {any} page */
-export const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

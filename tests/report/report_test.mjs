@@ -8,9 +8,12 @@ import { about, check, verdict } from './checks.mjs';
 import { checkAltered } from './altered_checks.mjs';
 import { makeReports } from './make_reports.mjs';
 import { checkNumbers } from './numbers_checks.mjs';
-import { checkList, checkPlots, checkReading, checkViewer, overflow } from './page_checks.mjs';
+import { checkList, checkPlots, checkViewer } from './page_checks.mjs';
+import { checkReading, overflow } from './reading_checks.mjs';
 
-const { values } = parseArgs({ options: { program: { type: 'string' }, out: { type: 'string' }, screenshots: { type: 'string' } } });
+const { values } = parseArgs({
+  options: { program: { type: 'string' }, out: { type: 'string' }, screenshots: { type: 'string' } },
+});
 if (!values.program || !values.out) {
   console.error('usage: report_test.mjs --program PATH --out DIR [--screenshots DIR]');
   process.exit(2);
@@ -34,8 +37,15 @@ async function checkCase(browser, c) {
   await page.close();
   for (const width of [1280, 400])
     for (const colorScheme of ['light', 'dark']) {
-      const { page: sized, complaints: others } = await open(browser, c.page, { viewport: { width, height: 900 }, colorScheme });
-      check((await overflow(sized)) <= 0, `nothing is wider than the page at ${width} px, ${colorScheme}`, await overflow(sized));
+      const { page: sized, complaints: others } = await open(browser, c.page, {
+        viewport: { width, height: 900 },
+        colorScheme,
+      });
+      check(
+        (await overflow(sized)) <= 0,
+        `nothing is wider than the page at ${width} px, ${colorScheme}`,
+        await overflow(sized),
+      );
       check(others.length === 0, `no complaint at ${width} px, ${colorScheme}`, others.join(' | '));
       await sized.close();
     }
@@ -45,9 +55,15 @@ async function checkCase(browser, c) {
 async function checkFallback(browser, c) {
   about(`${c.name} without WebGL`);
   const { page, complaints } = await open(browser, c.page);
-  const rods = () => page.locator('svg.wire polyline.rod').evaluateAll((all) => all.map((e) => e.getAttribute('points')).join(' '));
+  const rods = () =>
+    page.locator('svg.wire polyline.rod').evaluateAll((all) => all.map((e) => e.getAttribute('points')).join(' '));
   const before = await rods();
-  check(before.length > 0 && (await page.locator('svg.wire circle.tip').count()) === new Set(c.data.keyframes.map((k) => k.pose).filter(Boolean)).size, 'skeleton and tips are drawn');
+  check(
+    before.length > 0 &&
+      (await page.locator('svg.wire circle.tip').count()) ===
+        new Set(c.data.keyframes.map((k) => k.pose).filter(Boolean)).size,
+    'skeleton and tips are drawn',
+  );
   const slider = page.getByRole('slider', { name: 'Place in the measuring order' });
   await slider.fill('1');
   check((await rods()) !== before, 'the slider moves the skeleton');
@@ -68,7 +84,10 @@ async function takeScreenshots(browser, folder) {
 const cases = makeReports(values.program, values.out);
 const browser = await launch({ webgl: true });
 for (const c of cases) await checkCase(browser, c);
-await checkAltered(browser, cases.find((c) => c.route));
+await checkAltered(
+  browser,
+  cases.find((c) => c.route),
+);
 if (values.screenshots) await takeScreenshots(browser, values.screenshots);
 await browser.close();
 const plain = await launch({ webgl: false });

@@ -73,8 +73,7 @@ export function inverse(factor) {
   }
   const result = new Float64Array(factor.length);
   for (let k = 0; k < n; ++k)
-    for (let i = 0; i <= k; ++i)
-      for (let j = 0; j <= i; ++j) result[at(i, j)] += l[at(k, i)] * l[at(k, j)];
+    for (let i = 0; i <= k; ++i) for (let j = 0; j <= i; ++j) result[at(i, j)] += l[at(k, i)] * l[at(k, j)];
   return result;
 }
 
@@ -85,8 +84,7 @@ export function inverse(factor) {
  */
 export function traceOfProduct(a, b) {
   let sum = 0;
-  for (let i = 0, k = 0; k < a.length; ++i)
-    for (let j = 0; j <= i; ++j, ++k) sum += (i === j ? 1 : 2) * a[k] * b[k];
+  for (let i = 0, k = 0; k < a.length; ++i) for (let j = 0; j <= i; ++j, ++k) sum += (i === j ? 1 : 2) * a[k] * b[k];
   return sum;
 }
 

@@ -70,8 +70,14 @@ export class PlanFigures {
     const { factor, rank } = cholesky(information);
     if (rank < this.columns.length)
       return {
-        identifiable: false, stuck: this.columns[rank].name, logDet: null, sigma: null, worst: null,
-        testErrors: null, rho0: null, covariance: null,
+        identifiable: false,
+        stuck: this.columns[rank].name,
+        logDet: null,
+        sigma: null,
+        worst: null,
+        testErrors: null,
+        rho0: null,
+        covariance: null,
       };
     const covariance = inverse(factor);
     const ratios = this.columns.map((_, j) => Math.sqrt(covariance[at(j, j)]));

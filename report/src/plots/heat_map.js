@@ -7,19 +7,35 @@ const rgb = (text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
 
 /** Symmetric matrix of values from −1 to 1 as coloured cells; pointer, finger and arrow keys name a cell. */
 export function heatMap() {
-  const canvas = h('canvas', { class: 'heat', tabindex: 0, role: 'img', 'aria-label': 'Correlation of every pair of parameters; arrow keys walk through the cells' });
-  const element = h('div', { class: 'heat-holder' }, canvas, h('div', { class: 'heat-scale' }, h('span', {}, '−1'), h('span', { class: 'heat-ramp' }), h('span', {}, '+1')));
-  const map = { element, onPoint: (text) => {}, draw: (names, value) => {
-    state = { names, value };
-    cursor = null;
-    paint();
-  } };
+  const canvas = h('canvas', {
+    class: 'heat',
+    tabindex: 0,
+    role: 'img',
+    'aria-label': 'Correlation of every pair of parameters; arrow keys walk through the cells',
+  });
+  const element = h(
+    'div',
+    { class: 'heat-holder' },
+    canvas,
+    h('div', { class: 'heat-scale' }, h('span', {}, '−1'), h('span', { class: 'heat-ramp' }), h('span', {}, '+1')),
+  );
+  const map = {
+    element,
+    onPoint: (text) => {},
+    draw: (names, value) => {
+      state = { names, value };
+      cursor = null;
+      paint();
+    },
+  };
   let state = { names: /** @type {string[]} */ ([]), value: (i, j) => 0 };
   let cursor = /** @type {[number, number]|null} */ (null);
-  let margin = 0, cell = 1;
+  let margin = 0,
+    cell = 1;
 
   const paint = () => {
-    const n = state.names.length, width = Math.floor(element.clientWidth);
+    const n = state.names.length,
+      width = Math.floor(element.clientWidth);
     if (n === 0 || width === 0) return;
     const ratio = Math.min(3, devicePixelRatio);
     const context = canvas.getContext('2d');
@@ -59,10 +75,15 @@ export function heatMap() {
     cursor = [Math.min(n - 1, Math.max(0, i)), Math.min(n - 1, Math.max(0, j))];
     paint();
     const [a, b] = cursor;
-    map.onPoint(a === b ? `${state.names[a]}: with itself, always 1` : `${state.names[a]} and ${state.names[b]}: ${fixed(state.value(a, b), 4)}`);
+    map.onPoint(
+      a === b
+        ? `${state.names[a]}: with itself, always 1`
+        : `${state.names[a]} and ${state.names[b]}: ${fixed(state.value(a, b), 4)}`,
+    );
   };
   const atPointer = (event) => {
-    const i = Math.floor(event.offsetY / cell), j = Math.floor((event.offsetX - margin) / cell);
+    const i = Math.floor(event.offsetY / cell),
+      j = Math.floor((event.offsetX - margin) / cell);
     if (j >= 0 && i < state.names.length && j < state.names.length) point(i, j);
   };
   canvas.addEventListener('pointermove', atPointer);

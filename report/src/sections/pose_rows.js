@@ -39,27 +39,64 @@ function focusOf(rows) {
 function scrollInside(rows, element) {
   const top = element.offsetTop - rows.offsetTop;
   if (top < rows.scrollTop) rows.scrollTop = top;
-  else if (top + element.offsetHeight > rows.scrollTop + rows.clientHeight) rows.scrollTop = top + element.offsetHeight - rows.clientHeight;
+  else if (top + element.offsetHeight > rows.scrollTop + rows.clientHeight)
+    rows.scrollTop = top + element.offsetHeight - rows.clientHeight;
 }
 
 /** @param {import('../pose_list.js').PoseList} list @param {{id: number, on: boolean}} entry @param {number} place @param {(id: number) => void} preview */
 function row(list, entry, place, preview) {
   const pose = list.poses.get(entry.id);
-  const box = h('input', { class: 'tick', type: 'checkbox', checked: entry.on, 'aria-label': `Measure pose ${entry.id}`,
-    onchange: () => list.tick(entry.id, box.checked) });
-  const move = (name, step, text, allowed) => h('button', { class: `${name} bare`, disabled: !allowed,
-    'aria-label': `Move pose ${entry.id} ${name === 'up' ? 'earlier' : 'later'}`, onclick: () => list.move(place, place + step) }, text);
-  const notes = [pose.station && `station ${pose.station}`, pose.load_case,
-    list.unreachable.has(entry.id) && 'not reachable'].filter(Boolean).join(', ');
-  const loss = pose.efficiency_without === undefined ? '' : pose.efficiency_without <= 0 ? 'indispensable'
-    : `costs ${percent(1 - pose.efficiency_without)}`;
-  return h('li', { 'data-id': entry.id, class: entry.on ? '' : 'off' },
-    h('span', { class: 'handle', title: 'Drag to reorder', 'aria-hidden': 'true' }, '⠿'), box,
-    h('button', { class: 'preview bare', 'aria-pressed': 'false', title: list.unreachable.get(entry.id) ?? 'Show in the picture',
-      onclick: () => preview(entry.id) },
-      h('b', {}, `Pose ${entry.id}`), notes ? h('span', { class: 'notes' }, notes) : null),
+  const box = h('input', {
+    class: 'tick',
+    type: 'checkbox',
+    checked: entry.on,
+    'aria-label': `Measure pose ${entry.id}`,
+    onchange: () => list.tick(entry.id, box.checked),
+  });
+  const move = (name, step, text, allowed) =>
+    h(
+      'button',
+      {
+        class: `${name} bare`,
+        disabled: !allowed,
+        'aria-label': `Move pose ${entry.id} ${name === 'up' ? 'earlier' : 'later'}`,
+        onclick: () => list.move(place, place + step),
+      },
+      text,
+    );
+  const notes = [
+    pose.station && `station ${pose.station}`,
+    pose.load_case,
+    list.unreachable.has(entry.id) && 'not reachable',
+  ]
+    .filter(Boolean)
+    .join(', ');
+  const loss =
+    pose.efficiency_without === undefined
+      ? ''
+      : pose.efficiency_without <= 0
+        ? 'indispensable'
+        : `costs ${percent(1 - pose.efficiency_without)}`;
+  return h(
+    'li',
+    { 'data-id': entry.id, class: entry.on ? '' : 'off' },
+    h('span', { class: 'handle', title: 'Drag to reorder', 'aria-hidden': 'true' }, '⠿'),
+    box,
+    h(
+      'button',
+      {
+        class: 'preview bare',
+        'aria-pressed': 'false',
+        title: list.unreachable.get(entry.id) ?? 'Show in the picture',
+        onclick: () => preview(entry.id),
+      },
+      h('b', {}, `Pose ${entry.id}`),
+      notes ? h('span', { class: 'notes' }, notes) : null,
+    ),
     h('span', { class: 'loss', title: 'Loss of efficiency if this pose alone is missing' }, loss),
-    move('up', -1, '↑', place > 0), move('down', 1, '↓', place < list.entries.length - 1));
+    move('up', -1, '↑', place > 0),
+    move('down', 1, '↓', place < list.entries.length - 1),
+  );
 }
 
 /** Nearer than this to the end of the list, dragging scrolls it, px. */
@@ -80,13 +117,15 @@ function dragging(rows, list) {
       if (move.clientY > bottom - edge) rows.scrollTop += edge / 2;
       const others = [...rows.children].filter((r) => r !== dragged);
       const next = others.find((r) => move.clientY < r.getBoundingClientRect().top + r.offsetHeight / 2);
-      if (next ? next.previousElementSibling !== dragged : rows.lastElementChild !== dragged) rows.insertBefore(dragged, next ?? null);
+      if (next ? next.previousElementSibling !== dragged : rows.lastElementChild !== dragged)
+        rows.insertBefore(dragged, next ?? null);
     };
     const over = new AbortController();
     const drop = () => {
       over.abort();
       const id = Number(dragged.dataset.id);
-      const from = list.entries.findIndex((e) => e.id === id), to = [...rows.children].indexOf(dragged);
+      const from = list.entries.findIndex((e) => e.id === id),
+        to = [...rows.children].indexOf(dragged);
       dragged.classList.remove('dragged');
       list.move(from, to);
     };

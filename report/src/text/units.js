@@ -15,11 +15,18 @@ export const missing = '–';
 export function number(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return missing;
   const text = value === 0 ? '0' : String(Number(value.toPrecision(digits)));
-  return text.replace(/-/g, '−').replace(/e([−+]?)(\d+)/, ' · 10^$1$2').replace('^+', '^');
+  return text
+    .replace(/-/g, '−')
+    .replace(/e([−+]?)(\d+)/, ' · 10^$1$2')
+    .replace('^+', '^');
 }
 
 /** @param {number} value @param {number} decimals */
-export const fixed = (value, decimals) => value.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, '').replace('-', '−');
+export const fixed = (value, decimals) =>
+  value
+    .toFixed(decimals)
+    .replace(/^-(?=0(\.0*)?$)/, '')
+    .replace('-', '−');
 
 /** @param {string} unit SI @returns {{factor: number, name: string}} */
 export function shownUnit(unit) {

@@ -1,6 +1,19 @@
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshStandardMaterial,
+  PlaneGeometry,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from 'three';
 import { colour } from '../theme.js';
 
@@ -13,11 +26,16 @@ export function place(object, x) {
 /** @param {import('../types.js').Shape} shape @param {number} size of a plane's visible part, m */
 function geometryOf(shape, size) {
   switch (shape.type) {
-    case 'box': return new BoxGeometry(...shape.size);
-    case 'sphere': return new SphereGeometry(shape.radius, 32, 20);
-    case 'cylinder': return new CylinderGeometry(shape.radius, shape.radius, shape.length, 40).rotateX(Math.PI / 2);
-    case 'plane': return new PlaneGeometry(size, size).applyQuaternion(
-      new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...shape.normal).normalize()));
+    case 'box':
+      return new BoxGeometry(...shape.size);
+    case 'sphere':
+      return new SphereGeometry(shape.radius, 32, 20);
+    case 'cylinder':
+      return new CylinderGeometry(shape.radius, shape.radius, shape.length, 40).rotateX(Math.PI / 2);
+    case 'plane':
+      return new PlaneGeometry(size, size).applyQuaternion(
+        new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...shape.normal).normalize()),
+      );
     default: {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', new BufferAttribute(new Float32Array(shape.vertices), 3));
@@ -51,7 +69,10 @@ export class Bodies {
     const mesh = new Mesh(geometry, material);
     place(mesh, body.placement);
     if (plane) this.#centre(mesh, /** @type {any} */ (body.shape).normal, extent);
-    const edges = new LineSegments(new EdgesGeometry(geometry, 25), new LineBasicMaterial({ transparent: true, opacity: plane ? 0.25 : 0.55 }));
+    const edges = new LineSegments(
+      new EdgesGeometry(geometry, 25),
+      new LineBasicMaterial({ transparent: true, opacity: plane ? 0.25 : 0.55 }),
+    );
     mesh.add(edges);
     this.groups[body.frame].add(mesh);
     return { body, material, line: edges.material };

@@ -4,7 +4,10 @@ const enoughPoints = 1000;
 
 /** @param {number[][]} points @returns {Extent} */
 export function extentOf(points) {
-  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const [low, high] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
   for (const p of points)
     for (let k = 0; k < 3; ++k) [low[k], high[k]] = [Math.min(low[k], p[k]), Math.max(high[k], p[k])];
   const centre = low.map((value, k) => (value + high[k]) / 2);
@@ -23,10 +26,16 @@ function corners(shape) {
     const { low, high } = extentOf(points);
     return boxCorners(low, high);
   }
-  const half = shape.type === 'box' ? shape.size.map((s) => s / 2)
-    : shape.type === 'sphere' ? [shape.radius, shape.radius, shape.radius]
-    : [shape.radius, shape.radius, shape.length / 2];
-  return boxCorners(half.map((v) => -v), half);
+  const half =
+    shape.type === 'box'
+      ? shape.size.map((s) => s / 2)
+      : shape.type === 'sphere'
+        ? [shape.radius, shape.radius, shape.radius]
+        : [shape.radius, shape.radius, shape.length / 2];
+  return boxCorners(
+    half.map((v) => -v),
+    half,
+  );
 }
 
 /** @param {number[]} low @param {number[]} high */
@@ -37,8 +46,11 @@ const boxCorners = (low, high) =>
 export function transformed(x, p) {
   const [qx, qy, qz, qw] = x.slice(3);
   const [tx, ty, tz] = [2 * (qy * p[2] - qz * p[1]), 2 * (qz * p[0] - qx * p[2]), 2 * (qx * p[1] - qy * p[0])];
-  return [x[0] + p[0] + qw * tx + qy * tz - qz * ty, x[1] + p[1] + qw * ty + qz * tx - qx * tz,
-    x[2] + p[2] + qw * tz + qx * ty - qy * tx];
+  return [
+    x[0] + p[0] + qw * tx + qy * tz - qz * ty,
+    x[1] + p[1] + qw * ty + qz * tx - qx * tz,
+    x[2] + p[2] + qw * tz + qx * ty - qy * tx,
+  ];
 }
 
 /** Corners of a body in the measurement frame. @param {import('../types.js').Body} body @param {number[][]} frames */
@@ -57,7 +69,12 @@ export function sceneExtent(report) {
   }
   const first = report.keyframes[0];
   if (first) for (const body of report.bodies) points.push(...bodyCorners(body, first.frames));
-  return points.length > 0 ? extentOf(points) : extentOf([[-1, -1, -1], [1, 1, 1]]);
+  return points.length > 0
+    ? extentOf(points)
+    : extentOf([
+        [-1, -1, -1],
+        [1, 1, 1],
+      ]);
 }
 
 /** @param {import('../types.js').Keyframe[]} stops @returns {Extent} of the tip alone */

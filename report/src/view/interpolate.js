@@ -17,8 +17,10 @@ function turned(a, b, t) {
 }
 
 /** @param {number[]} a @param {number[]} b @param {number} t @returns {number[]} */
-export const placementBetween = (a, b, t) =>
-  [...mixed(a.slice(0, 3), b.slice(0, 3), t), ...turned(a.slice(3), b.slice(3), t)];
+export const placementBetween = (a, b, t) => [
+  ...mixed(a.slice(0, 3), b.slice(0, 3), t),
+  ...turned(a.slice(3), b.slice(3), t),
+];
 
 /** @param {Drawn} a @param {Drawn} b @param {number} t @returns {Drawn} */
 export function between(a, b, t) {
@@ -28,7 +30,8 @@ export function between(a, b, t) {
   return {
     frames: a.frames.map((frame, k) => placementBetween(frame, b.frames[k], t)),
     lines: a.lines.map((line, l) =>
-      line.length === b.lines[l]?.length ? line.map((p, k) => mixed(p, b.lines[l][k], t)) : near.lines[l] ?? line),
+      line.length === b.lines[l]?.length ? line.map((p, k) => mixed(p, b.lines[l][k], t)) : (near.lines[l] ?? line),
+    ),
     tip: placementBetween(a.tip, b.tip, t),
     targets: a.targets.map((p, k) => (p && b.targets[k] ? mixed(p, b.targets[k], t) : near.targets[k])),
   };
@@ -43,7 +46,8 @@ export function exaggerated(drawn, rest, factor) {
   return {
     frames: drawn.frames.map((frame, k) => placementBetween(rest.frames[k], frame, factor)),
     lines: drawn.lines.map((line, l) =>
-      line.map((p, k) => (rest.lines[l]?.[k] ? mixed(rest.lines[l][k], p, factor) : p))),
+      line.map((p, k) => (rest.lines[l]?.[k] ? mixed(rest.lines[l][k], p, factor) : p)),
+    ),
     tip: placementBetween(rest.tip, drawn.tip, factor),
     targets: drawn.targets.map((p, k) => (p && rest.targets[k] ? mixed(rest.targets[k], p, factor) : p)),
   };

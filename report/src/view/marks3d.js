@@ -1,6 +1,22 @@
 import {
-  BufferAttribute, BufferGeometry, CanvasTexture, Color, Group, InstancedMesh, Line, LineBasicMaterial, LineDashedMaterial,
-  Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Points, PointsMaterial, ConeGeometry, SphereGeometry, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Color,
+  Group,
+  InstancedMesh,
+  Line,
+  LineBasicMaterial,
+  LineDashedMaterial,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  Points,
+  PointsMaterial,
+  ConeGeometry,
+  SphereGeometry,
+  Vector3,
 } from 'three';
 import { colour, viridisAt } from '../theme.js';
 
@@ -9,7 +25,11 @@ export class Tips {
   /** @param {import('./picture.js').Picture} picture */
   constructor(picture) {
     this.picture = picture;
-    this.mesh = new InstancedMesh(new SphereGeometry(1, 18, 12), new MeshBasicMaterial(), Math.max(1, picture.tips.length));
+    this.mesh = new InstancedMesh(
+      new SphereGeometry(1, 18, 12),
+      new MeshBasicMaterial(),
+      Math.max(1, picture.tips.length),
+    );
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 2;
     this.mesh.material.transparent = true;
@@ -54,9 +74,18 @@ export function candidateCloud(positions, sensitivity) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
   geometry.setAttribute('color', new BufferAttribute(colours, 3));
-  return new Points(geometry, new PointsMaterial({
-    size: 4, sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5, transparent: true, opacity: 0.7,
-  }));
+  return new Points(
+    geometry,
+    new PointsMaterial({
+      size: 4,
+      sizeAttenuation: false,
+      vertexColors: true,
+      map: disc(),
+      alphaTest: 0.5,
+      transparent: true,
+      opacity: 0.7,
+    }),
+  );
 }
 
 /** Targets on the robot, stations, and the lines between them. */

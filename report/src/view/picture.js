@@ -29,7 +29,8 @@ export class Picture {
   /** 1, or a round number where nothing would be seen to move. */
   #suggestedFactor() {
     if (this.stops.length < 2) return 1;
-    const moving = tipExtent(this.stops).radius, all = sceneExtent(this.report).radius;
+    const moving = tipExtent(this.stops).radius,
+      all = sceneExtent(this.report).radius;
     if (!(moving > 0) || moving > smallMovement * all) return 1;
     const wanted = (3 * smallMovement * all) / moving;
     const decade = 10 ** Math.floor(Math.log10(wanted));
@@ -44,12 +45,15 @@ export class Picture {
     const decade = 10 ** Math.floor(Math.log10(this.extent.radius / 2));
     this.grid = [5, 2, 1].map((d) => d * decade).find((d) => d <= this.extent.radius / 2) ?? decade;
     const first = report.keyframes[0];
-    const floors = report.bodies.filter((b) => b.shape.type === 'plane' && b.frame === 0)
-      .filter((b) => /** @type {any} */ (b.shape).normal[2] > 0.99 && Math.hypot(b.placement[3], b.placement[4]) < 1e-3);
+    const floors = report.bodies
+      .filter((b) => b.shape.type === 'plane' && b.frame === 0)
+      .filter(
+        (b) => /** @type {any} */ (b.shape).normal[2] > 0.99 && Math.hypot(b.placement[3], b.placement[4]) < 1e-3,
+      );
     const solids = first ? report.bodies.flatMap((b) => bodyCorners(b, first.frames)) : [];
-    this.ground = floors.length > 0 ? floors[0].placement[2]
-      : Math.min(this.extent.low[2], ...solids.map((p) => p[2]));
-    this.tips = this.stops.filter((k, n, all) => all.findIndex((other) => other.pose === k.pose) === n)
+    this.ground = floors.length > 0 ? floors[0].placement[2] : Math.min(this.extent.low[2], ...solids.map((p) => p[2]));
+    this.tips = this.stops
+      .filter((k, n, all) => all.findIndex((other) => other.pose === k.pose) === n)
       .map((k) => ({ id: /** @type {number} */ (k.pose), position: this.enlarged(k.tip.slice(0, 3)) }));
   }
 

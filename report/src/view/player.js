@@ -23,9 +23,11 @@ export class Player extends EventTarget {
     const shown = this.list.current;
     const { keyframes, route } = this.list.report;
     this.routed = Boolean(route) && !this.list.changed;
-    this.sequence = this.routed ? keyframes
+    this.sequence = this.routed
+      ? keyframes
       : this.list.ids.map((id) => this.list.keyframes.get(id)).filter((k) => k !== undefined);
-    this.stops = this.sequence.map((k, index) => ({ id: k.pose, index }))
+    this.stops = this.sequence
+      .map((k, index) => ({ id: k.pose, index }))
       .filter((s, k, all) => s.id && all.findIndex((other) => other.id === s.id) === k);
     const at = this.stops.find((s) => s.id === shown);
     this.go(at ? at.index : Math.min(this.place, this.last));

@@ -11,10 +11,21 @@ export function poseCard(list) {
   const parts = [];
   if (list.keyframes.size > 0 && !list.keyframes.has(pose.id))
     parts.push(h('p', { class: 'note' }, `Not drawn: ${list.unreachable.get(pose.id) ?? 'the route leaves it out'}.`));
-  parts.push(h('dl', { class: 'values' }, ...coordinates(pose, list.report.actuator_units ?? {})
-    .map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value)))));
-  const facts = [pose.station && `station ${pose.station}`, pose.load_case && `load case ${pose.load_case}`,
-    `${percent(pose.contribution)} of all information`, tipText(pose)].filter(Boolean);
+  parts.push(
+    h(
+      'dl',
+      { class: 'values' },
+      ...coordinates(pose, list.report.actuator_units ?? {}).map(([name, value]) =>
+        h('div', {}, h('dt', {}, name), h('dd', {}, value)),
+      ),
+    ),
+  );
+  const facts = [
+    pose.station && `station ${pose.station}`,
+    pose.load_case && `load case ${pose.load_case}`,
+    `${percent(pose.contribution)} of all information`,
+    tipText(pose),
+  ].filter(Boolean);
   parts.push(h('p', { class: 'note' }, `${facts.join(' · ')}.`));
   const sights = sightText(pose);
   if (sights) parts.push(h('p', { class: 'note' }, sights));
@@ -24,8 +35,10 @@ export function poseCard(list) {
 /** @param {any} pose @param {Object<string, string>} actuatorUnits */
 function coordinates(pose, actuatorUnits) {
   const own = (pose.names ?? []).map((name, k) => [name, coordinate(pose.configuration[k], pose.units[k])]);
-  const driven = Object.entries(pose.actuators ?? {}).map(([name, value]) =>
-    [name, actuatorUnits[name] ? coordinate(value, actuatorUnits[name]) : String(Number(value.toPrecision(6)))]);
+  const driven = Object.entries(pose.actuators ?? {}).map(([name, value]) => [
+    name,
+    actuatorUnits[name] ? coordinate(value, actuatorUnits[name]) : String(Number(value.toPrecision(6))),
+  ]);
   return [...own, ...driven];
 }
 
@@ -41,6 +54,7 @@ function sightText(pose) {
   if (judged.length === 0) return '';
   const hidden = judged.filter((t) => !t.visible);
   if (hidden.length === 0) return `All ${judged.length} targets are seen.`;
-  return `${judged.length - hidden.length} of ${judged.length} targets are seen; hidden: ${
-    hidden.map((t) => `${t.target} (${t.hidden_by})`).join(', ')}.`;
+  return `${judged.length - hidden.length} of ${judged.length} targets are seen; hidden: ${hidden
+    .map((t) => `${t.target} (${t.hidden_by})`)
+    .join(', ')}.`;
 }

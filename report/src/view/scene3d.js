@@ -1,13 +1,21 @@
 import {
-  DirectionalLight, GridHelper, HemisphereLight, AxesHelper, MOUSE, PerspectiveCamera, Raycaster, Scene, TOUCH, Vector2, Vector3,
+  DirectionalLight,
+  GridHelper,
+  HemisphereLight,
+  AxesHelper,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
   WebGLRenderer,
 } from 'three';
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { colour } from '../theme.js';
 import { quantity } from '../text/units.js';
 import { Bodies } from './bodies3d.js';
 import { Skeleton } from './skeleton3d.js';
 import { directions } from './directions.js';
+import { onClick, orbit } from './scene_controls.js';
 import { Sights, Tips, candidateCloud } from './marks3d.js';
 
 /** The 3-D picture. Drawn only when something has changed. */
@@ -28,8 +36,8 @@ export class Scene3d {
     holder.append(this.canvas);
     this.#light();
     this.#furnish();
-    this.#control();
-    this.#picking(pick);
+    this.controls = orbit(this);
+    onClick(this, (at) => this.#pick(at, pick));
     this.look('free', picture.extent);
     this.paint();
   }
@@ -53,62 +61,22 @@ export class Scene3d {
     const step = this.picture.grid;
     this.grid = new GridHelper(step * 20, 20);
     this.grid.rotation.x = Math.PI / 2;
-    this.grid.position.set(Math.round(extent.centre[0] / step) * step, Math.round(extent.centre[1] / step) * step, this.picture.ground);
+    this.grid.position.set(
+      Math.round(extent.centre[0] / step) * step,
+      Math.round(extent.centre[1] / step) * step,
+      this.picture.ground,
+    );
     this.grid.material.transparent = true;
     this.grid.material.opacity = 0.5;
     this.scene.add(this.grid, new AxesHelper(unit * 0.12));
   }
 
-  #control() {
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
-    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
-    this.controls.addEventListener('change', () => this.request());
-    // The wheel scrolls the page until the picture has been clicked; a finger moved up or down scrolls it, too.
-    this.controls.enableZoom = false;
-    this.canvas.style.touchAction = 'pan-y';
-    this.canvas.addEventListener('pointerdown', (event) => {
-      this.controls.enableZoom = true;
-      if (event.pointerType !== 'touch') this.canvas.focus({ preventScroll: true });
-    });
-    this.controls.addEventListener('start', () => (this.turned = true));
-    this.canvas.addEventListener('blur', () => (this.controls.enableZoom = false));
-    this.canvas.tabIndex = 0;
-    this.canvas.addEventListener('keydown', (event) => this.#key(event));
-  }
-
-  /** Arrows turn, plus and minus zoom. @param {KeyboardEvent} event */
-  #key(event) {
-    const turns = { ArrowLeft: [0.12, 0], ArrowRight: [-0.12, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
-    const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    if (turns[event.key]) {
-      const [around, up] = turns[event.key];
-      offset.applyAxisAngle(new Vector3(0, 0, 1), around);
-      const side = new Vector3().crossVectors(new Vector3(0, 0, 1), offset).normalize();
-      const raised = offset.clone().applyAxisAngle(side, -up);
-      if (Math.abs(raised.z) < 0.995 * raised.length()) offset.copy(raised);
-    } else if (zooms[event.key]) offset.multiplyScalar(zooms[event.key]);
-    else return;
-    event.preventDefault();
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
-    this.request();
-  }
-
-  /** @param {(id: number) => void} pick */
-  #picking(pick) {
-    let down = null;
-    this.canvas.addEventListener('pointerdown', (event) => (down = [event.clientX, event.clientY]));
-    this.canvas.addEventListener('pointerup', (event) => {
-      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5) return;
-      const box = this.canvas.getBoundingClientRect();
-      const at = new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
-      const ray = new Raycaster();
-      ray.setFromCamera(at, this.camera);
-      const hit = ray.intersectObject(this.tips.mesh)[0];
-      if (hit?.instanceId !== undefined) pick(this.picture.tips[hit.instanceId].id);
-    });
+  /** @param {Vector2} at @param {(id: number) => void} pick */
+  #pick(at, pick) {
+    const ray = new Raycaster();
+    ray.setFromCamera(at, this.camera);
+    const hit = ray.intersectObject(this.tips.mesh)[0];
+    if (hit?.instanceId !== undefined) pick(this.picture.tips[hit.instanceId].id);
   }
 
   /** @param {keyof typeof directions} from @param {import('./extent.js').Extent} extent */

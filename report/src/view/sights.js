@@ -16,8 +16,12 @@ export function sightsOf(report, pose, targets) {
     const to = targets[report.targets.indexOf(sight.target)];
     if (!from || !to) continue;
     const hidden = sight.visible === false;
-    sights.push({ from, to, hidden,
-      label: `${sight.target} from ${sight.station}${hidden ? `: hidden (${sight.hidden_by})` : ''}` });
+    sights.push({
+      from,
+      to,
+      hidden,
+      label: `${sight.target} from ${sight.station}${hidden ? `: hidden (${sight.hidden_by})` : ''}`,
+    });
   }
   return sights;
 }

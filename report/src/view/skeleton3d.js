@@ -1,4 +1,13 @@
-import { CylinderGeometry, Group, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
+import {
+  CylinderGeometry,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  MeshStandardMaterial,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
+} from 'three';
 import { colour } from '../theme.js';
 
 const along = new Vector3(0, 1, 0);
@@ -27,8 +36,10 @@ export class Skeleton {
 
   /** @param {number[][][]} lines */
   move(lines) {
-    const matrix = new Matrix4(), turn = new Quaternion();
-    let rod = 0, joint = 0;
+    const matrix = new Matrix4(),
+      turn = new Quaternion();
+    let rod = 0,
+      joint = 0;
     for (const line of lines) {
       const points = line.map((p) => new Vector3(p[0], p[1], p[2]));
       points.forEach((point, k) => {
@@ -39,8 +50,17 @@ export class Skeleton {
         const way = point.clone().sub(points[k - 1]);
         const length = way.length();
         turn.setFromUnitVectors(along, length > 1e-9 ? way.divideScalar(length) : along);
-        this.rods.setMatrixAt(rod++, matrix.compose(point.clone().add(points[k - 1]).multiplyScalar(0.5), turn,
-          new Vector3(this.radius, Math.max(length, 1e-9), this.radius)));
+        this.rods.setMatrixAt(
+          rod++,
+          matrix.compose(
+            point
+              .clone()
+              .add(points[k - 1])
+              .multiplyScalar(0.5),
+            turn,
+            new Vector3(this.radius, Math.max(length, 1e-9), this.radius),
+          ),
+        );
       });
     }
     [this.rods.count, this.joints.count] = [rod, joint];

@@ -2,7 +2,20 @@ import { svg } from '../dom.js';
 import { bodyCorners } from './extent.js';
 import { directions } from './directions.js';
 
-const boxEdges = [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+const boxEdges = [
+  [0, 1],
+  [1, 3],
+  [3, 2],
+  [2, 0],
+  [4, 5],
+  [5, 7],
+  [7, 6],
+  [6, 4],
+  [0, 4],
+  [1, 5],
+  [2, 6],
+  [3, 7],
+];
 
 /** The same picture in lines, for browsers without WebGL: parallel projection, bodies as their boxes. */
 export class SvgView {
@@ -17,7 +30,10 @@ export class SvgView {
     this.legend = '';
     [this.width, this.height] = [600, 400];
     this.canvas.addEventListener('keydown', (event) => this.#key(event));
-    this.canvas.addEventListener('pointermove', (event) => event.buttons === 1 && this.#turn(-event.movementX, event.movementY));
+    this.canvas.addEventListener(
+      'pointermove',
+      (event) => event.buttons === 1 && this.#turn(-event.movementX, event.movementY),
+    );
     this.look('free', picture.extent);
   }
 
@@ -67,7 +83,12 @@ export class SvgView {
   /** To the right and upwards, m from the middle. @param {number[]} p @returns {[number, number]} */
   #turned(p) {
     const [x, y, z] = p.map((v, k) => v - this.centre[k]);
-    const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
+    const [ca, sa, ce, se] = [
+      Math.cos(this.azimuth),
+      Math.sin(this.azimuth),
+      Math.cos(this.elevation),
+      Math.sin(this.elevation),
+    ];
     return [-sa * x + ca * y, -se * (ca * x + sa * y) + ce * z];
   }
 
@@ -80,7 +101,16 @@ export class SvgView {
 
   /** @param {number[][]} points @param {string} name of the class */
   #line(points, name) {
-    return svg('polyline', { class: name, points: points.map((p) => this.#project(p).map((v) => v.toFixed(1)).join(',')).join(' ') });
+    return svg('polyline', {
+      class: name,
+      points: points
+        .map((p) =>
+          this.#project(p)
+            .map((v) => v.toFixed(1))
+            .join(','),
+        )
+        .join(' '),
+    });
   }
 
   /** @param {number[]} p @param {string} name @param {number} radius px */
@@ -97,17 +127,22 @@ export class SvgView {
     if (drawn && shown.layers.bodies)
       for (const body of picture.report.bodies) {
         const corners = bodyCorners(body, drawn.frames);
-        if (corners.length > 0) for (const [a, b] of boxEdges) parts.push(this.#line([corners[a], corners[b]], `edge ${body.kind}`));
+        if (corners.length > 0)
+          for (const [a, b] of boxEdges) parts.push(this.#line([corners[a], corners[b]], `edge ${body.kind}`));
       }
     if (shown.layers.candidates) parts.push(...this.#candidates());
     if (shown.layers.sights)
       for (const s of shown.sights) parts.push(this.#line([s.from, s.to], s.hidden ? 'sight hidden' : 'sight'));
     for (const station of picture.report.stations) parts.push(this.#dot(station.placement, 'station', 6));
-    for (const line of drawn?.lines ?? []) parts.push(this.#line(line, 'rod'), ...line.map((p) => this.#dot(p, 'joint', 3.5)));
+    for (const line of drawn?.lines ?? [])
+      parts.push(this.#line(line, 'rod'), ...line.map((p) => this.#dot(p, 'joint', 3.5)));
     for (const target of drawn?.targets ?? []) if (target) parts.push(this.#dot(target, 'target', 3));
     for (const tip of picture.tips) {
-      const dot = this.#dot(tip.position, `tip ${tip.id === shown.current ? 'now' : shown.on.has(tip.id) ? '' : 'off'}`,
-        tip.id === shown.current ? 7 : 4);
+      const dot = this.#dot(
+        tip.position,
+        `tip ${tip.id === shown.current ? 'now' : shown.on.has(tip.id) ? '' : 'off'}`,
+        tip.id === shown.current ? 7 : 4,
+      );
       dot.addEventListener('click', () => this.pick(tip.id));
       parts.push(dot);
     }

@@ -1,5 +1,5 @@
 import { h } from '../dom.js';
-import { number, percentDown, quantity } from '../text/units.js';
+import { percentDown, quantity } from '../text/units.js';
 import * as say from '../text/sentences.js';
 
 /** @param {string} value @param {string} title @param {string} hint */
@@ -12,7 +12,8 @@ function tiles(list) {
   const kept = plan.parameters.filter((p) => p.identifiable);
   const nuisance = kept.filter((p) => p.role === 'nuisance').length;
   const { candidates } = plan.certificate;
-  const worst = Math.max(...kept.filter((p) => p.role === 'interest').map((p) => p.sigma / p.tolerance));
+  const known = kept.filter((p) => p.role === 'interest');
+  const gained = known.filter((p) => p.worth_identifying).length;
   return h(
     'div',
     { class: 'tiles' },
@@ -24,7 +25,7 @@ function tiles(list) {
     ),
     plan.accuracy.rho0 !== null
       ? tile(quantity(plan.accuracy.rho0, 'm', 3), 'position error', 'expected after calibration, 1σ')
-      : tile(`${number(worst, 3)} ×`, 'tolerance', 'predicted σ of the parameter known least'),
+      : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
     candidates
       ? tile(`≥ ${percentDown(candidates.efficiency)}`, 'of the best plan', 'proved over the candidates')
       : tile('no bound', 'for this criterion', 'how near the best plan is unknown'),

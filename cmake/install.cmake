@@ -7,6 +7,7 @@ install(TARGETS posewright_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY include/posewright ${PROJECT_BINARY_DIR}/include/posewright
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY planners DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/posewright FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright FILES_MATCHING PATTERN "*.schema.json")
 install(EXPORT posewright-targets NAMESPACE posewright:: DESTINATION ${package_dir})
 
 configure_package_config_file(cmake/posewright-config.cmake.in posewright-config.cmake INSTALL_DESTINATION ${package_dir})

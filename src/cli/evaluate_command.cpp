@@ -8,6 +8,7 @@
 #include "posewright/pipeline/evaluate_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -51,7 +52,7 @@ int run(const po::variables_map& values, const Words& positional) {
     if (watch.was_interrupted()) return interrupted;
   }
   if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
-  else fmt::print("{}", evaluation_text(result));
+  else print_report(evaluation_text(result));
   return done;
 }
 

@@ -1,54 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <new>
-#include <sstream>
 
 #include "command.hpp"
+#include "help.hpp"
 #include "posewright/version.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
-
-std::string command_names() {
-  std::string names;
-  for (const Command& command : commands()) names += (names.empty() ? "" : ", ") + command.name;
-  return names;
-}
-
-std::string general_help() {
-  std::string text =
-      "posewright: plans which poses to measure before a robot is calibrated\n\n"
-      "Usage: posewright COMMAND [options]\n\nCommands:\n";
-  for (const Command& command : commands())
-    text += fmt::format("  {:<28}{}\n", command.name + " " + command.arguments, command.summary);
-  text +=
-      "  help COMMAND                options of a command\n\n"
-      "Example:\n  posewright plan examples/telescope/problem.yaml -o plan.json --poses-csv poses.csv\n\n"
-      "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
-      "written).\n";
-  return text;
-}
-
-std::string command_help(const Command& command) {
-  std::ostringstream text;
-  text << "Usage: posewright " << command.name << " " << command.arguments << " [options]\n\n"
-       << command.summary << "\n\n"
-       << command.options() << "\n"
-       << common_options() << "\nExample:\n  " << command.example << "\n";
-  return text.str();
-}
-
-const Command& find_command(const std::string& name) {
-  const auto found =
-      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
-  if (found == commands().end())
-    throw InputError({}, "unknown command '" + name + "'", "commands of this version: " + command_names());
-  return *found;
-}
 
 int run_command(const Command& command, const Words& words) {
   po::options_description all;
@@ -82,7 +44,13 @@ int run(const Words& words) {
     return done;
   }
   if (first == "--help" || first == "-h" || first == "help") {
-    fmt::print("{}", words.size() > 1 ? command_help(find_command(words[1])) : general_help());
+    fmt::print("{}", words.size() < 2      ? general_help()
+                     : words[1] == "--man" ? manual_page()
+                                           : command_help(find_command(words[1])));
+    return done;
+  }
+  if (first == "completion") {
+    fmt::print("{}", completion_script(single(Words(words.begin() + 1, words.end()), "SHELL (bash or zsh)")));
     return done;
   }
   const Command& command = find_command(first);
@@ -95,7 +63,7 @@ int run(const Words& words) {
 int main(int count, char** arguments) {
   using namespace posewright;
   const auto complain = [](const std::string& text, int code) {
-    fmt::print(stderr, "posewright: {}\n", text);
+    cli::print_error(text);
     return code;
   };
   try {

@@ -6,6 +6,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/version.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -50,8 +51,10 @@ int run(const po::variables_map& values, const Words& positional) {
     fmt::print("{}\n", json.dump(1));
     return done;
   }
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    fmt::print("{}{}", i == 0 ? "" : "\n", observation_text(observations[i]));
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (i > 0) fmt::print("\n");
+    print_report(observation_text(observations[i]));
+  }
   return done;
 }
 

@@ -7,6 +7,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/file.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -67,7 +68,7 @@ int run(const po::variables_map& values, const Words& positional) {
   if (common.json) {
     fmt::print("{}", route_json(route));
   } else {
-    fmt::print("{}", route_summary(route));
+    print_report(route_summary(route));
     if (!outputs.empty()) {
       std::string names;
       for (const auto& output : outputs) names += (names.empty() ? "" : ", ") + output.string();

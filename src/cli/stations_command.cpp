@@ -9,6 +9,7 @@
 #include "posewright/pipeline/place_stations.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -122,7 +123,7 @@ int run(const po::variables_map& values, const Words& positional) {
     }
   }
   if (common.json) fmt::print("{}\n", ranking_json(ranks).dump(1));
-  else fmt::print("{}", ranking_text(ranks));
+  else print_report(ranking_text(ranks));
   return done;
 }
 

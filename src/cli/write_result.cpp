@@ -4,6 +4,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/file.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 
@@ -57,7 +58,7 @@ int Outputs::search_and_write(const CommonOptions& common, double seconds,
   if (common.json) {
     fmt::print("{}", json);
   } else {
-    fmt::print("{}", plan_summary(plan));
+    print_report(plan_summary(plan));
     if (!plan_.empty()) fmt::print("Written: {}{}\n", plan_.string(), poses_.empty() ? "" : ", " + poses_.string());
   }
   return interrupted_by_user ? interrupted : done;

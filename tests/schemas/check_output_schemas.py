@@ -48,7 +48,7 @@ class Outputs(unittest.TestCase):
         self.assertNotEqual(errors(f"{schema}.schema.json", {**document, "schema": "other"}), [])
 
     def test_plans_of_arms_and_platforms(self):
-        for words in (["telescope/problem.yaml", "--candidates", 100], ["delta/problem.yaml", "--candidates", 100, "--reserve", *QUICK],
+        for words in (["telescope/problem.yaml", "--candidates", 100, *QUICK], ["delta/problem.yaml", "--candidates", 100, "--reserve", *QUICK],
                       ["kr270/compensator.yaml", "--candidates", 60, *QUICK, "--prior", "tolerance"]):
             self.check("plan", self.run_program("plan", EXAMPLES / words[0], *words[1:], "--json"))
 

@@ -32,7 +32,7 @@ po::options_description options() {
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see --help");
+  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see posewright help evaluate");
   EvaluateOptions evaluate;
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -11,6 +12,21 @@
 
 namespace posewright::cli {
 namespace {
+
+/// " (--NAME?)" where an option differs by one letter or begins so; else nothing.
+std::string meant(const std::string& written, const po::options_description& options) {
+  const std::string word = written.substr(std::min(written.find_first_not_of('-'), written.size()));
+  for (const auto& option : options.options()) {
+    const std::string& name = option->long_name();
+    const auto [front, rest] = std::mismatch(name.begin(), name.end(), word.begin(), word.end());
+    const bool begins = word.size() > 2 && name.starts_with(word);
+    const bool one_letter =
+        word.size() > 2 && (std::equal(front + (front != name.end()), name.end(), rest, word.end()) ||
+                            std::equal(front, name.end(), rest + (rest != word.end()), word.end()));
+    if (begins || one_letter) return " (--" + name + "?)";
+  }
+  return {};
+}
 
 int run_command(const Command& command, const Words& words) {
   po::options_description all;
@@ -24,7 +40,13 @@ int run_command(const Command& command, const Words& words) {
   // Abbreviated options would change their meaning with every option added later.
   const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
   po::variables_map values;
-  po::store(po::command_line_parser(words).options(everything).positional(positional).style(style).run(), values);
+  try {
+    po::store(po::command_line_parser(words).options(everything).positional(positional).style(style).run(), values);
+  } catch (const po::error& error) {
+    const auto* unknown = dynamic_cast<const po::unknown_option*>(&error);
+    throw InputError({}, error.what() + (unknown == nullptr ? "" : meant(unknown->get_option_name(), all)),
+                     "see posewright help " + command.name);
+  }
   if (values.count("help") > 0) {
     fmt::print("{}", command_help(command));
     return done;
@@ -72,8 +94,6 @@ int main(int count, char** arguments) {
     return code;
   } catch (const InputError& error) {
     return complain(error.what(), cli::bad_input);
-  } catch (const cli::po::error& error) {
-    return complain(std::string(error.what()) + "; see --help", cli::bad_input);
   } catch (const CannotDo& error) {
     return complain(error.what(), cli::cannot_do);
   } catch (const std::bad_alloc&) {

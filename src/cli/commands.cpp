@@ -40,7 +40,7 @@ CommonOptions common_values(const po::variables_map& values) {
 }
 
 std::string single(const Words& positional, const std::string& what) {
-  if (positional.empty()) throw InputError({}, what + " is missing", "see --help");
+  if (positional.empty()) throw InputError({}, what + " is missing", "see posewright --help");
   if (positional.size() > 1)
     throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
   return positional.front();

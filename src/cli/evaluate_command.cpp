@@ -7,6 +7,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -30,7 +31,7 @@ po::options_description options() {
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see --help");
+  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see posewright help evaluate");
   EvaluateOptions evaluate;
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);
@@ -47,7 +48,7 @@ int run(const po::variables_map& values, const Words& positional) {
   });
   if (was_interrupted) return interrupted;
   if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
-  else fmt::print("{}", evaluation_text(result));
+  else print_report(evaluation_text(result));
   return done;
 }
 

@@ -5,6 +5,7 @@
 #include "packages.hpp"
 #include "posewright/version.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -45,8 +46,10 @@ int run(const po::variables_map& values, const Words& positional) {
     fmt::print("{}\n", json.dump(1));
     return done;
   }
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    fmt::print("{}{}", i == 0 ? "" : "\n", observation_text(observations[i]));
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (i > 0) fmt::print("\n");
+    print_report(observation_text(observations[i]));
+  }
   return done;
 }
 

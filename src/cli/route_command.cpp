@@ -6,6 +6,7 @@
 #include "posewright/pipeline/route_problem.hpp"
 #include "posewright/support/file.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -52,7 +53,7 @@ int run(const po::variables_map& values, const Words& positional) {
   if (!json.empty()) write_file_atomically(json, route_json(route));
   if (!csv.empty()) write_file_atomically(csv, route_csv(route));
   if (common.json) fmt::print("{}", route_json(route));
-  else fmt::print("{}{}", route_summary(route), written_text({json, csv}));
+  else print_report(route_summary(route) + written_text({json, csv}));
   return done;
 }
 

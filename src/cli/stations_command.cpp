@@ -8,6 +8,7 @@
 #include "posewright/outputs/table.hpp"
 #include "posewright/pipeline/place_stations.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -113,7 +114,7 @@ int run(const po::variables_map& values, const Words& positional) {
                                            return place_stations(problem, stations, monitor);
                                          }).result;
   if (common.json) fmt::print("{}\n", ranking_json(ranks).dump(1));
-  else fmt::print("{}", ranking_text(ranks));
+  else print_report(ranking_text(ranks));
   return done;
 }
 

@@ -4,6 +4,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/file.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 
@@ -64,7 +65,7 @@ int Outputs::search_and_write(const CommonOptions& common, double seconds,
   if (common.json) {
     fmt::print("{}", json);
   } else {
-    fmt::print("{}{}", plan_summary(plan), written_text({plan_, poses_}));
+    print_report(plan_summary(plan) + written_text({plan_, poses_}));
   }
   return was_interrupted ? interrupted : done;
 }

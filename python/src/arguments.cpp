@@ -41,7 +41,7 @@ std::uint64_t seed_of(const py::int_& value) {
   const unsigned long long seed = PyLong_AsUnsignedLongLong(value.ptr());
   if (PyErr_Occurred() == nullptr) return seed;
   PyErr_Clear();
-  throw InputError({}, "seed is " + py::str(value).cast<std::string>(), "0 to 18446744073709551615 is allowed");
+  throw InputError({}, "seed is " + py::repr(value).cast<std::string>(), "0 to 18446744073709551615 is allowed");
 }
 
 }  // namespace posewright::python

@@ -40,6 +40,8 @@ struct Blocks {
   int nuisance = 0;
 };
 
+/// The error's text with `file: key path` for `file:line`, where the keys are known; as it is for other files.
+std::string place_in_keys(const InputError& error, const std::string& file, const std::vector<std::string>& places);
 /// Runs `work`; errors that name a line of a problem that was no file name its key path instead.
 template <class Work>
 auto with_places(const GivenProblem& problem, Work&& work) {
@@ -50,8 +52,6 @@ auto with_places(const GivenProblem& problem, Work&& work) {
     throw InputError({}, place_in_keys(error, problem.problem.file.string(), problem.places), "");
   }
 }
-/// The error's text with `file: key path` for `file:line`, where the keys are known; as it is for other files.
-std::string place_in_keys(const InputError& error, const std::string& file, const std::vector<std::string>& places);
 
 /// None where the value is no text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);

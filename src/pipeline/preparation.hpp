@@ -20,8 +20,7 @@ struct Settings {
   Repeats repeats;
   Scaling scaling = Scaling::tolerance;
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
-  std::filesystem::path measured;              ///< empty: none
-  bool measured_of_plan = false;               ///< of that list only what says that it was measured before
+  PoseSource measured;                         ///< empty: none
   PlannerOptions planner;
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.

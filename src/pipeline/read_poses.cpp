@@ -49,18 +49,12 @@ double of_label(const std::string& label, const Coordinate& c, const SourcePlace
   return c.values[std::size_t(at - c.labels.begin())];
 }
 
-void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
-  // What a controller shows has few digits: a hair beyond a limit is the limit.
-  const double slack = 1e-6 * (1 + std::abs(c.upper - c.lower));
-  if (c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack)) return;
-  throw InputError(place, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
-                   fmt::format("allowed: {:.6g} to {:.6g} {}", c.lower, c.upper, c.unit));
-}
-
 class CsvReader {
  public:
   CsvReader(const std::string& file, const std::vector<Coordinate>& coordinates)
-      : file_(file), coordinates_(coordinates), column_(coordinates.size(), -1), unit_(coordinates.size()) {}
+      : file_(file), coordinates_(coordinates), column_(coordinates.size(), -1), unit_(coordinates.size()) {
+    list_.name = file;
+  }
 
   PoseList read(const std::string& text) {
     std::istringstream lines(text);
@@ -132,6 +126,7 @@ PoseList from_plan(const std::string& text, const std::string& file, const std::
   using Json = nlohmann::json;
   const SourcePlace place{file, 0};
   PoseList list;
+  list.name = file;
   try {
     const Json plan = Json::parse(text);
     for (const Json& pose : plan.at("poses")) {
@@ -160,6 +155,14 @@ PoseList from_plan(const std::string& text, const std::string& file, const std::
 
 }  // namespace
 
+void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
+  // What a controller shows has few digits: a hair beyond a limit is the limit.
+  const double slack = 1e-6 * (1 + std::abs(c.upper - c.lower));
+  if (c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack)) return;
+  throw InputError(place, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
+                   fmt::format("allowed: {:.6g} to {:.6g} {}", c.lower, c.upper, c.unit));
+}
+
 std::vector<std::string> csv_cells(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -175,12 +178,15 @@ std::vector<std::string> csv_cells(const std::string& line) {
 }
 
 PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates) {
-  std::string text = read_file(file, size_limit);
+  return read_poses_text(read_file(file, size_limit), file.string(), coordinates);
+}
+
+PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates) {
   // Spreadsheets write a byte order mark.
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   const auto first = text.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && text[first] == '{') return from_plan(text, file.string(), coordinates);
-  return CsvReader(file.string(), coordinates).read(text);
+  if (first != std::string::npos && text[first] == '{') return from_plan(text, name, coordinates);
+  return CsvReader(name, coordinates).read(text);
 }
 
 }  // namespace posewright

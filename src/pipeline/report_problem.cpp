@@ -101,8 +101,13 @@ class Reporting {
     options.threads = options_.threads;
     settings_ = settings_of(problem_, options);
     // What was measured before is in the plan, wherever it came from.
-    settings_.measured = file_;
-    settings_.measured_of_plan = true;
+    settings_.measured = [file = file_](const std::vector<Coordinate>& coordinates) {
+      const PoseList list = read_poses(file, coordinates);
+      PoseList before;
+      for (std::size_t i = 0; i < list.configurations.size(); ++i)
+        if (list.measured[i]) before.configurations.push_back(list.configurations[i]);
+      return before;
+    };
   }
 
   void read_list() {

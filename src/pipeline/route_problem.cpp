@@ -10,7 +10,6 @@
 #include "posewright/route/tour.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
-#include "read_poses.hpp"
 
 namespace posewright {
 namespace {
@@ -28,14 +27,13 @@ struct Stop {
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
-  Router(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options, const Monitor& monitor)
+  Router(const Problem& problem, const PoseSource& poses, const RouteOptions& options, const Monitor& monitor)
       : problem_(problem),
         options_(options),
         monitor_(monitor),
         cell_(make_cell(problem)),
         site_(make_site(problem, find_variant(problem, ""), cell_)),
         space_(problem, cell_) {
-    route_.plan_file = plan.string();
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
     route_.seed = options.seed;
@@ -47,7 +45,7 @@ class Router {
       route_.units.push_back(c.unit);
     }
     route_.home = space_.home();
-    read_stops(plan);
+    read_stops(poses);
   }
 
   Route make() {
@@ -64,8 +62,8 @@ class Router {
   }
 
  private:
-  void read_stops(const std::filesystem::path& plan) {
-    const PoseList list = read_poses(plan, site_.workspace->coordinates());
+  void read_stops(const PoseSource& poses) {
+    const PoseList list = poses(site_.workspace->coordinates());
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
@@ -75,7 +73,7 @@ class Router {
       stops_.push_back(std::move(stop));
     }
     if (options_.start && find_stop(*options_.start) < 0)
-      throw InputError({}, "--start " + std::to_string(*options_.start) + " is no pose of " + plan.string(),
+      throw InputError({}, "--start " + std::to_string(*options_.start) + " is no pose of " + list.name,
                        "an id of a pose that is still to be measured");
     std::vector<std::vector<double>> reduced;
     for (const Stop& stop : stops_) reduced.push_back(space_.reduced(stop.configuration));
@@ -287,14 +285,21 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan) {
   throw InputError({plan.string(), 0}, "its problem file '" + name + "' is not there", "name it with --problem FILE");
 }
 
-Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  Route route = Router(problem, plan, options, monitor).make();
+  Route route = Router(problem, poses, options, monitor).make();
+  route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return route;
+}
+
+Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+                    const Monitor& monitor) {
+  Route route = route_problem(problem, poses_in_file(plan), options, monitor);
+  route.plan_file = plan.string();
   if (plan.extension() == ".json")
     if (const nlohmann::json json = read_plan(plan); json.contains("problem") && json["problem"].is_object())
       route.problem_changed = json["problem"].value("sha256", problem.sha256) != problem.sha256;
-  route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;
 }
 

@@ -5,6 +5,7 @@
 #include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
@@ -24,7 +25,8 @@ po::options_description options() {
       ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
       ("candidates", text("n"), "feasible configurations to compare with (10000)")                //
       ("restarts", text("k"), "starts of a search (10)")                                          //
-      ("time-limit", text("S"), "stop searching after S seconds");
+      ("time-limit", text("S"), "stop searching after S seconds")                                 //
+      ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
   options.add(package_options());
   return options;
 }
@@ -35,6 +37,8 @@ int run(const po::variables_map& values, const Words& positional) {
   EvaluateOptions evaluate;
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);
+  evaluate.from = text_of(values, "from");
+  if (!evaluate.from.empty()) find_readable_format(evaluate.from);
   evaluate.plan.variant = text_of(values, "variant");
   evaluate.plan.criterion = text_of(values, "criterion");
   evaluate.plan.method = text_of(values, "method");
@@ -50,6 +54,7 @@ int run(const po::variables_map& values, const Words& positional) {
     result = evaluate_problem(problem, positional[1], evaluate, watch.monitor());
     if (watch.was_interrupted()) return interrupted;
   }
+  print_notes(result.notes);
   if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
   else fmt::print("{}", evaluation_text(result));
   return done;

@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "packages.hpp"
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
@@ -23,7 +24,8 @@ po::options_description options() {
       ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                   //
       ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                  //
       ("force", "replace files that posewright did not write")                               //
-      ("time-limit", text("S"), "give up after S seconds");
+      ("time-limit", text("S"), "give up after S seconds")                                   //
+      ("from", text("FORMAT"), ("format of PLAN where it is none: " + readable_format_names()).c_str());
   options.add(package_options());
   return options;
 }
@@ -32,6 +34,8 @@ int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path plan = single(positional, "PLAN");
   RouteOptions route_options;
+  route_options.from = text_of(values, "from");
+  if (!route_options.from.empty()) find_readable_format(route_options.from);
   route_options.from_home = values.count("from-home") > 0;
   route_options.closed = values.count("closed") > 0;
   route_options.start = whole_number(values, "start", 1, 1000000);
@@ -41,6 +45,8 @@ int run(const po::variables_map& values, const Words& positional) {
   if (route_options.from_home && route_options.start)
     throw InputError({}, "--start stands beside --from-home", "one of both is allowed");
   const std::filesystem::path given = text_of(values, "problem");
+  if (given.empty() && !route_options.from.empty())
+    throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
   const std::filesystem::path file = given.empty() ? problem_of_plan(plan) : given;
   Problem problem = read_problem(file);
   problem.packages = packages_of(values);
@@ -62,6 +68,7 @@ int run(const po::variables_map& values, const Words& positional) {
       throw;
     }
   }
+  print_notes(route.notes);
   if (!json.empty()) write_file_atomically(json, route_json(route));
   if (!csv.empty()) write_file_atomically(csv, route_csv(route));
   if (common.json) {

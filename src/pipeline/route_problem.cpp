@@ -66,11 +66,12 @@ class Router {
 
  private:
   void read_stops(const std::filesystem::path& plan) {
-    const PoseList list = read_poses(plan, site_.workspace->coordinates());
+    const PoseList list = read_poses(plan, site_.workspace->coordinates(), options_.from);
+    route_.notes = list.notes;
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
-      Stop stop{int(i) + 1, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
+      Stop stop{list.ids[i], list.configurations[i], pose_of(*site_.model, list.configurations[i])};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
       stops_.push_back(std::move(stop));
@@ -268,7 +269,7 @@ nlohmann::json read_plan(const std::filesystem::path& plan) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception&) {
-    throw InputError({plan.string(), 0}, "is no plan", "plan.json as posewright writes it");
+    throw InputError({plan.string(), 0}, "names no problem file", "a plan.json of a problem, or --problem FILE");
   }
 }
 
@@ -292,7 +293,7 @@ Route route_problem(const Problem& problem, const std::filesystem::path& plan, c
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   Route route = Router(problem, plan, options, monitor).make();
-  if (plan.extension() == ".json")
+  if (plan.extension() == ".json" && options.from.empty())
     if (const nlohmann::json json = read_plan(plan); json.contains("problem") && json["problem"].is_object())
       route.problem_changed = json["problem"].value("sha256", problem.sha256) != problem.sha256;
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

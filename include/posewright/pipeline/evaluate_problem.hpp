@@ -32,11 +32,13 @@ struct PoseListEvaluation {
   Plan plan;  ///< the list as a plan: log det, σ, accuracy, contributions, certificate of the criterion
   std::vector<CriterionScore> scores;
   std::optional<ListChange> drop, add;
+  std::vector<std::string> notes{};  ///< on how the list was read
 };
 
 struct EvaluateOptions {
   PlanOptions plan;  ///< variant, criterion, candidates, restarts, …
   std::optional<int> drop, add;
+  std::string from;  ///< format of the list (outputs/pose_formats.hpp); empty: plan.json, route.json or CSV
 };
 
 /// The user's own list: scored by every criterion that the problem allows, its certificate against the candidates, the

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "posewright/outputs/route.hpp"
 #include "posewright/problem/problem.hpp"
@@ -11,6 +12,7 @@
 namespace posewright {
 
 struct RouteOptions {
+  std::string from;          ///< format of the list (outputs/pose_formats.hpp); empty: plan.json, route.json or CSV
   bool from_home = false;    ///< begins at home
   bool closed = false;       ///< ends where it began
   std::optional<int> start;  ///< pose id to begin with

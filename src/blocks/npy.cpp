@@ -34,6 +34,14 @@ std::string_view value_of(std::string_view header, std::string_view key, const S
   return rest;
 }
 
+/// For a message, which keeps to one line.
+std::string printable(std::string_view text) {
+  std::string result(text.substr(0, 40));
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return result;
+}
+
 std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& place) {
   std::vector<std::size_t> shape;
   const auto close = text.find(')');
@@ -75,7 +83,7 @@ Header parse_header(std::string_view bytes, const SourcePlace& place) {
   if (kind.starts_with("'<f8'")) header.item = 8;
   else if (kind.starts_with("'<f4'")) header.item = 4;
   else
-    throw InputError(place, "holds numbers of type " + std::string(kind.substr(0, kind.find(','))),
+    throw InputError(place, "holds numbers of type " + printable(kind.substr(0, kind.find(','))),
                      "allowed: '<f8', '<f4'");
   if (!value_of(text, "fortran_order", place).starts_with("False"))
     throw InputError(place, "is in Fortran order", "save numpy.ascontiguousarray(array)");

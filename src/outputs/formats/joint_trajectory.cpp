@@ -91,8 +91,8 @@ Exported write(const PoseSequence& all, const ExportOptions& options) {
     notes.push_back(
         "the motions between the poses are not checked for collisions: `posewright route` finds motions that are");
   notes.push_back(
-      fmt::format("the trajectory begins {} s after its start {}; speeds are not checked against the robot's",
-                  first_arrival, sequence.from_home ? "at home" : "at the first pose"));
+      fmt::format("{} is reached {} s after the start: begin there; speeds are not checked against the robot's",
+                  sequence.from_home ? "home" : "the first pose", first_arrival));
   return one_file("trajectory.yaml", Writer(sequence, options).text(), notes);
 }
 

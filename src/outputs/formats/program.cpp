@@ -253,6 +253,10 @@ PoseSequence to_measure(const PoseSequence& sequence) {
   PoseSequence result = sequence;
   std::erase_if(result.poses, [](const SequencePose& pose) { return pose.measured; });
   if (result.poses.empty()) throw CannotDo(sequence.file + ": all poses are measured already");
+  const auto plain_zeros = [](std::vector<double>& q) { std::replace(q.begin(), q.end(), -0.0, 0.0); };
+  plain_zeros(result.home);
+  for (SequencePose& pose : result.poses) plain_zeros(pose.values);
+  for (SequenceMotion& motion : result.motions) std::for_each(motion.points.begin(), motion.points.end(), plain_zeros);
   return result;
 }
 

@@ -56,8 +56,9 @@ RobotProgram make_program(const PoseSequence& sequence, const ExportOptions& opt
 int signal_number(const std::string& text, const char* option, int first, int last, int otherwise);
 /// A name of a digital signal.
 std::string signal_name(const std::string& text, const char* option, const char* otherwise);
-/// Measured poses left out, with notes on what a list does not hold (station, load case).
+/// Without poses that are measured already, and without zeros that are negative.
 PoseSequence to_measure(const PoseSequence& sequence);
+/// What a list does not hold: stations, load cases.
 std::vector<std::string> list_notes(const PoseSequence& sequence);
 /// One file of the format's usual name.
 Exported one_file(const std::string& name, std::string bytes, std::vector<std::string> notes = {});

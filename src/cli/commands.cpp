@@ -10,7 +10,7 @@ namespace posewright::cli {
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {observe_command(),  plan_command(),  select_command(),
                                              evaluate_command(), route_command(), stations_command(),
-                                             report_command()};
+                                             export_command(),   report_command()};
   return table;
 }
 

@@ -61,6 +61,9 @@ auto watched(const CommonOptions& common, double seconds, const Work& work)
 void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs,
                    bool force);
 
+/// What a result says to its user, on stderr.
+void print_notes(const std::vector<std::string>& notes);
+
 /// Seconds of --time-limit; 0 where it is not given.
 double time_limit(const po::variables_map& values);
 

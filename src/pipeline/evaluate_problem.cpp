@@ -27,6 +27,7 @@ class ListEvaluation {
     prepared_ = prepare(problem, settings_, monitor);
     const std::vector<Coordinate>& coordinates = prepared_.first().workspace->coordinates();
     const PoseList list = poses(coordinates);
+    notes_ = list.notes;
     poses_.dimension = int(coordinates.size());
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
@@ -39,6 +40,7 @@ class ListEvaluation {
 
   PoseListEvaluation evaluate(const Problem& problem) {
     PoseListEvaluation result;
+    result.notes = notes_;
     const Judgement judgement = judge(prepared_, poses_, settings_);
     Plan& plan = result.plan;
     plan.seed = settings_.planner.seed;
@@ -230,6 +232,7 @@ class ListEvaluation {
   Settings settings_;
   Preparation prepared_;
   Configurations poses_;
+  std::vector<std::string> notes_;
   double degree_ = 0.0;
 };
 

@@ -35,9 +35,9 @@ void judge_value(double& value, const Coordinate& c, const SourcePlace& place, c
   if (!std::isfinite(value)) throw InputError(place, fmt::format("'{}' of {} is not finite", c.name, pose), "");
   if (c.choice()) {
     if (std::find(c.values.begin(), c.values.end(), value) == c.values.end())
-      throw InputError(place, fmt::format("'{}' of {} is {:.6g}", c.name, pose, value),
-                       fmt::format("a number from 0 to {} stands for one of {}", c.labels.size() - 1,
-                                   fmt::join(c.labels, ", ")));
+      throw InputError(
+          place, fmt::format("'{}' of {} is {:.6g}", c.name, pose, value),
+          fmt::format("a number from 0 to {} stands for one of {}", c.labels.size() - 1, fmt::join(c.labels, ", ")));
     return;
   }
   require_inside(value, c, place);
@@ -46,8 +46,8 @@ void judge_value(double& value, const Coordinate& c, const SourcePlace& place, c
 
 }  // namespace
 
-PoseSource poses_in_file(const std::filesystem::path& file) {
-  return [file](const std::vector<Coordinate>& coordinates) { return read_poses(file, coordinates); };
+PoseSource poses_in_file(const std::filesystem::path& file, const std::string& format) {
+  return [file, format](const std::vector<Coordinate>& coordinates) { return read_poses(file, coordinates, format); };
 }
 
 PoseSource poses_of(const Plan& plan) {

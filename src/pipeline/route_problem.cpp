@@ -64,10 +64,14 @@ class Router {
  private:
   void read_stops(const PoseSource& poses) {
     const PoseList list = poses(site_.workspace->coordinates());
+    route_.plan_file = list.name;
+    route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
+    route_.notes = list.notes;
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
-      Stop stop{int(i) + 1, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
+      const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
+      Stop stop{id, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
       stops_.push_back(std::move(stop));
@@ -265,7 +269,7 @@ nlohmann::json read_plan(const std::filesystem::path& plan) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception&) {
-    throw InputError({plan.string(), 0}, "is no plan", "plan.json as posewright writes it");
+    throw InputError({plan.string(), 0}, "names no problem file", "a plan.json of a problem, or --problem FILE");
   }
 }
 
@@ -295,12 +299,7 @@ Route route_problem(const Problem& problem, const PoseSource& poses, const Route
 
 Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
                     const Monitor& monitor) {
-  Route route = route_problem(problem, poses_in_file(plan), options, monitor);
-  route.plan_file = plan.string();
-  if (plan.extension() == ".json")
-    if (const nlohmann::json json = read_plan(plan); json.contains("problem") && json["problem"].is_object())
-      route.problem_changed = json["problem"].value("sha256", problem.sha256) != problem.sha256;
-  return route;
+  return route_problem(problem, poses_in_file(plan), options, monitor);
 }
 
 }  // namespace posewright

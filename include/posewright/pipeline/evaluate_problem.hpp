@@ -32,6 +32,7 @@ struct PoseListEvaluation {
   Plan plan;  ///< the list as a plan: log det, σ, accuracy, contributions, certificate of the criterion
   std::vector<CriterionScore> scores;
   std::optional<ListChange> drop, add;
+  std::vector<std::string> notes{};  ///< on how the list was read
 };
 
 struct EvaluateOptions {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "posewright/outputs/route.hpp"
 #include "posewright/pipeline/pose_list.hpp"
@@ -31,7 +32,7 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan);
 /// search is stopped.
 Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
                     const Monitor& monitor);
-/// The same for a file, which tells whether the problem has changed since.
+/// The same for a file.
 Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
                     const Monitor& monitor);
 

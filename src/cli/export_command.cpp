@@ -129,9 +129,10 @@ class Folders {
 };
 
 void require_ending(const PoseFormat& format, const fs::path& output) {
-  const bool wanted = format.extension == ".yaml" && (format.name == "moveit" || format.name == "robot-calibration");
-  if (wanted && output.has_filename() && !fs::is_directory(output) && output.extension() != ".yaml")
-    throw InputError({}, output.string() + " has another ending", format.used_by + " reads files that end in .yaml");
+  if (format.ending_matters && output.has_filename() && !fs::is_directory(output) &&
+      output.extension() != format.extension)
+    throw InputError({}, output.string() + " has another ending",
+                     format.used_by + " reads files that end in " + format.extension);
 }
 
 void print_table(bool json) {

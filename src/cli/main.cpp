@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "help.hpp"
 #include "posewright/version.hpp"
+#include "session.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
@@ -92,6 +93,8 @@ int main(int count, char** arguments) {
     const int code = cli::run(cli::Words(arguments + 1, arguments + count));
     if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
     return code;
+  } catch (const cli::Interrupted&) {
+    return cli::interrupted;
   } catch (const InputError& error) {
     return complain(error.what(), cli::bad_input);
   } catch (const CannotDo& error) {

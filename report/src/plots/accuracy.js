@@ -1,0 +1,145 @@
+import { curve, dots, figure, level, logGrid, logValues } from './figure.js';
+import { h } from '../dom.js';
+import { number } from '../text/units.js';
+
+const mm = (value) => (value === null || value === undefined ? null : value * 1e3);
+
+/** Predicted position error at each test pose. @param {import('../pose_list.js').PoseList} list */
+export function testPosePlot(list) {
+  const planned = list.report.plan.accuracy.test_poses.map(mm);
+  const x = planned.map((_, k) => k + 1);
+  const data = () => [
+    x,
+    planned,
+    list.changed && list.figures.testErrors?.length === x.length ? list.figures.testErrors.map(mm) : x.map(() => null),
+    x.map(() => mm(list.report.plan.accuracy.rho0)),
+  ];
+  const plot = figure({
+    id: 'plot-test-poses',
+    title: 'Position error at the test poses',
+    caption:
+      'Each dot is how far off (1σ) the tip is expected to be at one test pose after calibration; the dashed line is the root mean square of all.',
+    options: {
+      series: [
+        { label: 'test pose' },
+        dots('plan, mm', 'plan'),
+        { ...dots('your list, mm', 'yours', 5), show: false, optional: true },
+        level('plan, root mean square, mm', 'ink-soft'),
+      ],
+      scales: {
+        x: { time: false, range: (u, low, high) => [low - 0.5, high + 0.5] },
+        y: { range: (u, low, high) => [0, 1.1 * high] },
+      },
+      axes: [
+        { label: 'test pose', incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500] },
+        { label: 'error, mm', size: 62 },
+      ],
+    },
+    data: data(),
+    numbers: () => ({
+      header: ['test pose', '#plan, mm', '#your list, mm'],
+      rows: data()[0].map((k, i) => [k, number(data()[1][i]), number(data()[2][i])]),
+    }),
+  });
+  list.addEventListener('list', () => plot.setData(data()));
+  return plot.element;
+}
+
+/** @type {Object<string, {title: string, axis: string, of: (p: any) => number|null, log: boolean}>} */
+const quantities = {
+  rho0: { title: 'position error', axis: 'position error, mm', of: (p) => mm(p.rho0), log: true },
+  sigma: { title: 'largest σ/tolerance', axis: 'largest σ / tolerance', of: (p) => p.largest_sigma_ratio, log: true },
+  log_det: { title: 'log det', axis: 'log det', of: (p) => p.log_det, log: false },
+};
+
+/** @param {import('../types.js').Report} report @returns {import('../types.js').CurvePoint[]} */
+const prefixOf = (report) =>
+  report.prefix.map((point, k) => point ?? { poses: k + 1, log_det: null, rho0: null, largest_sigma_ratio: null });
+
+/** What fewer or more poses reach. @param {import('../pose_list.js').PoseList} list */
+export function curvePlot(list) {
+  const { curve: searched } = list.report;
+  const prefix = prefixOf(list.report);
+  const offered = Object.entries(quantities).filter(([, q]) => [...searched, ...prefix].some((p) => q.of(p) !== null));
+  if (offered.length === 0) return null;
+  const figures = offered.map(([key, q]) => one(list, key, q));
+  const choice = h(
+    'select',
+    { 'aria-label': 'What is drawn', onchange: () => show(choice.value) },
+    offered.map(([key, q]) => h('option', { value: key }, q.title)),
+  );
+  const show = (key) => figures.forEach((f, k) => (f.hidden = offered[k][0] !== key));
+  show(offered[0][0]);
+  return h(
+    'div',
+    { class: 'choice' },
+    h('h3', {}, 'Number of poses and ', figures.length > 1 ? choice : offered[0][1].title),
+    ...figures,
+  );
+}
+
+/** @param {import('../pose_list.js').PoseList} list @param {string} key */
+function one(list, key, quantity) {
+  const { curve: searched } = list.report;
+  const prefix = prefixOf(list.report);
+  const grown = () =>
+    !list.changed
+      ? []
+      : list.growing.map((f, k) => ({
+          poses: k + 1,
+          log_det: f.logDet,
+          rho0: f.rho0,
+          largest_sigma_ratio: f.worst?.ratio ?? null,
+        }));
+  const data = () => {
+    const parts = [prefix, ...(searched.length > 0 ? [searched] : []), grown()];
+    const x = [...new Set(parts.flat().map((p) => p.poses))].sort((a, b) => a - b);
+    return [
+      x,
+      ...parts.map((part) => {
+        const at = new Map(part.map((p) => [p.poses, quantity.of(p)]));
+        return x.map((n) => at.get(n) ?? null);
+      }),
+    ];
+  };
+  const plot = figure({
+    id: `plot-curve-${key}`,
+    headed: false,
+    title: `Number of poses and ${quantity.title}`,
+    caption:
+      'The line shows what is known after so many poses in measuring order, so what remains if you stop early' +
+      (searched.length > 0 ? '; orange dots are the best plans found for other numbers of poses.' : '.') +
+      ' It begins where all parameters can be told apart.',
+    options: {
+      series: [
+        { label: 'poses' },
+        curve('measured so far', 'plan', true),
+        ...(searched.length > 0 ? [dots('plans of other sizes', 'accent', 9)] : []),
+        { ...curve('your list so far', 'yours', true), show: false, optional: true },
+      ],
+      scales: {
+        x: { time: false, range: (u, low, high) => [low - 0.5, high + 0.5] },
+        ...(quantity.log ? { y: { distr: 3 } } : {}),
+      },
+      axes: [
+        { label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] },
+        { label: quantity.axis, size: 62, ...(quantity.log ? { values: logValues, grid: logGrid } : {}) },
+      ],
+    },
+    data: data(),
+    numbers: () => {
+      const [x, ...parts] = data();
+      return {
+        header: ['#poses', '#measured so far', ...(searched.length > 0 ? ['#plans of other sizes'] : []), '#your list'],
+        rows: x.map((n, k) => [n, ...parts.map((part) => number(part[k]))]),
+      };
+    },
+  });
+  let late;
+  list.addEventListener('list', () => {
+    // Growing lists cost one factorisation a pose: not while someone is still ticking.
+    clearTimeout(late);
+    late = setTimeout(() => plot.setData(data()), 150);
+  });
+  return plot.element;
+}

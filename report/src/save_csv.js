@@ -1,0 +1,38 @@
+/** A name as a CSV cell: quoted where it has a comma or a quote. @param {string} name */
+const quoted = (name) => (/[",]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
+
+/**
+ * The list as poses.csv: header `pose,NAME [unit],…`, one line a pose, actuators after the configuration, then load
+ * case and station where there are some. Numbers read back bit-equal.
+ * @param {any[]} poses of plan.json, in order @param {Object<string, string>} actuatorUnits
+ */
+export function posesCsv(poses, actuatorUnits = {}) {
+  if (poses.length === 0) return '';
+  const first = poses[0];
+  const actuators = Object.keys(first.actuators ?? {});
+  const withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
+  const header = [
+    'pose',
+    ...first.names.map((name, k) => withUnit(name, first.units[k])),
+    ...actuators.map((name) => withUnit(name, actuatorUnits[name])),
+    ...['load_case', 'station'].filter((choice) => first[choice]),
+  ];
+  const lines = poses.map((pose) =>
+    [
+      pose.id,
+      ...pose.configuration,
+      ...actuators.map((name) => pose.actuators[name]),
+      ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice])),
+    ].join(','),
+  );
+  return [header.join(','), ...lines, ''].join('\n');
+}
+
+/** @param {string} name @param {string} text @param {string} type */
+export function download(name, text, type) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

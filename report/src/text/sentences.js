@@ -1,0 +1,128 @@
+import { list, number, percent, percentDown, plural, quantity } from './units.js';
+
+/** What the plan says, in plain sentences. Each function returns text, or nothing where there is nothing to say. */
+
+/** @param {any} plan */
+export const newPoses = (plan) => plan.poses.filter((p) => !p.measured);
+
+/** @param {any} plan */
+export const isDeterminant = (plan) => plan.criterion.name === 'o1' || plan.criterion.name === 'ds';
+
+/** @param {any} plan */
+export function what(plan) {
+  const kept = plan.parameters.filter((p) => p.identifiable);
+  const nuisance = kept.filter((p) => p.role === 'nuisance').length;
+  const measured = plan.poses.length - newPoses(plan).length;
+  const variants = (plan.variants ?? []).length;
+  return (
+    `${plural(newPoses(plan).length, 'pose')} to measure${measured > 0 ? `, beside ${measured} that are measured already,` : ''} ` +
+    `so that ${plural(kept.length - nuisance, 'parameter')} of the robot can be identified` +
+    (plan.variant ? ` (${variants > 1 ? 'model variants' : 'model variant'} ${plan.variant})` : '') +
+    '.' +
+    (nuisance > 0
+      ? ` ${nuisance} more have to be estimated along with them because nobody knows them, such as where the robot stands; they are of no interest themselves.`
+      : '')
+  );
+}
+
+/** @param {any} plan */
+export function accuracy(plan) {
+  const { rho0, test_poses: errors } = plan.accuracy;
+  if (rho0 === null) return '';
+  return (
+    `After calibration the tip is expected to be off by ${quantity(rho0, 'm')} (1σ, root mean square over ${plural(errors.length, 'test pose')}; ` +
+    `${quantity(Math.max(...errors), 'm')} at the worst). This is what the measurement noise leaves; effects that the model does not have come on top.`
+  );
+}
+
+/** @param {any} plan */
+export function worth(plan) {
+  const known = plan.parameters.filter((p) => p.identifiable && p.role === 'interest');
+  if (known.length === 0) return '';
+  const ratio = (p) => p.sigma / p.tolerance;
+  const worst = known.reduce((a, b) => (ratio(b) > ratio(a) ? b : a));
+  const useless = known.filter((p) => !p.worth_identifying);
+  const start =
+    useless.length === 0
+      ? `All ${known.length} come out better than the tolerance they were made to`
+      : `${known.length - useless.length} of ${known.length} come out better than the tolerance they were made to`;
+  return (
+    `${start}; the one known least, ${worst.name}, at ${number(ratio(worst), 3)} of it.` +
+    (useless.length > 0
+      ? ` Not worth identifying, because the measurement tells less than the tolerance: ${list(useless.map((p) => p.name))}.`
+      : '')
+  );
+}
+
+/** What is proved over the candidates. @param {any} plan */
+export function proof(plan) {
+  const c = plan.certificate.candidates;
+  if (!c)
+    return `For criterion ${plan.criterion.name} no bound is computed: how near this plan is to the best one is not proved.`;
+  const as = isDeterminant(plan) ? 'as informative as' : `as good by criterion ${plan.criterion.name} as`;
+  const repeats =
+    c.repeats === 'forbid'
+      ? ', none measured twice'
+      : c.repeats === 'allow'
+        ? ', repeats allowed'
+        : `, each at most ${c.repeats} times`;
+  return (
+    `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} any other ${newPoses(plan).length} of the ${c.count.toLocaleString('en')} candidate poses${repeats}.` +
+    (c.optimal ? ' No plan of these candidates is better: every other one is ruled out.' : '')
+  );
+}
+
+/** What that means for errors. @param {any} plan */
+export function proofMeaning(plan) {
+  const c = plan.certificate.candidates;
+  if (!c || !isDeterminant(plan) || c.efficiency >= 1) return '';
+  return `So no choice among them can shrink the parameters’ σ (geometric mean) by more than ${percent(Math.ceil((1 - Math.sqrt(c.efficiency)) * 1e3) / 1e3)}.`;
+}
+
+/** @param {any} plan */
+export function searched(plan) {
+  const w = plan.certificate.workspace;
+  return w
+    ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(w.efficiency)} of the best.`
+    : '';
+}
+
+/** @param {any} plan */
+export function loss(plan) {
+  const poses = newPoses(plan);
+  if (poses.length === 0) return '';
+  const worst = poses.reduce((a, b) => (b.efficiency_without < a.efficiency_without ? b : a));
+  return worst.efficiency_without <= 0
+    ? `Without pose ${worst.id} not all parameters can be identified: it must not be lost.`
+    : `If one pose cannot be measured, at least ${percentDown(worst.efficiency_without)} of the plan is left; pose ${worst.id} would be missed most.`;
+}
+
+/** @param {any} plan */
+export function dropped(plan) {
+  const names = plan.parameters.filter((p) => !p.identifiable).map((p) => p.name);
+  return names.length > 0
+    ? `${plural(names.length, 'parameter')} cannot be told from others by this measurement and ${names.length === 1 ? 'is' : 'are'} left out: ${list(names)}.`
+    : '';
+}
+
+/** @param {import('../types.js').Report} report @returns {string[]} */
+export function warnings(report) {
+  const { plan, route } = report;
+  const s = report.singular_values;
+  const condition = s.length > 0 ? s[0] / s[s.length - 1] : 1;
+  return [
+    plan.interrupted &&
+      'The search was ended early: this is the best plan found until then. Plan again without a time limit for a better one.',
+    condition > 1e6 &&
+      `Ill-conditioned: the best-known combination of parameters is measured ${number(condition, 2)} times better than the worst-known (both in units of tolerance). Some combinations are hardly measured at all.`,
+    plan.criterion.name.startsWith('test_pose') &&
+      plan.accuracy.test_poses.length === 1 &&
+      'There is a single test pose: the plan crowds around it and tells little of other places. Give several.',
+    route?.problem_changed &&
+      'The problem file has changed since the plan was made; the route belongs to the new one. Plan again.',
+    ...(report.notes ?? []),
+    ...(route?.unreachable ?? []).map((u) => `Pose ${u.pose} is left out of the route: ${u.reason}.`),
+    plan.criterion.prior === 'tolerance' &&
+      'Tolerances count as prior knowledge: σ is what is known after the measurement together with them.',
+  ].filter((text) => typeof text === 'string');
+}

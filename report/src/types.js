@@ -1,0 +1,49 @@
+/**
+ * Shapes of the data, schema posewright/report/1. SI units; 7-vectors are x y z qx qy qz qw in the measurement frame;
+ * "packed" is the lower triangle, row by row, of a symmetric matrix.
+ *
+ * @typedef {[number, number, number]} Point
+ * @typedef {number[]} Placement x y z qx qy qz qw
+ *
+ * @typedef {{type: 'box', size: Point} | {type: 'cylinder', radius: number, length: number}
+ *   | {type: 'sphere', radius: number} | {type: 'plane', normal: Point}
+ *   | {type: 'mesh', vertices: number[], triangles: number[]}} Shape
+ * @typedef {{name: string, kind: 'robot'|'tool'|'obstacle', frame: number, placement: Placement, shape: Shape}} Body
+ *
+ * @typedef {object} Keyframe
+ * @property {number|null} pose id of the pose where the robot stands, 0: home, null: on the way
+ * @property {number} seconds elapsed
+ * @property {Placement[]} frames one per entry of Report.frames
+ * @property {Point[][]} lines skeleton, polylines
+ * @property {Placement} tip
+ * @property {(Point|null)[]} targets
+ *
+ * @typedef {{name: string, unit: string, tolerance: number, role: 'interest'|'nuisance', variant: string}} Column
+ * @typedef {{poses: number, log_det: number|null, rho0: number|null, largest_sigma_ratio: number|null}} CurvePoint
+ * @typedef {{sensitivity: number[], bound: number, positions: number[], chosen: number[]}} Candidates
+ *
+ * @typedef {object} Information
+ * @property {{id: number, packed: number[]}[]} poses
+ * @property {number[]|null} prior
+ * @property {{weight: number, packed: number[]}[]} test m²
+ *
+ * @typedef {object} Report
+ * @property {string} version
+ * @property {string} title
+ * @property {string[]} [notes]
+ * @property {any} plan plan.json
+ * @property {any} route route.json or null
+ * @property {string[]} frames
+ * @property {Body[]} bodies
+ * @property {{name: string, placement: Placement}[]} stations
+ * @property {string[]} targets
+ * @property {Keyframe[]} keyframes
+ * @property {Column[]} columns nuisance first
+ * @property {Information} information
+ * @property {number[]} singular_values
+ * @property {Candidates|null} candidates
+ * @property {CurvePoint[]} curve
+ * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet
+ * @property {Object<string, string>} [actuator_units]
+ */
+export {};

@@ -1,0 +1,133 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Color,
+  Group,
+  InstancedMesh,
+  Line,
+  LineBasicMaterial,
+  LineDashedMaterial,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  Points,
+  PointsMaterial,
+  ConeGeometry,
+  SphereGeometry,
+  Vector3,
+} from 'three';
+import { colour, viridisAt } from '../theme.js';
+
+/** The tip at every pose of the plan; the pose shown is larger, poses that are ticked off are pale. */
+export class Tips {
+  /** @param {import('./picture.js').Picture} picture */
+  constructor(picture) {
+    this.picture = picture;
+    this.mesh = new InstancedMesh(
+      new SphereGeometry(1, 18, 12),
+      new MeshBasicMaterial(),
+      Math.max(1, picture.tips.length),
+    );
+    this.mesh.frustumCulled = false;
+    this.mesh.renderOrder = 2;
+    this.mesh.material.transparent = true;
+    this.mesh.count = picture.tips.length;
+  }
+
+  /** @param {number|null} current @param {Set<number>} on */
+  update(current, on) {
+    const matrix = new Matrix4();
+    const [now, measured, off] = ['now', 'tip', 'off'].map((name) => new Color(colour(name)));
+    const { tips, dot } = this.picture;
+    tips.forEach((tip, k) => {
+      const size = dot * (tip.id === current ? 1.9 : 1);
+      this.mesh.setMatrixAt(k, matrix.makeScale(size, size, size).setPosition(new Vector3(...tip.position)));
+      this.mesh.setColorAt(k, tip.id === current ? now : on.has(tip.id) ? measured : off);
+    });
+    this.mesh.instanceMatrix.needsUpdate = true;
+    if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
+    this.mesh.computeBoundingSphere();
+  }
+}
+
+/** A round dot for point clouds. */
+function disc() {
+  const canvas = Object.assign(document.createElement('canvas'), { width: 32, height: 32 });
+  const context = canvas.getContext('2d');
+  context.fillStyle = '#fff';
+  context.arc(16, 16, 15, 0, 2 * Math.PI);
+  context.fill();
+  return new CanvasTexture(canvas);
+}
+
+/** @param {number[]} positions flat @param {number[]} sensitivity */
+export function candidateCloud(positions, sensitivity) {
+  const highest = sensitivity.reduce((a, b) => Math.max(a, b), 1e-12);
+  const colours = new Float32Array(3 * sensitivity.length);
+  const c = new Color();
+  sensitivity.forEach((s, k) => {
+    const [r, g, b] = viridisAt(s / highest);
+    c.setRGB(r / 255, g / 255, b / 255, 'srgb').toArray(colours, 3 * k);
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setAttribute('color', new BufferAttribute(colours, 3));
+  return new Points(
+    geometry,
+    new PointsMaterial({
+      size: 4,
+      sizeAttenuation: false,
+      vertexColors: true,
+      map: disc(),
+      alphaTest: 0.5,
+      transparent: true,
+      opacity: 0.7,
+    }),
+  );
+}
+
+/** Targets on the robot, stations, and the lines between them. */
+export class Sights {
+  /** @param {import('../types.js').Report} report @param {number} radius m */
+  constructor(report, radius) {
+    this.root = new Group();
+    this.lines = new Group();
+    this.targetMaterial = new MeshStandardMaterial({ roughness: 0.3 });
+    this.targets = report.targets.map(() => new Mesh(new SphereGeometry(radius, 16, 12), this.targetMaterial));
+    this.stationMaterial = new MeshStandardMaterial({ roughness: 0.6 });
+    const stations = report.stations.map((station) => {
+      const cone = new Mesh(new ConeGeometry(radius * 1.8, radius * 4, 24).rotateX(Math.PI / 2), this.stationMaterial);
+      cone.position.set(...station.placement.slice(0, 3));
+      return cone;
+    });
+    this.root.add(this.lines, ...this.targets, ...stations);
+    this.seen = new LineBasicMaterial();
+    this.hidden = new LineDashedMaterial({ dashSize: radius * 3, gapSize: radius * 2 });
+    this.paint();
+  }
+
+  paint() {
+    this.targetMaterial.color.set(colour('target'));
+    this.stationMaterial.color.set(colour('station'));
+    this.seen.color.set(colour('sight'));
+    this.hidden.color.set(colour('hidden'));
+  }
+
+  /** @param {(number[]|null)[]} targets @param {import('./sights.js').Sight[]} sights */
+  move(targets, sights) {
+    this.targets.forEach((mesh, k) => {
+      mesh.visible = Boolean(targets[k]);
+      if (targets[k]) mesh.position.set(...targets[k]);
+    });
+    for (const line of this.lines.children) line.geometry.dispose();
+    this.lines.clear();
+    for (const sight of sights) {
+      const geometry = new BufferGeometry().setFromPoints([new Vector3(...sight.from), new Vector3(...sight.to)]);
+      const line = new Line(geometry, sight.hidden ? this.hidden : this.seen);
+      if (sight.hidden) line.computeLineDistances();
+      this.lines.add(line);
+    }
+  }
+}

@@ -1,0 +1,27 @@
+/** Lines of sight at a stop. */
+
+/**
+ * @typedef {{from: number[], to: number[], hidden: boolean, label: string}} Sight
+ * @param {import('../types.js').Report} report
+ * @param {any} pose of plan.json
+ * @param {(number[]|null)[]} targets where they are now, in the order of report.targets
+ * @returns {Sight[]}
+ */
+export function sightsOf(report, pose, targets) {
+  const stations = new Map(report.stations.map((s) => [s.name, s.placement.slice(0, 3)]));
+  const seen = pose?.targets ?? [];
+  const sights = [];
+  for (const sight of seen) {
+    const from = stations.get(sight.station);
+    const to = targets[report.targets.indexOf(sight.target)];
+    if (!from || !to) continue;
+    const hidden = sight.visible === false;
+    sights.push({
+      from,
+      to,
+      hidden,
+      label: `${sight.target} from ${sight.station}${hidden ? `: hidden (${sight.hidden_by})` : ''}`,
+    });
+  }
+  return sights;
+}

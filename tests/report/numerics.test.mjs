@@ -1,0 +1,180 @@
+// What the page recomputes, against known answers: node --test tests/report
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import {
+  add,
+  cholesky,
+  correlation,
+  inverse,
+  logDet,
+  rowsOf,
+  traceOfProduct,
+} from '../../report/src/numerics/packed.js';
+import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
+import { between, exaggerated } from '../../report/src/view/interpolate.js';
+import { posesCsv } from '../../report/src/save_csv.js';
+import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
+
+const near = (value, expected, tolerance = 1e-12) =>
+  assert.ok(
+    Math.abs(value - expected) <= tolerance * Math.max(1, Math.abs(expected)),
+    `${value}, expected ${expected}`,
+  );
+const packed = (rows) => Float64Array.from(rows.flatMap((row, i) => row.slice(0, i + 1)));
+
+test('determinant, inverse and correlation of a 2 by 2 matrix', () => {
+  const { factor, rank } = cholesky(packed([[4], [2, 3]]));
+  assert.equal(rank, 2);
+  near(logDet(factor), Math.log(8));
+  near(logDet(factor, 1), Math.log(2)); // Schur complement 3 − 2·2/4
+  inverse(factor).forEach((value, k) => near(value, [3 / 8, -2 / 8, 4 / 8][k]));
+  near(correlation(inverse(factor), 0, 1), -2 / Math.sqrt(12));
+});
+
+test('the Hilbert matrix of order 5 has its known determinant and inverse', () => {
+  const hilbert = packed(Array.from({ length: 5 }, (_, i) => Array.from({ length: 5 }, (_, j) => 1 / (i + j + 1))));
+  const { factor } = cholesky(hilbert);
+  near(logDet(factor), -Math.log(266716800000), 1e-10);
+  const inverted = inverse(factor);
+  near(inverted[0], 25, 1e-9);
+  near(inverted[14], 44100, 1e-9);
+  near(inverted[9], 179200, 1e-9);
+  near(traceOfProduct(hilbert, inverted), 5, 1e-9);
+});
+
+test('eliminating rows gives the Schur complement of any matrix', () => {
+  const rows = [[5], [1, 4], [2, -1, 6], [0.5, 1, 1, 3]];
+  const whole = logDet(cholesky(packed(rows)).factor);
+  const block = logDet(cholesky(packed(rows.slice(0, 2))).factor);
+  near(logDet(cholesky(packed(rows)).factor, 2), whole - block);
+});
+
+test('a singular matrix says where', () => {
+  assert.equal(cholesky(packed([[1], [1, 2], [2, 3, 5]])).rank, 2);
+  assert.equal(cholesky(new Float64Array(6)).rank, 0);
+  assert.equal(rowsOf(6), 3);
+});
+
+/** Two links, parameters Δl1, l1 Δθ1, Δl2, l2 Δθ2 of absolute angles: det M = (N² − |Σ exp(i q2)|²)². */
+function twoLinks(angles) {
+  const blocks = angles.map((q, k) => {
+    const [c, s] = [Math.cos(q), Math.sin(q)];
+    return { id: k + 1, packed: [1, 0, 1, c, s, 1, -s, c, 0, 1] };
+  });
+  const columns = ['l1', 't1', 'l2', 't2'].map((name) => ({
+    name,
+    unit: 'm',
+    tolerance: 1,
+    role: 'interest',
+    variant: '',
+  }));
+  const weight = [1, 0, 1, 1, 0, 1, 0, 1, 0, 1]; // stretched arm: the tip moves by the sum of both links
+  return new PlanFigures(columns, { poses: blocks, prior: null, test: [{ weight: 2, packed: weight }] });
+}
+
+test('a two-link arm has the determinant and the error of theory', () => {
+  for (const degrees of [
+    [0, 120, 240],
+    [0, 90],
+    [10, 75, 200, 310],
+  ]) {
+    const angles = degrees.map((d) => (d * Math.PI) / 180);
+    const n = angles.length;
+    const [re, im] = [Math.cos, Math.sin].map((f) => angles.reduce((sum, q) => sum + f(q), 0));
+    const figures = twoLinks(angles).of(angles.map((_, k) => k + 1));
+    near(figures.logDet, 2 * Math.log(n * n - re * re - im * im), 1e-10);
+    near(figures.rho0 ** 2, (4 * (n - re)) / (n * n - re * re - im * im), 1e-10); // ρ0² = 4σ²(N − Re z)/(N² − |z|²) at q2 = 0
+  }
+});
+
+test('too few poses are not identifiable, and the parameter is named', () => {
+  const figures = twoLinks([0, 1, 2]).of([1]);
+  assert.equal(figures.identifiable, false);
+  assert.equal(figures.stuck, 'l2');
+  assert.equal(figures.sigma, null);
+});
+
+test('measuring everything twice doubles the efficiency and halves variances; tolerances are units', () => {
+  const engine = twoLinks([0.1, 1.7, 4]);
+  const once = engine.of([1, 2, 3]),
+    twice = engine.of([1, 2, 3, 1, 2, 3]);
+  near(engine.efficiency(twice, once), 2);
+  near(twice.sigma[2] ** 2, once.sigma[2] ** 2 / 2);
+  const scaled = twoLinks([0.1, 1.7, 4]);
+  const millimetres = new PlanFigures(
+    scaled.columns.map((c) => ({ ...c, tolerance: 1e-3 })),
+    { poses: [1, 2, 3].map((id) => ({ id, packed: scaled.blocks.get(id) })), prior: null, test: [] },
+  ).of([1, 2, 3]);
+  near(millimetres.sigma[0], 1e-3 * once.sigma[0]);
+  near(millimetres.logDet, once.logDet - 8 * Math.log(1e-3)); // log det of D⁻¹ M D⁻¹
+});
+
+test('growing lists end where the whole list is', () => {
+  const engine = twoLinks([0, 1, 2, 3]);
+  const steps = engine.growing([4, 2, 1, 3]);
+  assert.deepEqual(
+    steps.map((s) => s.identifiable),
+    [false, true, true, true],
+  );
+  near(steps[3].logDet, engine.of([1, 2, 3, 4]).logDet);
+});
+
+test('a prior makes identifiable what poses alone do not tell', () => {
+  const { columns, blocks } = twoLinks([0]);
+  const prior = packed([[1], [0, 1], [0, 0, 1], [0, 0, 0, 1]]);
+  const figures = new PlanFigures(columns, { poses: [{ id: 1, packed: blocks.get(1) }], prior, test: [] }).of([1]);
+  near(figures.logDet, 2 * Math.log(3)); // eigenvalues 1 and 3, twice
+  assert.equal(figures.rho0, null);
+});
+
+test('sums are of lower triangles', () => {
+  const sum = packed([[1], [2, 3]]);
+  add(sum, [1, 1, 1]);
+  assert.deepEqual([...sum], [2, 3, 4]);
+});
+
+test('between two keyframes a frame turns at even speed and points go straight', () => {
+  const at = (angle, x) => ({
+    frames: [[x, 0, 0, 0, 0, Math.sin(angle / 2), Math.cos(angle / 2)]],
+    lines: [
+      [
+        [0, 0, 0],
+        [x, 0, 0],
+      ],
+    ],
+    tip: [x, 0, 0, 0, 0, 0, 1],
+    targets: [[x, 0, 0], null],
+  });
+  const half = between(at(0, 0), at(Math.PI / 2, 2), 0.5);
+  near(2 * Math.atan2(half.frames[0][5], half.frames[0][6]), Math.PI / 4);
+  assert.deepEqual(half.lines[0][1], [1, 0, 0]);
+  assert.deepEqual(half.targets, [[1, 0, 0], null]);
+  const larger = exaggerated(at(0.01, 0.1), at(0, 0), 10);
+  near(2 * Math.atan2(larger.frames[0][5], larger.frames[0][6]), 0.1);
+  near(larger.tip[0], 1);
+});
+
+test('the saved list has the header of poses.csv, quotes names and keeps all digits', () => {
+  const pose = (id, station) => ({
+    id,
+    names: ['x', 'rz'],
+    units: ['m', 'rad'],
+    configuration: [0.1 + 0.2, -1e-7],
+    actuators: { 'leg.rho': 0.25 },
+    load_case: null,
+    station,
+  });
+  assert.equal(
+    posesCsv([pose(7, 'A'), pose(3, 'B, "left"')], { 'leg.rho': 'm' }),
+    'pose,x [m],rz [rad],leg.rho [m],station\n7,0.30000000000000004,-1e-7,0.25,A\n3,0.30000000000000004,-1e-7,0.25,"B, ""left"""\n',
+  );
+});
+
+test('numbers are shown in mm and deg, and proofs are rounded down', () => {
+  assert.equal(quantity(-0.0123456, 'm'), '−12.35 mm');
+  assert.equal(quantity(Math.PI, 'rad'), '180 deg');
+  assert.equal(quantity(null, 'm'), '–');
+  assert.equal(coordinate(-1e-9, 'm'), '0.000 mm');
+  assert.equal(percentDown(0.99999), '99.99 %');
+  assert.equal(number(1.5e-9), '1.5 · 10^−9');
+});

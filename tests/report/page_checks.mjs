@@ -1,0 +1,161 @@
+// A report in the browser: what is seen, what moves, what a reader can do.
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { check, near } from './checks.mjs';
+
+const tip = (page) => page.locator('.view canvas, .view svg').first().getAttribute('data-tip');
+const value = async (page, id) => Number(await page.locator(`#list-${id}`).getAttribute('data-value'));
+const ids = (page) => page.locator('.rows li').evaluateAll((rows) => rows.map((r) => Number(r.dataset.id)));
+
+/** The slider and the buttons move the robot. */
+export async function checkViewer(page, { data, route }) {
+  check((await page.locator('.view canvas').count()) === 1, 'there is a picture in WebGL');
+  const slider = page.getByRole('slider', { name: 'Place in the measuring order' });
+  const before = { tip: await tip(page), picture: await page.locator('.view canvas').screenshot() };
+  await slider.fill(String(Math.floor(Number(await slider.getAttribute('max')) / 2)));
+  await page.waitForTimeout(150);
+  check((await tip(page)) !== before.tip, 'the slider moves the tip');
+  check(!before.picture.equals(await page.locator('.view canvas').screenshot()), 'the slider changes the picture');
+  check(Number(await slider.getAttribute('max')) === data.keyframes.length - 1, 'the slider has one place a keyframe');
+  const order = route ? data.route.order : data.plan.poses.map((p) => p.id);
+  await slider.fill('0');
+  await page.getByRole('button', { name: 'Next pose' }).click();
+  const second = route ? order[0] : order[1];
+  check((await page.locator('.stop').textContent()).includes(`pose ${second}`), 'the next stop is named');
+  const values = await page.locator('.values dd').allTextContents();
+  check(
+    values.length >= data.plan.poses[0].names.length && values.every((v) => / (deg|mm)$/.test(v)),
+    'all joint values are shown in deg or mm',
+    values.join(),
+  );
+  await page.getByRole('button', { name: 'Play' }).click();
+  const start = await tip(page);
+  await page.waitForFunction((was) => document.querySelector('.view canvas').dataset.tip !== was, start);
+  await page.getByRole('button', { name: 'Pause' }).click();
+  await page.locator(`.rows li[data-id="${order.at(-1)}"] .preview`).click();
+  check(
+    (await page.locator('.stop').textContent()).includes(`pose ${order.at(-1)}`),
+    'a click on a row shows that pose',
+  );
+  if (data.candidates) await page.getByRole('checkbox', { name: 'Candidates' }).check();
+}
+
+/** Every plot has its points. */
+export async function checkPlots(page, { data, plan }) {
+  const points = (id) =>
+    page.locator(`#${id}`).evaluate((f) => f.plot.data.map((s) => s.filter((v) => v !== null).length));
+  const [, contributions, losses] = await points('plot-contribution');
+  check(contributions === plan.poses.length && losses === plan.poses.length, 'one bar and one dot a pose', [
+    contributions,
+    losses,
+  ]);
+  check(
+    (await points('plot-spectrum'))[1] === data.singular_values.length,
+    'one singular value a parameter of interest',
+  );
+  check(
+    data.singular_values.length === data.columns.filter((c) => c.role === 'interest').length,
+    'as many as there are parameters of interest',
+  );
+  if (data.candidates) {
+    const [, all, chosen] = await points('plot-sensitivity');
+    check(
+      all === data.candidates.sensitivity.length && chosen === new Set(data.candidates.chosen).size,
+      'all candidates, and those chosen',
+      [all, chosen],
+    );
+    // At the best weights a candidate above the level has all the weight that it may have, one part in as many as there are poses.
+    const above = data.candidates.sensitivity.filter((s) => s > 1.001).length;
+    check(above <= plan.poses.length, 'no more candidates are worth measuring in full than there are poses', above);
+  }
+  const known = data.prefix.filter((p) => p && p.log_det !== null).length;
+  check(
+    (await points('plot-curve-log_det'))[1] === known,
+    'the curve has a point for each number of poses that suffices',
+  );
+  const tests = plan.accuracy.test_poses.length;
+  check(
+    (await page.locator('#plot-test-poses').count()) === (tests > 0 ? 1 : 0),
+    'test poses are plotted where there are some',
+  );
+  if (tests > 0) check((await points('plot-test-poses'))[1] === tests, 'one dot a test pose');
+  const rows = await page.locator('.parameters tbody tr').count();
+  check(rows === plan.parameters.filter((p) => p.identifiable).length, 'one row a parameter', rows);
+}
+
+/** Unticking, reordering, saving. */
+export async function checkList(page, { plan, folder, problem, data }, program) {
+  const start = await ids(page);
+  near(await value(page, 'efficiency'), 1, 1e-9, 'the whole list has all the efficiency');
+  for (const pose of plan.poses.slice(0, 5)) {
+    const box = page.getByRole('checkbox', { name: `Measure pose ${pose.id}`, exact: true });
+    await box.uncheck();
+    const left = await value(page, 'efficiency');
+    check(left < 1, `without pose ${pose.id} efficiency is lower`);
+    near(left, pose.efficiency_without, 1e-6, `without pose ${pose.id} it is what the plan says`);
+    await box.check();
+  }
+  await page.getByRole('checkbox', { name: `Measure pose ${start[2]}`, exact: true }).uncheck();
+  await page.getByRole('button', { name: `Move pose ${start[0]} later` }).click();
+  await drag(page, start[4], start[1]);
+  const expected = [start[4], start[1], start[0], start[2], start[3], ...start.slice(5)];
+  check(String(await ids(page)) === String(expected), 'buttons and dragging reorder', await ids(page));
+  const promise = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save as poses.csv' }).click();
+  const csv = join(folder, 'poses.csv');
+  await (await promise).saveAs(csv);
+  const lines = readFileSync(csv, 'utf8').trim().split('\n');
+  check(
+    lines
+      .slice(1)
+      .map((l) => Number(l.split(',')[0]))
+      .join() === expected.filter((id) => id !== start[2]).join(),
+    'the saved list has the ticked poses in order',
+    lines.length,
+  );
+  check(
+    lines[0].startsWith(`pose,${plan.poses[0].names[0]} [${plan.poses[0].units[0]}],`),
+    'its header names and units',
+    lines[0],
+  );
+  const judged = JSON.parse(
+    execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet'], {
+      cwd: new URL('../../', import.meta.url),
+      encoding: 'utf8',
+      maxBuffer: 1e9,
+    }),
+  );
+  near(
+    judged.criterion.log_det,
+    await value(page, 'logdet'),
+    1e-8,
+    'posewright evaluate reads it and finds the same log det',
+  );
+  check(await page.locator('.reminder').isVisible(), 'the page says that the list has been changed');
+  await page.getByRole('button', { name: 'Reset' }).click();
+  check(
+    String(await ids(page)) === String(start) && !(await page.locator('.reminder').isVisible()),
+    'reset brings the plan’s list back',
+  );
+  for (const id of start.slice(1))
+    await page.getByRole('checkbox', { name: `Measure pose ${id}`, exact: true }).uncheck();
+  check(
+    (await page.locator('#list-efficiency').textContent()) === 'not identifiable',
+    'one pose alone is said not to do',
+    data.columns.length,
+  );
+  await page.getByRole('button', { name: 'Reset' }).click();
+}
+
+/** By the handle, as with a mouse. */
+async function drag(page, id, before) {
+  await page.locator(`.rows li[data-id="${before}"]`).scrollIntoViewIfNeeded();
+  const handle = await page.locator(`.rows li[data-id="${id}"] .handle`).boundingBox();
+  const goal = await page.locator(`.rows li[data-id="${before}"]`).boundingBox();
+  await page.mouse.move(handle.x + handle.width / 2, handle.y + handle.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(handle.x + 5, goal.y + goal.height, { steps: 4 });
+  await page.mouse.move(handle.x + 5, goal.y + 3, { steps: 3 });
+  await page.mouse.up();
+}

@@ -1,0 +1,96 @@
+// node tests/report/report_test.mjs --program PATH --out DIR [--screenshots DIR]
+// Makes reports of the examples with the program and reads them in a browser. Returns 77 where there is none.
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { parseArgs } from 'node:util';
+import { launch, missing, open, skipped } from './browser.mjs';
+import { about, check, verdict } from './checks.mjs';
+import { checkAltered } from './altered_checks.mjs';
+import { makeReports } from './make_reports.mjs';
+import { checkNumbers } from './numbers_checks.mjs';
+import { checkList, checkPlots, checkViewer } from './page_checks.mjs';
+import { checkReading, overflow } from './reading_checks.mjs';
+
+const { values } = parseArgs({
+  options: { program: { type: 'string' }, out: { type: 'string' }, screenshots: { type: 'string' } },
+});
+if (!values.program || !values.out) {
+  console.error('usage: report_test.mjs --program PATH --out DIR [--screenshots DIR]');
+  process.exit(2);
+}
+const lacking = missing();
+if (lacking) {
+  console.log(`Skipped: ${lacking}.`);
+  process.exit(skipped);
+}
+
+/** @param {any} browser @param {import('./make_reports.mjs').Case} c */
+async function checkCase(browser, c) {
+  about(c.name);
+  checkNumbers(c);
+  const { page, complaints } = await open(browser, c.page);
+  await checkViewer(page, c);
+  await checkPlots(page, c);
+  await checkList(page, c, values.program);
+  await checkReading(page, c);
+  check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
+  await page.close();
+  for (const width of [1280, 400])
+    for (const colorScheme of ['light', 'dark']) {
+      const { page: sized, complaints: others } = await open(browser, c.page, {
+        viewport: { width, height: 900 },
+        colorScheme,
+      });
+      check(
+        (await overflow(sized)) <= 0,
+        `nothing is wider than the page at ${width} px, ${colorScheme}`,
+        await overflow(sized),
+      );
+      check(others.length === 0, `no complaint at ${width} px, ${colorScheme}`, others.join(' | '));
+      await sized.close();
+    }
+}
+
+/** @param {any} browser without WebGL @param {import('./make_reports.mjs').Case} c */
+async function checkFallback(browser, c) {
+  about(`${c.name} without WebGL`);
+  const { page, complaints } = await open(browser, c.page);
+  const rods = () =>
+    page.locator('svg.wire polyline.rod').evaluateAll((all) => all.map((e) => e.getAttribute('points')).join(' '));
+  const before = await rods();
+  check(
+    before.length > 0 &&
+      (await page.locator('svg.wire circle.tip').count()) ===
+        new Set(c.data.keyframes.map((k) => k.pose).filter(Boolean)).size,
+    'skeleton and tips are drawn',
+  );
+  const slider = page.getByRole('slider', { name: 'Place in the measuring order' });
+  await slider.fill('1');
+  check((await rods()) !== before, 'the slider moves the skeleton');
+  check(complaints.length === 0, 'no complaint', complaints.join(' | '));
+  await page.close();
+}
+
+/** @param {any} browser @param {string} folder */
+async function takeScreenshots(browser, folder) {
+  mkdirSync(folder, { recursive: true });
+  for (const c of makeReports(values.program, join(values.out, 'screenshots'), ['telescope', 'kr270'], true)) {
+    const { page } = await open(browser, c.page, { viewport: { width: 1280, height: 1420 } });
+    await page.screenshot({ path: join(folder, `report-${c.name}.png`) });
+    await page.close();
+  }
+}
+
+const cases = makeReports(values.program, values.out);
+const browser = await launch({ webgl: true });
+for (const c of cases) await checkCase(browser, c);
+await checkAltered(
+  browser,
+  cases.find((c) => c.route),
+);
+if (values.screenshots) await takeScreenshots(browser, values.screenshots);
+await browser.close();
+const plain = await launch({ webgl: false });
+for (const c of cases.filter((k) => k.name !== 'test_poses')) await checkFallback(plain, c);
+await plain.close();
+process.exitCode = verdict();

@@ -34,6 +34,14 @@ std::string_view value_of(std::string_view header, std::string_view key, const S
   return rest;
 }
 
+/// For a message, which keeps to one line.
+std::string printable(std::string_view text) {
+  std::string result(text.substr(0, 40));
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return result;
+}
+
 std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& place) {
   std::vector<std::size_t> shape;
   const auto close = text.find(')');
@@ -75,7 +83,7 @@ Header parse_header(std::string_view bytes, const SourcePlace& place) {
   if (kind.starts_with("'<f8'")) header.item = 8;
   else if (kind.starts_with("'<f4'")) header.item = 4;
   else
-    throw InputError(place, "holds numbers of type " + std::string(kind.substr(0, kind.find(','))),
+    throw InputError(place, "holds numbers of type " + printable(kind.substr(0, kind.find(','))),
                      "allowed: '<f8', '<f4'");
   if (!value_of(text, "fortran_order", place).starts_with("False"))
     throw InputError(place, "is in Fortran order", "save numpy.ascontiguousarray(array)");
@@ -124,7 +132,31 @@ std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, s
   return {n, r, m};
 }
 
+/// Row i of all rows, from the bytes of its numbers.
+void fill_row(BlockArray& blocks, std::size_t i, const char* bytes, int item, const SourcePlace& place) {
+  const auto r = std::size_t(blocks.rows());
+  double* row = blocks.row(i / r, int(i % r));
+  for (int j = 0; j < blocks.columns(); ++j) {
+    row[j] = number_at(bytes + j * item, item);
+    if (!std::isfinite(row[j]))
+      throw InputError(place,
+                       "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
+                           std::to_string(j) + " is not finite",
+                       "all numbers must be finite");
+  }
+}
+
 }  // namespace
+
+BlockArray parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place) {
+  if (!is_npy(bytes)) throw InputError(place, "is no .npy array", "save the array with numpy.save");
+  const Header header = parse_header(bytes, place);
+  const auto [n, r, m] = shape_of(header, bytes.size(), rows, place);
+  BlockArray blocks(n, int(r), int(m));
+  for (std::size_t i = 0; i < n * r; ++i)
+    fill_row(blocks, i, bytes.data() + header.data + i * m * std::size_t(header.item), header.item, place);
+  return blocks;
+}
 
 BlockFile read_npy(const std::filesystem::path& path, std::optional<int> rows) {
   const SourcePlace place{path.string(), 0};
@@ -145,15 +177,7 @@ BlockFile read_npy(const std::filesystem::path& path, std::optional<int> rows) {
     if (reader.read(line.data(), line.size()) != line.size())
       throw InputError(place, "is cut off", "it may have changed while it was read");
     hash.add({line.data(), line.size()});
-    double* row = file.blocks.row(i / r, int(i % r));
-    for (std::size_t j = 0; j < m; ++j) {
-      row[j] = number_at(line.data() + j * std::size_t(header.item), header.item);
-      if (!std::isfinite(row[j]))
-        throw InputError(place,
-                         "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
-                             std::to_string(j) + " is not finite",
-                         "all numbers must be finite");
-    }
+    fill_row(file.blocks, i, line.data(), header.item, place);
   }
   file.sha256 = hash.hex();
   return file;

@@ -40,25 +40,32 @@ class Solids {
 
 }  // namespace
 
-std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames) {
-  const CollisionSpec& spec = *problem.workspace.collision;
-  Solids solids(problem, spec.hulls);
-  std::vector<Body> bodies;
+std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip) {
+  std::vector<BodyShape> shapes;
   std::string last_link;
   if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot))
     for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line))) {
-      const SourcePlace place{arm->urdf.string(), link.line};
-      for (const LinkShape& shape : link.shapes)
-        bodies.push_back(
-            {link.name, "", link.parent, false, link.frame, shape.X_FrameShape, solids.of(shape.shape, place)});
-      if (link.frame == frames.tip_frame()) last_link = link.name;
+      for (const LinkShape& s : link.shapes)
+        shapes.push_back({link.name, "", link.parent, BodyShape::Kind::link, link.frame, s.X_FrameShape, s.shape,
+                          SourcePlace{arm->urdf.string(), link.line}});
+      if (link.frame == tip_frame) last_link = link.name;
     }
-  for (const BodySpec& part : spec.tool)
-    bodies.push_back({part.name, part.station, last_link, false, frames.tip_frame(),
-                      frames.X_FrameTip() * isometry(part.placement), solids.of(part.shape, problem.at(part.line))});
-  for (const BodySpec& obstacle : spec.obstacles)
-    bodies.push_back({obstacle.name, obstacle.station, "", true, 0, isometry(obstacle.placement),
-                      solids.of(obstacle.shape, problem.at(obstacle.line))});
+  if (!problem.workspace.collision) return shapes;
+  for (const BodySpec& part : problem.workspace.collision->tool)
+    shapes.push_back({part.name, part.station, last_link, BodyShape::Kind::tool, tip_frame,
+                      X_FrameTip * isometry(part.placement), part.shape, problem.at(part.line)});
+  for (const BodySpec& obstacle : problem.workspace.collision->obstacles)
+    shapes.push_back({obstacle.name, obstacle.station, "", BodyShape::Kind::obstacle, 0, isometry(obstacle.placement),
+                      obstacle.shape, problem.at(obstacle.line)});
+  return shapes;
+}
+
+std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames) {
+  Solids solids(problem, problem.workspace.collision->hulls);
+  std::vector<Body> bodies;
+  for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip()))
+    bodies.push_back({s.name, s.station, s.parent, s.kind == BodyShape::Kind::obstacle, s.frame, s.X_FrameBody,
+                      solids.of(s.shape, s.place)});
   return bodies;
 }
 

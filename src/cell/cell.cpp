@@ -17,8 +17,8 @@ void check_stations(const Problem& problem, const Cell& cell) {
     const std::string& name = cell.sight->stations()[s];
     const std::string in = cell.collision->inside(home, cell.sight->X_MeasureStation(home, int(s)).translation(), name);
     if (!in.empty())
-      throw InputError(problem.at(problem.workspace.line_of_sight->line), "station " + name + " stands inside " + in,
-                       "move it, or give its own body the key station: " + name);
+      throw StationInside(problem.at(problem.workspace.line_of_sight->line), "station " + name + " stands inside " + in,
+                          "move it, or give its own body the key station: " + name);
   }
 }
 
@@ -65,12 +65,9 @@ std::vector<double> home_configuration(const Problem& problem, const std::vector
   for (const auto& [name, given] : problem.workspace.motion.home) {
     const double value = given.value;
     bool found = false;
-    std::string names;
     for (std::size_t i = 0; i < home.size(); ++i) {
       const Coordinate& c = coordinates[i];
-      if (c.choice()) continue;
-      names += (names.empty() ? "allowed: " : ", ") + c.name;
-      if (first_name(c.name) != name.value) continue;
+      if (c.choice() || first_name(c.name) != name.value) continue;
       if (!fits_unit(given.quantity, c.unit))
         throw InputError(problem.at(name.line), "workspace.motion.home: '" + name.value + "' has the wrong unit",
                          "a value in " + c.unit + " is expected");
@@ -81,7 +78,7 @@ std::vector<double> home_configuration(const Problem& problem, const std::vector
       home[i] = std::clamp(value, c.lower, c.upper);
       found = true;
     }
-    if (!found) throw InputError(problem.at(name.line), "'" + name.value + "' is no coordinate of this robot", names);
+    if (!found) throw_unknown_coordinate(problem.at(name.line), name.value, coordinates);
   }
   return home;
 }

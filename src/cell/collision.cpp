@@ -84,7 +84,6 @@ const std::vector<std::string>& Collision::reasons() const { return scene_->reas
 const std::vector<std::string>& Collision::always_touching() const { return scene_->always; }
 const std::vector<std::string>& Collision::contact_only() const { return scene_->contact_only; }
 double Collision::margin() const { return scene_->margin; }
-std::size_t Collision::pairs() const { return scene_->pairs.size(); }
 
 int Collision::violation(std::span<const double> q) const {
   const BodyPair* pair = first_violation(*scene_, q);

@@ -116,6 +116,11 @@ int LineOfSight::station_of(std::span<const double> q) const {
   return station_coordinate_ < 0 ? 0 : int(q[std::size_t(station_coordinate_)]);
 }
 
+std::pair<int, int> LineOfSight::stations_of(std::span<const double> q) const {
+  if (all_stations_) return {0, int(station_names_.size()) - 1};
+  return {station_of(q), station_of(q)};
+}
+
 Eigen::Isometry3d LineOfSight::X_MeasureStation(std::span<const double> q, int station) const {
   const Eigen::Isometry3d& X = X_CarrierStation_[std::size_t(station)];
   return station_on_tip_ ? model_.tool_pose(q) * X : X;
@@ -176,17 +181,13 @@ bool LineOfSight::seen_from(std::span<const double> q, const Eigen::Isometry3d& 
 void LineOfSight::visible(std::span<const double> q, std::span<char> seen) const {
   std::fill(seen.begin(), seen.end(), char(1));
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
-  if (!all_stations_) {
-    seen_from(q, X_Tip, station_of(q), seen, nullptr);
-    return;
-  }
-  for (int s = 0; s < int(station_names_.size()); ++s) seen_from(q, X_Tip, s, seen, nullptr);
+  const auto [first, last] = stations_of(q);
+  for (int s = first; s <= last; ++s) seen_from(q, X_Tip, s, seen, nullptr);
 }
 
 int LineOfSight::violation(std::span<const double> q) const {
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
-  const int first = all_stations_ ? 0 : station_of(q);
-  const int last = all_stations_ ? int(station_names_.size()) - 1 : first;
+  const auto [first, last] = stations_of(q);
   for (int s = first; s <= last; ++s) {
     int reason = -1;
     if (!seen_from(q, X_Tip, s, {}, &reason)) return reason;

@@ -53,6 +53,18 @@ Scene build_scene(const Problem& problem, const IdentificationModel& model);
 /// Links of the arm, tool and obstacles, in that order.
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames);
 
+/// The same before solids are made of them.
+struct BodyShape {
+  std::string name, station, parent;
+  enum class Kind { link, tool, obstacle } kind = Kind::link;
+  int frame = 0;
+  Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
+  ShapeSpec shape;
+  SourcePlace place;
+};
+/// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
+std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);
+
 /// Pairs that an SRDF file lets touch. Throws InputError with its line.
 std::vector<std::pair<std::string, std::string>> read_srdf_pairs(const std::filesystem::path& file,
                                                                  const SourcePlace& place);

@@ -38,6 +38,8 @@ Command select_command();
 Command evaluate_command();
 Command route_command();
 Command stations_command();
+Command export_command();
+Command report_command();
 
 /// Options that every command has.
 struct CommonOptions {

@@ -9,7 +9,8 @@ namespace posewright::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {observe_command(),  plan_command(),  select_command(),
-                                             evaluate_command(), route_command(), stations_command()};
+                                             evaluate_command(), route_command(), stations_command(),
+                                             export_command(),   report_command()};
   return table;
 }
 
@@ -39,7 +40,7 @@ CommonOptions common_values(const po::variables_map& values) {
 }
 
 std::string single(const Words& positional, const std::string& what) {
-  if (positional.empty()) throw InputError({}, what + " is missing", "see --help");
+  if (positional.empty()) throw InputError({}, what + " is missing", "see posewright --help");
   if (positional.size() > 1)
     throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
   return positional.front();

@@ -5,9 +5,10 @@
 #include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -24,17 +25,21 @@ po::options_description options() {
       ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
       ("candidates", text("n"), "feasible configurations to compare with (10000)")                //
       ("restarts", text("k"), "starts of a search (10)")                                          //
-      ("time-limit", text("S"), "stop searching after S seconds");
+      ("time-limit", text("S"), "stop searching after S seconds")                                 //
+      ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
   options.add(package_options());
   return options;
 }
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  if (positional.size() != 2) throw InputError({}, "two arguments are needed: PROBLEM POSES", "see --help");
+  if (positional.size() != 2)
+    throw InputError({}, "two arguments are needed: PROBLEM POSES", "see posewright help evaluate");
   EvaluateOptions evaluate;
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);
+  const std::string from = text_of(values, "from");
+  if (!from.empty()) find_readable_format(from);
   evaluate.plan.variant = text_of(values, "variant");
   evaluate.plan.criterion = text_of(values, "criterion");
   evaluate.plan.method = text_of(values, "method");
@@ -42,16 +47,14 @@ int run(const po::variables_map& values, const Words& positional) {
   evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
-  Problem problem = read_problem(positional[0]);
-  problem.packages = packages_of(values);
-  PoseListEvaluation result;
-  {
-    const Watch watch(common, time_limit(values));
-    result = evaluate_problem(problem, positional[1], evaluate, watch.monitor());
-    if (watch.was_interrupted()) return interrupted;
-  }
+  const Problem problem = problem_with_packages(positional[0], values);
+  const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
+    return evaluate_problem(problem, poses_in_file(positional[1], from), evaluate, monitor);
+  });
+  if (was_interrupted) return interrupted;
+  print_notes(result.notes);
   if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
-  else fmt::print("{}", evaluation_text(result));
+  else print_report(evaluation_text(result));
   return done;
 }
 

@@ -3,51 +3,30 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <new>
-#include <sstream>
 
 #include "command.hpp"
+#include "help.hpp"
 #include "posewright/version.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
 
-std::string command_names() {
-  std::string names;
-  for (const Command& command : commands()) names += (names.empty() ? "" : ", ") + command.name;
-  return names;
-}
-
-std::string general_help() {
-  std::string text =
-      "posewright: plans which poses to measure before a robot is calibrated\n\n"
-      "Usage: posewright COMMAND [options]\n\nCommands:\n";
-  for (const Command& command : commands())
-    text += fmt::format("  {:<28}{}\n", command.name + " " + command.arguments, command.summary);
-  text +=
-      "  help COMMAND                options of a command\n\n"
-      "Example:\n  posewright plan examples/telescope/problem.yaml -o plan.json --poses-csv poses.csv\n\n"
-      "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
-      "written).\n";
-  return text;
-}
-
-std::string command_help(const Command& command) {
-  std::ostringstream text;
-  text << "Usage: posewright " << command.name << " " << command.arguments << " [options]\n\n"
-       << command.summary << "\n\n"
-       << command.options() << "\n"
-       << common_options() << "\nExample:\n  " << command.example << "\n";
-  return text.str();
-}
-
-const Command& find_command(const std::string& name) {
-  const auto found =
-      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
-  if (found == commands().end())
-    throw InputError({}, "unknown command '" + name + "'", "commands of this version: " + command_names());
-  return *found;
+/// " (--NAME?)" where an option differs by one letter or begins so; else nothing.
+std::string meant(const std::string& written, const po::options_description& options) {
+  const std::string word = written.substr(std::min(written.find_first_not_of('-'), written.size()));
+  for (const auto& option : options.options()) {
+    const std::string& name = option->long_name();
+    const auto [front, rest] = std::mismatch(name.begin(), name.end(), word.begin(), word.end());
+    const bool begins = word.size() > 2 && name.starts_with(word);
+    const bool one_letter =
+        word.size() > 2 && (std::equal(front + (front != name.end()), name.end(), rest, word.end()) ||
+                            std::equal(front, name.end(), rest + (rest != word.end()), word.end()));
+    if (begins || one_letter) return " (--" + name + "?)";
+  }
+  return {};
 }
 
 int run_command(const Command& command, const Words& words) {
@@ -62,7 +41,13 @@ int run_command(const Command& command, const Words& words) {
   // Abbreviated options would change their meaning with every option added later.
   const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
   po::variables_map values;
-  po::store(po::command_line_parser(words).options(everything).positional(positional).style(style).run(), values);
+  try {
+    po::store(po::command_line_parser(words).options(everything).positional(positional).style(style).run(), values);
+  } catch (const po::error& error) {
+    const auto* unknown = dynamic_cast<const po::unknown_option*>(&error);
+    throw InputError({}, error.what() + (unknown == nullptr ? "" : meant(unknown->get_option_name(), all)),
+                     "see posewright help " + command.name);
+  }
   if (values.count("help") > 0) {
     fmt::print("{}", command_help(command));
     return done;
@@ -82,7 +67,13 @@ int run(const Words& words) {
     return done;
   }
   if (first == "--help" || first == "-h" || first == "help") {
-    fmt::print("{}", words.size() > 1 ? command_help(find_command(words[1])) : general_help());
+    fmt::print("{}", words.size() < 2      ? general_help()
+                     : words[1] == "--man" ? manual_page()
+                                           : command_help(find_command(words[1])));
+    return done;
+  }
+  if (first == "completion") {
+    fmt::print("{}", completion_script(single(Words(words.begin() + 1, words.end()), "SHELL (bash or zsh)")));
     return done;
   }
   const Command& command = find_command(first);
@@ -95,17 +86,17 @@ int run(const Words& words) {
 int main(int count, char** arguments) {
   using namespace posewright;
   const auto complain = [](const std::string& text, int code) {
-    fmt::print(stderr, "posewright: {}\n", text);
+    cli::print_error(text);
     return code;
   };
   try {
     const int code = cli::run(cli::Words(arguments + 1, arguments + count));
     if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
     return code;
+  } catch (const cli::Interrupted&) {
+    return cli::interrupted;
   } catch (const InputError& error) {
     return complain(error.what(), cli::bad_input);
-  } catch (const cli::po::error& error) {
-    return complain(std::string(error.what()) + "; see --help", cli::bad_input);
   } catch (const CannotDo& error) {
     return complain(error.what(), cli::cannot_do);
   } catch (const std::bad_alloc&) {

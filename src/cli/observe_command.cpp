@@ -3,9 +3,9 @@
 #include "command.hpp"
 #include "observation_report.hpp"
 #include "packages.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "posewright/version.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -25,21 +25,17 @@ po::options_description options() {
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  Problem problem = read_problem(single(positional, "PROBLEM"));
-  problem.packages = packages_of(values);
+  const Problem problem = problem_with_packages(single(positional, "PROBLEM"), values);
   ObserveOptions observe;
   observe.variant = text_of(values, "variant");
   observe.candidates = whole_number(values, "candidates", 1, 1000000).value_or(observe.candidates);
   observe.poses = whole_number(values, "poses", 1, 1000000);
   observe.seed = common.seed;
   observe.threads = common.threads;
-  std::vector<Observation> observations;
-  {
-    const Watch watch(common, 0);
-    observations = observe_problem(problem, observe, watch.monitor());
-    // A shortened pool would be shown as if it were whole.
-    if (watch.was_interrupted()) return interrupted;
-  }
+  const auto [observations, was_interrupted] =
+      watched(common, 0, [&](const Monitor& monitor) { return observe_problem(problem, observe, monitor); });
+  // A shortened pool would be shown as if it were whole.
+  if (was_interrupted) return interrupted;
   if (common.json) {
     Json json = {{"schema", "posewright/observation/1"},
                  {"version", version},
@@ -50,8 +46,10 @@ int run(const po::variables_map& values, const Words& positional) {
     fmt::print("{}\n", json.dump(1));
     return done;
   }
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    fmt::print("{}{}", i == 0 ? "" : "\n", observation_text(observations[i]));
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (i > 0) fmt::print("\n");
+    print_report(observation_text(observations[i]));
+  }
   return done;
 }
 

@@ -1,13 +1,9 @@
 #include "packages.hpp"
 
-namespace posewright::cli {
+#include "posewright/problem/read_problem.hpp"
 
-po::options_description package_options() {
-  po::options_description options("Cell");
-  options.add_options()("package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-                        "folder of package://NAME/ in the URDF (else ROS_PACKAGE_PATH, and around the URDF)");
-  return options;
-}
+namespace posewright::cli {
+namespace {
 
 std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values) {
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
@@ -24,6 +20,21 @@ std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po:
     packages.emplace_back(text.substr(0, equal), folder);
   }
   return packages;
+}
+
+}  // namespace
+
+po::options_description package_options() {
+  po::options_description options("Cell");
+  options.add_options()("package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+                        "folder of package://NAME/ in the URDF (else ROS_PACKAGE_PATH, and around the URDF)");
+  return options;
+}
+
+Problem problem_with_packages(const std::filesystem::path& file, const po::variables_map& values) {
+  Problem problem = read_problem(file);
+  problem.packages = packages_of(values);
+  return problem;
 }
 
 }  // namespace posewright::cli

@@ -1,17 +1,16 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "command.hpp"
+#include "posewright/problem/problem.hpp"
 
 namespace posewright::cli {
 
 /// --package NAME=DIR, for every command that reads a problem file.
 po::options_description package_options();
-/// Throws InputError for a value without name or folder, and for a folder that is not there.
-std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values);
+/// The problem file with these folders. Throws InputError as read_problem, for a value without name or folder, and for
+/// a folder that is not there.
+Problem problem_with_packages(const std::filesystem::path& file, const po::variables_map& values);
 
 }  // namespace posewright::cli

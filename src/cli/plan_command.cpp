@@ -5,7 +5,6 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -47,14 +46,14 @@ int run(const po::variables_map& values, const Words& positional) {
     plan_options.prior = prior == "tolerance";
   if (const std::string scaling = choice_of(values, "scaling", {"tolerance", "norm", "none"}); !scaling.empty())
     plan_options.scaling = scaling == "norm" ? Scaling::norm : scaling == "none" ? Scaling::none : Scaling::tolerance;
-  plan_options.augment = text_of(values, "augment");
+  const std::filesystem::path augment = text_of(values, "augment");
+  if (!augment.empty()) plan_options.measured = poses_in_file(augment);
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
-  Problem problem = read_problem(file);
-  problem.packages = packages_of(values);
+  const Problem problem = problem_with_packages(file, values);
   std::vector<std::filesystem::path> inputs{file};
-  if (!plan_options.augment.empty()) inputs.push_back(plan_options.augment);
+  if (!augment.empty()) inputs.push_back(augment);
   if (problem.design.measured) inputs.push_back(*problem.design.measured);
   if (problem.design.test_poses && !problem.design.test_poses->file.empty())
     inputs.push_back(problem.design.test_poses->file);

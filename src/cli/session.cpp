@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/file.hpp"
 
 namespace posewright::cli {
@@ -25,13 +26,16 @@ extern "C" void on_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-/// First bytes of what this program writes: plan.json and poses.csv.
+/// First bytes of what this program writes: plan.json, poses.csv, and the comment in exported files that may hold one.
 bool is_earlier_result(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string head(64, '\0');
+  std::string head(2048, '\0');
   in.read(head.data(), std::streamsize(head.size()));
   head.resize(std::size_t(in.gcount()));
-  return head.starts_with("pose,") || head.find("\"schema\": \"posewright/") != std::string::npos;
+  return head.starts_with("pose,") || head.starts_with("posewright,") ||
+         head.starts_with("<!doctype html><!-- posewright report -->") ||
+         head.substr(0, 64).find("\"schema\": \"posewright/") != std::string::npos ||
+         head.find(export_mark) != std::string::npos;
 }
 
 }  // namespace
@@ -91,6 +95,10 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
       throw CannotDo(outputs[i].string() + " exists and was not written by posewright; --force replaces it");
     require_writable(outputs[i]);
   }
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "posewright: note: {}\n", note);
 }
 
 double time_limit(const po::variables_map& values) {

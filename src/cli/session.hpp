@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
@@ -30,10 +31,38 @@ class Watch {
   bool shown_ = false;
 };
 
+/// What a computation made under a Watch, and whether Ctrl-C ended it early.
+template <class Result>
+struct Watched {
+  Result result;
+  bool was_interrupted = false;
+};
+
+/// Ends the program with exit code `interrupted`: Ctrl-C came before there was anything to show.
+struct Interrupted {};
+
+/// Runs work(monitor) under a Watch. Throws Interrupted where the work gave up because of Ctrl-C.
+/// @param seconds  time limit, 0 = none
+template <class Work>
+auto watched(const CommonOptions& common, double seconds, const Work& work)
+    -> Watched<decltype(work(std::declval<const Monitor&>()))> {
+  const Watch watch(common, seconds);
+  try {
+    auto result = work(watch.monitor());
+    return {std::move(result), watch.was_interrupted()};
+  } catch (const CannotDo&) {
+    if (watch.was_interrupted()) throw Interrupted{};
+    throw;
+  }
+}
+
 /// Refuses to write over anything that is not an earlier result of this program, unless forced. Call before the search.
 /// Throws CannotDo naming the file, InputError where two outputs or an input and an output are the same file.
 void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs,
                    bool force);
+
+/// What a result says to its user, on stderr.
+void print_notes(const std::vector<std::string>& notes);
 
 /// Seconds of --time-limit; 0 where it is not given.
 double time_limit(const po::variables_map& values);

@@ -7,8 +7,8 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/pipeline/place_stations.hpp"
-#include "posewright/problem/read_problem.hpp"
 #include "session.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -109,20 +109,12 @@ int run(const po::variables_map& values, const Words& positional) {
   stations.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   stations.plan.seed = common.seed;
   stations.plan.threads = common.threads;
-  Problem problem = read_problem(single(positional, "PROBLEM"));
-  problem.packages = packages_of(values);
-  std::vector<StationRank> ranks;
-  {
-    const Watch watch(common, time_limit(values));
-    try {
-      ranks = place_stations(problem, stations, watch.monitor());
-    } catch (const CannotDo&) {
-      if (watch.was_interrupted()) return interrupted;
-      throw;
-    }
-  }
+  const Problem problem = problem_with_packages(single(positional, "PROBLEM"), values);
+  const std::vector<StationRank> ranks = watched(common, time_limit(values), [&](const Monitor& monitor) {
+                                           return place_stations(problem, stations, monitor);
+                                         }).result;
   if (common.json) fmt::print("{}\n", ranking_json(ranks).dump(1));
-  else fmt::print("{}", ranking_text(ranks));
+  else print_report(ranking_text(ranks));
   return done;
 }
 

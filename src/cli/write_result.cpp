@@ -4,6 +4,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/file.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
 
@@ -28,39 +29,45 @@ std::optional<Repeats> repeats_of(const po::variables_map& values) {
   throw InputError({}, "--repeats " + text, "allowed: allow, forbid, or how often a pose may be measured");
 }
 
-Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses) {
-  const auto file_of = [&](const char* option, const char* standard) {
-    const std::string text = values.count(option) > 0 ? text_of(values, option) : standard;
-    if (text.empty()) throw InputError({}, std::string("--") + option + " is empty", "name a file, or - for none");
-    return text == "-" ? std::filesystem::path() : std::filesystem::path(text);
-  };
-  plan_ = file_of("output", "plan.json");
-  if (poses) poses_ = file_of("poses-csv", "poses.csv");
+std::filesystem::path output_file(const po::variables_map& values, const std::string& option, const char* standard) {
+  const std::string text = values.count(option) > 0 ? text_of(values, option) : standard;
+  if (text.empty()) throw InputError({}, "--" + option + " is empty", "name a file, or - for none");
+  return text == "-" ? std::filesystem::path() : std::filesystem::path(text);
+}
+
+void check_output_files(const po::variables_map& values, const std::vector<std::filesystem::path>& outputs,
+                        const std::vector<std::filesystem::path>& inputs) {
   std::vector<std::filesystem::path> files;
-  for (const auto& file : {plan_, poses_})
+  for (const auto& file : outputs)
     if (!file.empty()) files.push_back(file);
   check_outputs(files, inputs, values.count("force") > 0);
 }
 
+std::string written_text(const std::vector<std::filesystem::path>& outputs) {
+  std::string names;
+  for (const auto& output : outputs)
+    if (!output.empty()) names += (names.empty() ? "" : ", ") + output.string();
+  return names.empty() ? names : "Written: " + names + "\n";
+}
+
+Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses) {
+  plan_ = output_file(values, "output", "plan.json");
+  if (poses) poses_ = output_file(values, "poses-csv", "poses.csv");
+  check_output_files(values, {plan_, poses_}, inputs);
+}
+
 int Outputs::search_and_write(const CommonOptions& common, double seconds,
                               const std::function<Plan(const Monitor&)>& search) const {
-  Plan plan;
-  bool interrupted_by_user = false;
-  {
-    const Watch watch(common, seconds);
-    plan = search(watch.monitor());
-    interrupted_by_user = watch.was_interrupted();
-  }
+  const auto [plan, was_interrupted] = watched(common, seconds, search);
   const std::string json = plan_json(plan);
   if (!plan_.empty()) write_file_atomically(plan_, json);
   if (!poses_.empty()) write_file_atomically(poses_, poses_csv(plan));
   if (common.json) {
     fmt::print("{}", json);
   } else {
-    fmt::print("{}", plan_summary(plan));
-    if (!plan_.empty()) fmt::print("Written: {}{}\n", plan_.string(), poses_.empty() ? "" : ", " + poses_.string());
+    print_report(plan_summary(plan) + written_text({plan_, poses_}));
   }
-  return interrupted_by_user ? interrupted : done;
+  return was_interrupted ? interrupted : done;
 }
 
 }  // namespace posewright::cli

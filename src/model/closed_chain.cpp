@@ -87,6 +87,15 @@ Eigen::Isometry3d ClosedChain::platform(std::span<const double> q) const {
   return do_platform(q, freedoms);
 }
 
+std::vector<Polyline> ClosedChain::skeleton(std::span<const double> q) const {
+  std::vector<double> actuators(actuators_.size());
+  if (!do_inverse_kinematics(q, {}, actuators)) return {};
+  std::vector<Polyline> lines = do_skeleton(q, actuators);
+  for (Polyline& line : lines)
+    for (Eigen::Vector3d& point : line) point = X_MeasureBase_ * point;
+  return lines;
+}
+
 void ClosedChain::loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                         std::span<const int> selected, Loops& out) const {
   const auto d = Eigen::Index(coordinates_.size());

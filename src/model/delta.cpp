@@ -61,6 +61,27 @@ bool Delta::do_inverse_kinematics(std::span<const double> q, std::span<const dou
   return true;
 }
 
+std::vector<Polyline> Delta::do_skeleton(std::span<const double> q, std::span<const double> rho) const {
+  const Eigen::Vector3d centre(q[0], q[1], q[2]);
+  std::vector<Polyline> lines;
+  Polyline base, platform;
+  for (int i = 0; i < legs; ++i) {
+    const Leg leg = nominal_leg(spec_, i);
+    const Eigen::Vector3d d(std::cos(leg[5]), std::sin(leg[5]), 0);
+    const double theta = rho[std::size_t(i)];
+    base.emplace_back(leg[0] * d);
+    platform.emplace_back(centre + leg[1] * d);
+    const Eigen::Vector3d elbow =
+        base.back() + leg[2] * (std::cos(theta) * d - std::sin(theta) * Eigen::Vector3d::UnitZ());
+    lines.push_back({base.back(), elbow, platform.back()});
+  }
+  for (Polyline* rim : {&base, &platform}) {
+    rim->push_back(rim->front());
+    lines.push_back(std::move(*rim));
+  }
+  return lines;
+}
+
 void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
                      std::span<const int> selected, Loops& out) const {
   for (int i = 0; i < legs; ++i) {

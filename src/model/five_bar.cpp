@@ -75,6 +75,17 @@ bool FiveBar::do_inverse_kinematics(std::span<const double> q, std::span<const d
   return true;
 }
 
+std::vector<Polyline> FiveBar::do_skeleton(std::span<const double> q, std::span<const double> rho) const {
+  const auto lifted = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0); };
+  std::vector<Polyline> lines;
+  for (int i = 0; i < 2; ++i) {
+    const Leg leg = leg_at(spec_, i, q, rho[std::size_t(i)], {});
+    lines.push_back({lifted(leg.base), lifted(leg.base + leg.proximal * leg.along), {q[0], q[1], 0}});
+  }
+  lines.push_back({lines[0].front(), lines[1].front()});
+  return lines;
+}
+
 void FiveBar::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
                        std::span<const int> selected, Loops& out) const {
   for (int i = 0; i < 2; ++i) {

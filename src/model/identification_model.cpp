@@ -13,6 +13,14 @@ void require_size(std::size_t given, std::size_t expected, const char* what) {
 
 }  // namespace
 
+void throw_unknown_coordinate(const SourcePlace& place, const std::string& name,
+                              const std::vector<Coordinate>& coordinates) {
+  std::string names;
+  for (const Coordinate& c : coordinates)
+    if (!c.choice() && !c.name.ends_with(".second")) names += (names.empty() ? "allowed: " : ", ") + c.name;
+  throw InputError(place, "'" + name + "' is no coordinate of this robot", names);
+}
+
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels) {
   Coordinate c;
   c.name = name;

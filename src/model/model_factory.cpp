@@ -51,7 +51,7 @@ std::unique_ptr<IdentificationModel> observed(const Problem& problem, const Vari
   const MeasurementSpec& measurement = problem.measurement;
   if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
     return std::make_unique<CompensatorGeometry>(*compensator, measurement);
-  auto tip = std::visit(MakeTip{problem, variant}, problem.robot);
+  auto tip = make_tip(problem, variant);
   if (std::holds_alternative<JointsMeasurement>(measurement.instrument))
     return std::make_unique<JointSensorModel>(std::move(tip), problem);
   const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument);
@@ -78,6 +78,10 @@ std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const Va
   else model = observed(problem, variant);
   apply_nominal(*model, problem, variant);
   return model;
+}
+
+std::unique_ptr<TipModel> make_tip(const Problem& problem, const VariantSpec& variant) {
+  return std::visit(MakeTip{problem, variant}, problem.robot);
 }
 
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem) {

@@ -172,6 +172,25 @@ bool SixLegs::do_inverse_kinematics(std::span<const double> q, std::span<const d
   return true;  // alternates between neighbouring doubles
 }
 
+std::vector<Polyline> SixLegs::do_skeleton(std::span<const double> q, std::span<const double> rho) const {
+  const Eigen::Isometry3d X = platform_pose(q);
+  std::vector<Polyline> lines;
+  Polyline base, platform;
+  for (std::size_t i = 0; i < legs; ++i) {
+    const LegSpec& leg = spec_.legs[i];
+    const Eigen::Vector3d joint = X * leg.b;
+    if (spec_.actuation == LegActuation::slide) lines.push_back({leg.a, leg.a + rho[i] * leg.u, joint});
+    else lines.push_back({leg.a, joint});
+    base.push_back(leg.a);
+    platform.push_back(joint);
+  }
+  for (Polyline* rim : {&base, &platform}) {
+    rim->push_back(rim->front());
+    lines.push_back(std::move(*rim));
+  }
+  return lines;
+}
+
 void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
                        std::span<const int> selected, Loops& out) const {
   const Eigen::Isometry3d X = platform_pose(q);

@@ -119,6 +119,11 @@ UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(t
        e = e->NextSiblingElement("joint"))
     check_numbers(*e, number_attributes, file);
   check_tree(*robot, file);
+  for (const char* element : {"joint", "link"})
+    for (const tinyxml2::XMLElement* e = robot->FirstChildElement(element); e != nullptr;
+         e = e->NextSiblingElement(element))
+      if (const char* name = e->Attribute("name"); name != nullptr)
+        lines_.emplace(std::pair(element, name), e->GetLineNum());
 }
 
 void UrdfLines::check_collision_shapes() const {
@@ -144,12 +149,8 @@ void UrdfLines::check_collision_shapes() const {
 }
 
 SourcePlace UrdfLines::find(const char* element, const std::string& name) const {
-  tinyxml2::XMLDocument document;
-  document.Parse(text_.data(), text_.size());
-  for (const tinyxml2::XMLElement* e = document.RootElement()->FirstChildElement(element); e != nullptr;
-       e = e->NextSiblingElement(element))
-    if (e->Attribute("name", name.c_str()) != nullptr) return {file_, e->GetLineNum()};
-  return {file_, 0};
+  const auto at = lines_.find({element, name});
+  return {file_, at == lines_.end() ? 0 : at->second};
 }
 
 }  // namespace posewright

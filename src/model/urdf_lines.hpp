@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 
 #include "posewright/support/error.hpp"
 
@@ -21,6 +23,7 @@ class UrdfLines {
  private:
   SourcePlace find(const char* element, const std::string& name) const;
   std::string text_, file_;
+  std::map<std::pair<std::string, std::string>, int> lines_;  // of elements by kind and name
 };
 
 }  // namespace posewright

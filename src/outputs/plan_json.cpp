@@ -94,6 +94,12 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
           {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
 }
 
+nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
+  const Eigen::Quaterniond q(X.linear());
+  const Eigen::Vector3d p = X.translation();
+  return {{"position", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
 namespace {
 
 Json cell_json(const CellNotes& cell) {
@@ -103,12 +109,6 @@ Json cell_json(const CellNotes& cell) {
           {"contact_only", cell.contact_only},
           {"uncalibrated_margin", cell.margin},
           {"uncalibrated_joint_margins", margins}};
-}
-
-Json tool_pose_json(const Eigen::Isometry3d& X) {
-  const Eigen::Quaterniond q(X.linear());
-  const Eigen::Vector3d p = X.translation();
-  return {{"position", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
 Json pose_json(const PlannedPose& pose) {

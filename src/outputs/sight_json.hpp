@@ -7,5 +7,6 @@
 namespace posewright {
 
 nlohmann::ordered_json sight_json(const TargetSight& sight);
+nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);
 
 }  // namespace posewright

@@ -11,7 +11,6 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/support/error.hpp"
 #include "preparation.hpp"
-#include "read_poses.hpp"
 
 namespace posewright {
 namespace {
@@ -21,18 +20,19 @@ constexpr double proved_drop = 5e4;
 
 class ListEvaluation {
  public:
-  ListEvaluation(const Problem& problem, const std::filesystem::path& file, const EvaluateOptions& options,
+  ListEvaluation(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
                  const Monitor& monitor)
       : options_(options), monitor_(monitor), settings_(settings_of(problem, numbered(options.plan))) {
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     prepared_ = prepare(problem, settings_, monitor);
     const std::vector<Coordinate>& coordinates = prepared_.first().workspace->coordinates();
-    const PoseList list = read_poses(file, coordinates);
+    const PoseList list = poses(coordinates);
+    notes_ = list.notes;
     poses_.dimension = int(coordinates.size());
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
       if (prepared_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
-      require_feasible(list.configurations[i], i, file);
+      require_feasible(list.configurations[i], i, list.name);
       append(poses_, list.configurations[i]);
     }
     settings_.poses = int(poses_.count());
@@ -40,6 +40,7 @@ class ListEvaluation {
 
   PoseListEvaluation evaluate(const Problem& problem) {
     PoseListEvaluation result;
+    result.notes = notes_;
     const Judgement judgement = judge(prepared_, poses_, settings_);
     Plan& plan = result.plan;
     plan.seed = settings_.planner.seed;
@@ -72,11 +73,11 @@ class ListEvaluation {
     return options;
   }
 
-  void require_feasible(const std::vector<double>& q, std::size_t i, const std::filesystem::path& file) const {
+  void require_feasible(const std::vector<double>& q, std::size_t i, const std::string& list) const {
     for (const PreparedVariant& variant : prepared_.variants)
       if (const int reason = variant.workspace->violation(q); reason >= 0)
         throw InputError(
-            {file.string(), 0},
+            {list, 0},
             fmt::format("pose {} is not feasible: {}", i + 1, variant.workspace->reasons()[std::size_t(reason)]),
             "poses within the workspace of the problem");
   }
@@ -231,17 +232,23 @@ class ListEvaluation {
   Settings settings_;
   Preparation prepared_;
   Configurations poses_;
+  std::vector<std::string> notes_;
   double degree_ = 0.0;
 };
 
 }  // namespace
 
-PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
-                                    const EvaluateOptions& options, const Monitor& monitor) {
+PoseListEvaluation evaluate_problem(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+                                    const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   PoseListEvaluation result = ListEvaluation(problem, poses, options, monitor).evaluate(problem);
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
+}
+
+PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
+                                    const EvaluateOptions& options, const Monitor& monitor) {
+  return evaluate_problem(problem, poses_in_file(poses), options, monitor);
 }
 
 }  // namespace posewright

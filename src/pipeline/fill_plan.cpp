@@ -55,8 +55,7 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
 
 std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q) {
   std::vector<TargetSight> result;
-  const int first = sight.sees_from_all() ? 0 : sight.station_of(q);
-  const int last = sight.sees_from_all() ? int(sight.stations().size()) - 1 : first;
+  const auto [first, last] = sight.stations_of(q);
   for (int station = first; station <= last; ++station)
     for (const Sight& s : sight.sights(q, station)) result.push_back(target_sight(sight, s, station));
   return result;

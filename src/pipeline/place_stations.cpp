@@ -201,9 +201,8 @@ class Ranking {
       rank.feasible_share = double(plan.statistics.feasible + passed_over) / double(plan.statistics.drawn);
     } catch (const CannotDo& error) {
       rank.why_not = error.what();
-    } catch (const InputError& error) {
-      // A place inside the robot is a bad place; what is wrong with the rest of the problem is wrong everywhere.
-      if (std::string(error.what()).find("stands inside") == std::string::npos) throw;
+    } catch (const StationInside&) {
+      // A bad place; what is wrong with the rest of the problem is wrong everywhere.
       rank.why_not = "stands inside a body";
     }
     return rank;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "posewright/support/error.hpp"
-#include "read_poses.hpp"
 #include "study_space.hpp"
 #include "test_points.hpp"
 
@@ -100,8 +99,8 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   const std::vector<Coordinate>& coordinates = prepared.first().workspace->coordinates();
   // Bad lists are told before the long work.
   prepared.measured.dimension = int(coordinates.size());
-  if (!settings.measured.empty())
-    for (const auto& q : read_poses(settings.measured, coordinates).configurations) append(prepared.measured, q);
+  if (settings.measured)
+    for (const auto& q : settings.measured(coordinates).configurations) append(prepared.measured, q);
   SamplingOptions sampling;
   sampling.count = std::size_t(settings.candidates);
   sampling.seed = settings.planner.seed;

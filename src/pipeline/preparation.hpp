@@ -20,7 +20,7 @@ struct Settings {
   Repeats repeats;
   Scaling scaling = Scaling::tolerance;
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
-  std::filesystem::path measured;              ///< empty: none
+  PoseSource measured;                         ///< empty: none
   PlannerOptions planner;
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.

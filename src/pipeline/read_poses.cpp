@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <numbers>
 
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
@@ -16,20 +16,6 @@ namespace posewright {
 namespace {
 
 constexpr std::uintmax_t size_limit = 100'000'000;
-
-std::string trimmed(std::string text) {
-  const auto blank = [](unsigned char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(static_cast<unsigned char>(text.back()))) text.pop_back();
-  while (!text.empty() && blank(static_cast<unsigned char>(text.front()))) text.erase(text.begin());
-  return text;
-}
-
-/// "joint_1 [deg]" → name and unit.
-std::pair<std::string, std::string> name_and_unit(const std::string& header) {
-  const auto open = header.rfind('[');
-  if (open == std::string::npos || header.back() != ']') return {header, ""};
-  return {trimmed(header.substr(0, open)), header.substr(open + 1, header.size() - open - 2)};
-}
 
 double in_si(const std::string& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
   const Quantity own = c.unit == "m" ? Quantity::length : Quantity::angle;
@@ -49,6 +35,120 @@ double of_label(const std::string& label, const Coordinate& c, const SourcePlace
   return c.values[std::size_t(at - c.labels.begin())];
 }
 
+/// Puts the cells of a list to the coordinates of a problem: the one place where names and units meet them.
+class Mapping {
+ public:
+  Mapping(const std::string& file, const std::vector<Coordinate>& coordinates, const PoseTable& table)
+      : file_(file), coordinates_(coordinates), table_(table), column_(coordinates.size(), -1) {
+    list_.name = file;
+    list_.problem_sha256 = table.problem_sha256;
+    if (table.names.empty()) map_by_order();
+    else map_by_name();
+  }
+
+  PoseList map() {
+    for (const PoseRow& row : table_.rows) add(row);
+    return std::move(list_);
+  }
+
+ private:
+  /// A choice among one thing needs no column.
+  static bool needs_column(const Coordinate& c) { return !c.choice() || c.labels.size() > 1; }
+
+  void map_by_name() {
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      for (std::size_t i = 0; i < table_.names.size(); ++i)
+        if (table_.names[i] == coordinates_[k].name) column_[k] = int(i);
+      if (column_[k] < 0 && needs_column(coordinates_[k]))
+        throw InputError({file_, table_.header}, "has no column '" + coordinates_[k].name + "'",
+                         "the names of all coordinates are expected");
+    }
+    for (std::size_t i = 0; i < table_.names.size(); ++i)
+      if (table_.names[i] == "weight") weight_ = int(i);
+  }
+
+  void map_by_order() {
+    const std::size_t columns = table_.rows.front().cells.size();
+    std::size_t next = 0;
+    std::string names;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      if (c.choice() && needs_column(c))
+        throw InputError({file_, 0}, "has no place for the " + c.name + " of a pose", "a format with named columns");
+      if (c.choice()) continue;
+      column_[k] = int(next++);
+      names += (names.empty() ? "" : ", ") + c.name;
+    }
+    if (next != columns)
+      throw InputError({file_, table_.rows.front().line}, fmt::format("has {} numbers a pose", columns),
+                       fmt::format("{} in this order: {}", next, names));
+    list_.notes.push_back(file_ + " names no joints: its columns are taken as " + names);
+  }
+
+  void add(const PoseRow& row) {
+    const SourcePlace place{file_, row.line};
+    if (table_.names.empty() && row.cells.size() != table_.rows.front().cells.size())
+      throw InputError(place, fmt::format("has {} numbers", row.cells.size()),
+                       fmt::format("the first pose has {}", table_.rows.front().cells.size()));
+    std::vector<double> q;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      if (column_[k] < 0) q.push_back(c.values.front());
+      else q.push_back(value_of(row.cells[std::size_t(column_[k])], unit_of(column_[k]), c, place));
+      require_inside(q.back(), c, place);
+      if (!c.choice() && !c.periodic) q.back() = std::clamp(q.back(), c.lower, c.upper);
+    }
+    list_.configurations.push_back(std::move(q));
+    list_.measured.push_back(row.measured);
+    list_.ids.push_back(row.id > 0 ? row.id : int(list_.configurations.size()));
+    if (weight_ >= 0) list_.weights.push_back(weight_of(row.cells[std::size_t(weight_)], place));
+  }
+
+  std::string unit_of(int column) const {
+    return table_.units.empty() ? std::string() : table_.units[std::size_t(column)];
+  }
+
+  static double value_of(const PoseCell& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
+    if (const auto* text = std::get_if<std::string>(&cell))
+      return c.choice() ? of_label(*text, c, place) : in_si(*text, unit, c, place);
+    const double value = std::get<double>(cell);
+    if (c.choice()) return of_label(fmt::format("{}", value), c, place);
+    if (unit != degrees_or_millimetres) return value;
+    return c.unit == "m" ? value * 1e-3 : value * (std::numbers::pi / 180);
+  }
+
+  static double weight_of(const PoseCell& cell, const SourcePlace& place) {
+    const auto* text = std::get_if<std::string>(&cell);
+    double weight = 0;
+    if (text == nullptr) {
+      weight = std::get<double>(cell);
+    } else {
+      const auto [end, code] = std::from_chars(text->data(), text->data() + text->size(), weight);
+      if (code != std::errc() || end != text->data() + text->size()) weight = 0;
+    }
+    if (!(weight > 0) || !std::isfinite(weight))
+      throw InputError(place, "weight '" + (text == nullptr ? fmt::format("{}", weight) : text->substr(0, 40)) + "'",
+                       "a positive number is expected");
+    return weight;
+  }
+
+  std::string file_;
+  const std::vector<Coordinate>& coordinates_;
+  const PoseTable& table_;
+  std::vector<int> column_;
+  int weight_ = -1;
+  PoseList list_;
+};
+
+/// plan.json, route.json and the like by their first character, else CSV.
+PoseTable recognised(const std::string& text, const std::string& file) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] == '{') return table_of(parse_sequence(text, file));
+  return read_csv_table(text, file);
+}
+
+}  // namespace
+
 void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
   // What a controller shows has few digits: a hair beyond a limit is the limit.
   const double slack = 1e-6 * (1 + std::abs(c.upper - c.lower));
@@ -57,130 +157,17 @@ void require_inside(double value, const Coordinate& c, const SourcePlace& place)
                    fmt::format("allowed: {:.6g} to {:.6g} {}", c.lower, c.upper, c.unit));
 }
 
-class CsvReader {
- public:
-  CsvReader(const std::string& file, const std::vector<Coordinate>& coordinates)
-      : file_(file), coordinates_(coordinates), column_(coordinates.size(), -1), unit_(coordinates.size()) {}
-
-  PoseList read(const std::string& text) {
-    std::istringstream lines(text);
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
-      line = trimmed(line);
-      if (line.empty() || line.front() == '#') continue;
-      if (cells_ == 0) read_header(line, number);
-      else read_row(line, number);
-    }
-    if (list_.configurations.empty()) throw InputError({file_, 0}, "has no poses", "a header and one line a pose");
-    return std::move(list_);
-  }
-
- private:
-  void read_header(const std::string& line, int number) {
-    const std::vector<std::string> cells = csv_cells(line);
-    cells_ = cells.size();
-    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto [name, unit] = name_and_unit(cells[i]);
-        if (name != coordinates_[k].name) continue;
-        column_[k] = int(i);
-        unit_[k] = unit;
-      }
-      // A choice among one thing needs no column.
-      if (column_[k] < 0 && !(coordinates_[k].choice() && coordinates_[k].labels.size() == 1))
-        throw InputError({file_, number}, "has no column '" + coordinates_[k].name + "'",
-                         "a header with the names of all coordinates");
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (cells[i] == "weight") weight_ = int(i);
-  }
-
-  void read_row(const std::string& line, int number) {
-    const SourcePlace place{file_, number};
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() != cells_)
-      throw InputError(place, fmt::format("has {} cells", cells.size()), fmt::format("the header has {}", cells_));
-    std::vector<double> q;
-    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-      const Coordinate& c = coordinates_[k];
-      if (column_[k] < 0) q.push_back(c.values.front());
-      else if (c.choice()) q.push_back(of_label(cells[std::size_t(column_[k])], c, place));
-      else q.push_back(in_si(cells[std::size_t(column_[k])], unit_[k], c, place));
-      require_inside(q.back(), c, place);
-      if (!c.choice() && !c.periodic) q.back() = std::clamp(q.back(), c.lower, c.upper);
-    }
-    list_.configurations.push_back(std::move(q));
-    if (weight_ < 0) return;
-    double weight = 0;
-    const std::string& cell = cells[std::size_t(weight_)];
-    const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), weight);
-    if (code != std::errc() || end != cell.data() + cell.size() || !(weight > 0) || !std::isfinite(weight))
-      throw InputError(place, "weight '" + cell.substr(0, 40) + "'", "a positive number is expected");
-    list_.weights.push_back(weight);
-  }
-
-  std::string file_;
-  const std::vector<Coordinate>& coordinates_;
-  std::vector<int> column_;
-  std::vector<std::string> unit_;
-  std::size_t cells_ = 0;
-  int weight_ = -1;
-  PoseList list_;
-};
-
-PoseList from_plan(const std::string& text, const std::string& file, const std::vector<Coordinate>& coordinates) {
-  using Json = nlohmann::json;
-  const SourcePlace place{file, 0};
-  PoseList list;
-  try {
-    const Json plan = Json::parse(text);
-    for (const Json& pose : plan.at("poses")) {
-      std::vector<double> q;
-      const Json& names = pose.at("names");
-      for (const Coordinate& c : coordinates) {
-        if (c.choice()) {
-          q.push_back(c.labels.size() == 1 ? c.values.front() : of_label(pose.at(c.name).get<std::string>(), c, place));
-          continue;
-        }
-        const auto at = std::find(names.begin(), names.end(), c.name);
-        if (at == names.end())
-          throw InputError(place, "a pose has no coordinate '" + c.name + "'", "a plan of the same robot is expected");
-        q.push_back(pose.at("configuration").at(std::size_t(at - names.begin())).get<double>());
-        require_inside(q.back(), c, place);
-      }
-      list.configurations.push_back(std::move(q));
-      list.measured.push_back(pose.value("measured", false));
-    }
-  } catch (const Json::exception&) {
-    throw InputError(place, "is no plan with configurations", "plan.json as posewright writes it, or CSV");
-  }
-  if (list.configurations.empty()) throw InputError(place, "has no poses", "at least one is needed");
-  return list;
+PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates,
+                    const std::string& format) {
+  return read_poses_text(read_file(file, size_limit), file.string(), coordinates, format);
 }
 
-}  // namespace
-
-std::vector<std::string> csv_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') cells.back() += line[++i];
-    else if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) cells.emplace_back();
-    else cells.back() += c;
-  }
-  for (std::string& cell : cells) cell = trimmed(cell);
-  return cells;
-}
-
-PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates) {
-  std::string text = read_file(file, size_limit);
+PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates,
+                         const std::string& format) {
   // Spreadsheets write a byte order mark.
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && text[first] == '{') return from_plan(text, file.string(), coordinates);
-  return CsvReader(file.string(), coordinates).read(text);
+  const PoseTable table = format.empty() ? recognised(text, name) : find_readable_format(format).read(text, name);
+  return Mapping(name, coordinates, table).map();
 }
 
 }  // namespace posewright

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "fill_plan.hpp"
 #include "motions.hpp"
@@ -11,7 +10,6 @@
 #include "posewright/route/tour.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
-#include "read_poses.hpp"
 
 namespace posewright {
 namespace {
@@ -29,14 +27,13 @@ struct Stop {
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
-  Router(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options, const Monitor& monitor)
+  Router(const Problem& problem, const PoseSource& poses, const RouteOptions& options, const Monitor& monitor)
       : problem_(problem),
         options_(options),
         monitor_(monitor),
         cell_(make_cell(problem)),
         site_(make_site(problem, find_variant(problem, ""), cell_)),
         space_(problem, cell_) {
-    route_.plan_file = plan.string();
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
     route_.seed = options.seed;
@@ -48,7 +45,7 @@ class Router {
       route_.units.push_back(c.unit);
     }
     route_.home = space_.home();
-    read_stops(plan);
+    read_stops(poses);
   }
 
   Route make() {
@@ -65,18 +62,22 @@ class Router {
   }
 
  private:
-  void read_stops(const std::filesystem::path& plan) {
-    const PoseList list = read_poses(plan, site_.workspace->coordinates());
+  void read_stops(const PoseSource& poses) {
+    const PoseList list = poses(site_.workspace->coordinates());
+    route_.plan_file = list.name;
+    route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
+    route_.notes = list.notes;
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
-      Stop stop{int(i) + 1, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
+      const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
+      Stop stop{id, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
       stops_.push_back(std::move(stop));
     }
     if (options_.start && find_stop(*options_.start) < 0)
-      throw InputError({}, "--start " + std::to_string(*options_.start) + " is no pose of " + plan.string(),
+      throw InputError({}, "--start " + std::to_string(*options_.start) + " is no pose of " + list.name,
                        "an id of a pose that is still to be measured");
     std::vector<std::vector<double>> reduced;
     for (const Stop& stop : stops_) reduced.push_back(space_.reduced(stop.configuration));
@@ -268,7 +269,7 @@ nlohmann::json read_plan(const std::filesystem::path& plan) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception&) {
-    throw InputError({plan.string(), 0}, "is no plan", "plan.json as posewright writes it");
+    throw InputError({plan.string(), 0}, "names no problem file", "a plan.json of a problem, or --problem FILE");
   }
 }
 
@@ -288,15 +289,17 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan) {
   throw InputError({plan.string(), 0}, "its problem file '" + name + "' is not there", "name it with --problem FILE");
 }
 
-Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  Route route = Router(problem, plan, options, monitor).make();
-  if (plan.extension() == ".json")
-    if (const nlohmann::json json = read_plan(plan); json.contains("problem") && json["problem"].is_object())
-      route.problem_changed = json["problem"].value("sha256", problem.sha256) != problem.sha256;
+  Route route = Router(problem, poses, options, monitor).make();
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;
+}
+
+Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+                    const Monitor& monitor) {
+  return route_problem(problem, poses_in_file(plan), options, monitor);
 }
 
 }  // namespace posewright

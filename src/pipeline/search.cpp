@@ -187,6 +187,8 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
   fill(result.certificate, approximate, joined, request, entry.determinant ? joined.offsets.front() : 0.0);
+  result.sensitivity = approximate.sensitivity;
+  result.price = approximate.price;
   return result;
 }
 

@@ -60,6 +60,8 @@ struct Bound {
   Certificate certificate;
   double degree = 0.0;
   std::vector<double> references{};
+  std::vector<double> sensitivity{};  ///< of every candidate at the best weights
+  double price = 0.0;                 ///< candidates with a sensitivity well below it are in no good plan
 };
 Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
 

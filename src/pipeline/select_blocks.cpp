@@ -18,6 +18,12 @@ std::vector<Parameter> labels(const std::vector<std::string>& names, int nuisanc
   return parameters;
 }
 
+void require_block_criterion(const std::string& criterion) {
+  require_known(criterion, "exchange", {}, {});
+  if (criterion.starts_with("test_pose") || find_criterion(criterion)->several_variants)
+    throw InputError({}, "criterion '" + criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
+}
+
 void require_enough(const BlockFile& file, const SelectOptions& options) {
   const int m = file.blocks.columns(), r = file.blocks.rows();
   if (options.nuisance < 0 || options.nuisance >= m)
@@ -52,19 +58,16 @@ void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation
 
 }  // namespace
 
-Plan select_blocks(const std::filesystem::path& path, const SelectOptions& options, const Monitor& monitor) {
+Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_known(options.criterion, options.method, {}, {});
-  if (options.criterion.starts_with("test_pose") || find_criterion(options.criterion)->several_variants)
-    throw InputError({}, "criterion '" + options.criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
+  require_block_criterion(options.criterion);
   Plan plan;
   plan.seed = options.seed;
   plan.criterion = options.criterion;
   plan.method = options.method;
   plan.scaling = "none";
   plan.reserve = options.reserve;
-  BlockFile file = read_blocks(path, options.rows);
-  plan.problem_file = path.string();
   plan.problem_sha256 = file.sha256;
   require_enough(file, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
@@ -93,6 +96,20 @@ Plan select_blocks(const std::filesystem::path& path, const SelectOptions& optio
   plan.statistics.restarts = found.design.restarts;
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
+}
+
+Plan select_blocks(const std::filesystem::path& path, const SelectOptions& options, const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  Plan plan = select_blocks(read_blocks(path, options.rows), options, monitor);
+  plan.problem_file = path.string();
+  plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
+}
+
+double value_of_blocks(const std::string& criterion, const Evaluation& evaluation, int nuisance,
+                       const Eigen::VectorXd& scale) {
+  require_block_criterion(criterion);
+  return criterion_value(criterion, evaluation, nuisance, scale).shown;
 }
 
 }  // namespace posewright

@@ -43,7 +43,8 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
   if (s.criterion.starts_with("test_pose") && !design.test_poses)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
-  s.measured = !options.augment.empty() ? options.augment : design.measured.value_or(std::filesystem::path());
+  s.measured = options.measured;
+  if (!s.measured && design.measured) s.measured = poses_in_file(*design.measured);
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.planner.seed = options.seed;
   s.planner.threads = options.threads;

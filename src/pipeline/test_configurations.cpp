@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/workspace/candidates.hpp"

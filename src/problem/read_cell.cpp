@@ -11,8 +11,6 @@ using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
 
-bool read_flag(const Value& value) { return value.choice({"true", "false"}) == "true"; }
-
 ShapeSpec read_box(const Value& value) { return BoxShape{value.vector(Quantity::length, Sign::positive)}; }
 
 ShapeSpec read_cylinder(const Value& value) {
@@ -95,8 +93,8 @@ CollisionSpec read_collision(const Value& value, const std::filesystem::path& fo
   section.allow({"self", "clearance", "self_clearance", "hulls", "srdf", "ignore", "tool", "obstacles"});
   CollisionSpec collision;
   collision.line = value.line();
-  if (const Value* self = section.find("self")) collision.self = read_flag(*self);
-  if (const Value* hulls = section.find("hulls")) collision.hulls = read_flag(*hulls);
+  if (const Value* self = section.find("self")) collision.self = self->flag();
+  if (const Value* hulls = section.find("hulls")) collision.hulls = hulls->flag();
   if (const Value* clearance = section.find("clearance"))
     collision.clearance = clearance->number(Quantity::length, Sign::not_negative);
   if (const Value* clearance = section.find("self_clearance"))

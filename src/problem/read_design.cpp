@@ -91,7 +91,7 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
   if (const Value* criterion = section.find("criterion")) design.criterion = criterion->located_text();
   if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses, folder);
   if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
-  if (const Value* reserve = section.find("reserve")) design.reserve = reserve->choice({"yes", "no"}) == "yes";
+  if (const Value* reserve = section.find("reserve")) design.reserve = reserve->flag();
   if (const Value* scaling = section.find("scaling")) {
     const std::string word = scaling->choice({"tolerance", "norm", "none"});
     design.scaling = word == "norm" ? Scaling::norm : word == "none" ? Scaling::none : Scaling::tolerance;

@@ -78,7 +78,7 @@ ElastostaticSpec read_elastostatic(const Value& value) {
     spec.loads.push_back(read_load(entry.key.value, entry.value));
   if (spec.loads.empty()) section.at("loads").fail("is empty", "at least one load case is needed");
   if (const Value* gravity = section.find("gravity")) spec.gravity = gravity->vector(Quantity::number);
-  if (const Value* weights = section.find("link_weights")) spec.link_gravity = weights->choice({"yes", "no"}) == "yes";
+  if (const Value* weights = section.find("link_weights")) spec.link_gravity = weights->flag();
   if (const Value* compensator = section.find("compensator")) spec.compensator = read_compensator(*compensator);
   if (const Value* listed = section.find("listed")) spec.listed = read_listed(*listed);
   if (spec.compensator && spec.listed && spec.compensator->joint.value == spec.listed->joint.value)

@@ -132,7 +132,7 @@ MotionSpec read_motion(const Value& value) {
   seconds("station_change", motion.station_change);
   seconds("load_change", motion.load_change);
   if (const Value* reachable = section.find("reachable"))
-    motion.reachable = reachable->choice({"true", "false"}) == "true";
+    motion.reachable = reachable->flag();
   return motion;
 }
 

@@ -38,6 +38,8 @@ class Value {
   /// Text that names one thing: no `*` or `?`.
   Located<std::string> exact_name() const;
   std::string choice(std::initializer_list<std::string_view> allowed) const;
+  /// true, false or, as YAML 1.1 has it, yes, no.
+  bool flag() const;
   int integer(int lower, int upper) const;
   double number(Quantity quantity, Sign sign = Sign::any) const;
   Measured measured(std::initializer_list<Quantity> accepted, Sign sign = Sign::any) const;

@@ -54,6 +54,11 @@ std::string Value::choice(std::initializer_list<std::string_view> allowed) const
   return result;
 }
 
+bool Value::flag() const {
+  const std::string text = choice({"true", "false", "yes", "no"});
+  return text == "true" || text == "yes";
+}
+
 int Value::integer(int lower, int upper) const {
   const std::string expected = fmt::format("a whole number from {} to {} is expected", lower, upper);
   const std::string digits = scalar(expected);

@@ -45,11 +45,9 @@ std::vector<double> factors_of(const CheckContext& context, const CoupledLimits&
   std::vector<double> factors(context.coordinates.size(), 0.0);
   bool any = false;
   for (const auto& [name, factor] : coupled.factors) {
-    std::string names;
     bool found = false;
     for (std::size_t i = 0; i < factors.size(); ++i) {
       const Coordinate& c = context.coordinates[i];
-      if (!c.choice() && !c.name.ends_with(".second")) names += (names.empty() ? "allowed: " : ", ") + c.name;
       if (c.choice() || c.name != name.value + suffix) continue;
       if (!fits_unit(coupled.quantity, c.unit))
         throw InputError(context.problem.at(coupled.line), "coupled limits of '" + name.value + "' have the wrong unit",
@@ -58,7 +56,7 @@ std::vector<double> factors_of(const CheckContext& context, const CoupledLimits&
       found = any = true;
     }
     if (!found && suffix.empty())
-      throw InputError(context.problem.at(name.line), "'" + name.value + "' is no coordinate of this robot", names);
+      throw_unknown_coordinate(context.problem.at(name.line), name.value, context.coordinates);
   }
   return any ? factors : std::vector<double>{};
 }

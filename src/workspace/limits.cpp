@@ -18,18 +18,10 @@ std::string range_text(const Coordinate& c) {
   return fmt::format("{:.6g} to {:.6g} {}", c.lower * scale, c.upper * scale, angle ? "deg" : "mm");
 }
 
-std::string names(const std::vector<Coordinate>& coordinates) {
-  std::string text;
-  for (const Coordinate& c : coordinates)
-    if (!c.choice()) text += (text.empty() ? "" : ", ") + c.name;
-  return text;
-}
-
 void narrow(Coordinate& c, const CoordinateLimits& limits, const SourcePlace& place) {
-  const Quantity own = c.unit == "rad" ? Quantity::angle : Quantity::length;
-  if (limits.quantity != Quantity::number && limits.quantity != own)
+  if (!fits_unit(limits.quantity, c.unit))
     throw InputError(place, "limits of '" + limits.name.value + "' have the wrong unit",
-                     "allowed: " + allowed_units({own}));
+                     "allowed: " + allowed_units({c.unit == "rad" ? Quantity::angle : Quantity::length}));
   if (limits.lower < c.lower - slack || limits.upper > c.upper + slack)
     throw InputError(place, "limits of '" + limits.name.value + "' go beyond the robot's own",
                      "allowed: " + range_text(c));
@@ -55,9 +47,7 @@ void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits
     found = true;
     narrow(c, limits, problem.at(limits.name.line));
   }
-  if (!found)
-    throw InputError(problem.at(limits.name.line), "'" + limits.name.value + "' is no coordinate of this robot",
-                     "allowed: " + names(coordinates));
+  if (!found) throw_unknown_coordinate(problem.at(limits.name.line), limits.name.value, coordinates);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
   PlanOptions options = quick();
   options.poses = 20;
   const Plan first = plan_problem(problem, options, Monitor{});
-  options.augment = folder.write("measured.csv", poses_csv(first));
+  options.measured = poses_in_file(folder.write("measured.csv", poses_csv(first)));
   options.poses = 6;
   const Plan more = plan_problem(problem, options, Monitor{});
   ASSERT_EQ(more.poses.size(), 26U);
@@ -299,7 +299,7 @@ TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
   PlanOptions options = quick(200);
   options.poses = 10;
   const Plan first = plan_problem(problem, options, Monitor{});
-  options.augment = folder.write("measured.csv", poses_csv(first));
+  options.measured = poses_in_file(folder.write("measured.csv", poses_csv(first)));
   for (const char* method : {"exchange", "auto"}) {
     options.method = method;
     const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));

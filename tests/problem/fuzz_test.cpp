@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <vector>
 
 #include "example_files.hpp"
 #include "posewright/problem/read_problem.hpp"
-#include "posewright/support/random.hpp"
+#include "tests/kit/mutate.hpp"
 
 namespace posewright {
 namespace {
@@ -15,80 +14,6 @@ namespace {
 int case_count() {
   const char* text = std::getenv("POSEWRIGHT_FUZZ_CASES");
   return text == nullptr ? 3000 : std::atoi(text);
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end;
-  }
-  return lines;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line;
-  return text;
-}
-
-const char* const nasty[] = {
-    "~",    "\"",  "'",     "[",     "]",     "{",    "}",       ": ",       "- ",           "&a ", "*a",
-    "\n",   "\t",  "1e400", ".nan",  "-1",    "0",    "deg",     "\"\\n\"",  "!!binary x",   "# ",  "? ",
-    "|\n",  ">\n", ",",     "%YAML", "---\n", "<<: ", "\"\\0\"", "\xC2\x85", "\xE2\x80\xA8", "@",   "`",
-    "...\n"};
-
-void mutate_bytes(std::string& text, Random& random) {
-  const auto place = std::size_t(random.index(int(text.size())));
-  switch (random.index(4)) {
-    case 0:
-      text[place] = char(random.index(256));
-      break;
-    case 1:
-      text[place] = char(32 + random.index(95));
-      break;
-    case 2:
-      text.erase(place, 1 + std::size_t(random.index(20)));
-      break;
-    default:
-      text.insert(place, nasty[random.index(int(std::size(nasty)))]);
-  }
-}
-
-void mutate_lines(std::string& text, Random& random) {
-  std::vector<std::string> lines = lines_of(text);
-  const auto pick = [&] { return random.index(int(lines.size())); };
-  const int from = pick();
-  const int to = pick();
-  switch (random.index(4)) {
-    case 0:
-      lines.erase(lines.begin() + from);
-      break;
-    case 1:
-      lines.insert(lines.begin() + to, std::string(lines[std::size_t(from)]));
-      break;
-    case 2:
-      std::swap(lines[std::size_t(from)], lines[std::size_t(to)]);
-      break;
-    default: {  // swap what stands after the colons
-      std::string& a = lines[std::size_t(from)];
-      std::string& b = lines[std::size_t(to)];
-      const auto colon_a = a.find(':');
-      const auto colon_b = b.find(':');
-      if (from == to || colon_a == std::string::npos || colon_b == std::string::npos) return;
-      const std::string tail = a.substr(colon_a);
-      a.replace(colon_a, std::string::npos, b.substr(colon_b));
-      b.replace(colon_b, std::string::npos, tail);
-    }
-  }
-  text = joined(lines);
-}
-
-std::string mutated(std::string text, Random& random) {
-  for (int changes = 1 + random.index(4); changes > 0 && !text.empty(); --changes)
-    random.index(2) == 0 ? mutate_bytes(text, random) : mutate_lines(text, random);
-  return text;
 }
 
 bool is_one_line(const std::string& text) {

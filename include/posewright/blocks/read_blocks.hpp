@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewright/blocks/block_array.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 
@@ -22,5 +24,8 @@ struct BlockFile {
 /// @param rows  r; required for CSV and two-dimensional .npy, otherwise it must agree with the file
 /// Throws InputError (file:line, what, what is allowed) on anything malformed, NaN or infinite.
 BlockFile read_blocks(const std::filesystem::path& file, std::optional<int> rows);
+
+/// The same of a .npy that is in memory already.
+BlockArray parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
 
 }  // namespace posewright

@@ -21,8 +21,13 @@ struct Cell {
   bool sight_is_asked = false;  ///< whether line of sight constrains configurations and blocks
 };
 
-/// Throws InputError as Collision and LineOfSight, and where a station stands inside an obstacle or, at home, inside
-/// the robot.
+/// A station stands inside an obstacle or, at home, inside the robot.
+class StationInside : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Throws InputError as Collision and LineOfSight, StationInside.
 std::shared_ptr<const Cell> make_cell(const Problem& problem);
 
 /// Home of the robot: motion.home; where it says nothing, zero or the limit nearest to it; first of every choice.

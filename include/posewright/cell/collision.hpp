@@ -28,8 +28,6 @@ class Collision {
   const std::vector<std::string>& contact_only() const;
   /// Largest margin (m) that was added to a clearance for a robot that is not calibrated yet.
   double margin() const;
-  /// Bodies checked against each other: pairs.
-  std::size_t pairs() const;
 
   /// Index into reasons() of what q collides with, or −1. Bodies keep their clearance, and half a millimetre more.
   int violation(std::span<const double> q) const;

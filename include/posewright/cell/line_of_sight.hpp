@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
@@ -48,8 +49,10 @@ class LineOfSight : public Visibility {
   std::vector<Sight> sights(std::span<const double> q, int station) const;
   /// Whether the problem asks for line of sight; else every target counts as visible.
   bool judges() const { return judges_; }
-  /// Whether every station looks at every pose (photogrammetry), instead of one that is chosen.
-  bool sees_from_all() const { return all_stations_; }
+  /// First and last of the stations that look at q: all of them (photogrammetry) or the one that is chosen.
+  std::pair<int, int> stations_of(std::span<const double> q) const;
+  /// Whether the stations ride on the tip (a camera in the hand).
+  bool rides_on_tip() const { return station_on_tip_; }
   /// Index of the station that q is measured from.
   int station_of(std::span<const double> q) const;
   /// Reference targets (measurement frame) from one station.

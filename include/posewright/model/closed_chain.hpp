@@ -25,6 +25,8 @@ class ClosedChain : public TipModel {
   bool actuator_values(std::span<const double> q, std::span<const double> correction,
                        std::span<double> values) const final;
 
+  std::vector<Polyline> skeleton(std::span<const double> q) const final;
+
   bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                    Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const final;
 
@@ -69,6 +71,8 @@ class ClosedChain : public TipModel {
   /// `out` has the right sizes and is all zero.
   virtual void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                         std::span<const int> selected, Loops& out) const = 0;
+  /// Legs and rims in the base frame, nominal.
+  virtual std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const = 0;
   /// The same derivatives of what the redundant sensors read, for robots that have some.
   virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                           std::span<const int> selected, Loops& out) const;

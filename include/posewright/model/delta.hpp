@@ -31,6 +31,7 @@ class Delta : public ClosedChain {
   Eigen::Isometry3d do_platform(std::span<const double> q, Twists& freedoms) const override;
   bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
                              std::span<double> actuators) const override;
+  std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const override;
   void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                 std::span<const int> selected, Loops& out) const override;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 
@@ -25,6 +26,10 @@ struct Coordinate {
   bool discrete() const { return !values.empty(); }
   bool choice() const { return !labels.empty(); }
 };
+
+/// InputError for a name that is none of them; says which are allowed (the second ones of pairs go without saying).
+[[noreturn]] void throw_unknown_coordinate(const SourcePlace& place, const std::string& name,
+                                           const std::vector<Coordinate>& coordinates);
 
 /// A choice among named things as a coordinate: values 0, 1, … with these labels.
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels);

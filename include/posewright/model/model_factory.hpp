@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "posewright/model/identification_model.hpp"
+#include "posewright/model/tip_model.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
@@ -13,5 +14,8 @@ std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const Va
 
 /// The same for the problem's first variant.
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
+
+/// The robot alone; null for one that carries no single tip. Throws as make_model.
+std::unique_ptr<TipModel> make_tip(const Problem& problem, const VariantSpec& variant);
 
 }  // namespace posewright

@@ -10,6 +10,7 @@ namespace posewright {
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+using Polyline = std::vector<Eigen::Vector3d>;
 
 /// A robot that carries one tip frame: where the tip is and how each parameter moves it.
 ///
@@ -40,6 +41,10 @@ class TipModel {
   /// Actuators at q; false where q is unreachable.
   virtual bool actuator_values(std::span<const double> q, std::span<const double> correction,
                                std::span<double> values) const;
+
+  /// Lines that show a robot whose links have no shapes (legs, rims) at its nominal parameters, measurement frame, m.
+  /// Empty where q is unreachable or the robot is an arm.
+  virtual std::vector<Polyline> skeleton(std::span<const double> q) const;
 
   /// Derivatives of what the redundant sensors read: along the selected parameters (sensors × selected) and along the
   /// readings (sensors × readings). False where q is unreachable. Throws std::logic_error where there are no sensors.

@@ -44,6 +44,7 @@ struct Route {
   double planned_seconds = 0.0;  ///< of the same poses in the plan's own order at least: straight motions, free or not
   bool optimal = false;          ///< no order of these motions is shorter
   double computing_seconds = 0.0;
+  std::vector<std::string> notes{};  ///< on how the poses were read; not written
 
   double travel_seconds() const;
   double change_seconds() const;

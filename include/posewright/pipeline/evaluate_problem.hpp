@@ -32,6 +32,7 @@ struct PoseListEvaluation {
   Plan plan;  ///< the list as a plan: log det, σ, accuracy, contributions, certificate of the criterion
   std::vector<CriterionScore> scores;
   std::optional<ListChange> drop, add;
+  std::vector<std::string> notes{};  ///< on how the list was read
 };
 
 struct EvaluateOptions {
@@ -42,6 +43,9 @@ struct EvaluateOptions {
 /// The user's own list: scored by every criterion that the problem allows, its certificate against the candidates, the
 /// contribution of each pose and what its loss would cost, which `drop` poses to leave out, which `add` to measure
 /// more. Throws InputError for a list that cannot be read or holds infeasible poses, naming the constraint.
+PoseListEvaluation evaluate_problem(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+                                    const Monitor& monitor);
+/// The same for a file.
 PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
                                     const EvaluateOptions& options, const Monitor& monitor);
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "posewright/outputs/plan.hpp"
+#include "posewright/pipeline/pose_list.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
 
@@ -19,8 +19,8 @@ struct PlanOptions {
   std::optional<Repeats> repeats;
   std::optional<Scaling> scaling;
   std::optional<bool> prior;      ///< count tolerances as prior knowledge
-  bool reserve = false;           ///< maximise what is left when the pose that hurts most is lost
-  std::filesystem::path augment;  ///< poses that are measured already; empty = as in the file
+  bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
+  PoseSource measured;   ///< poses that are measured already; empty = as in the file
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

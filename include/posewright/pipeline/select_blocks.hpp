@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/read_blocks.hpp"
 #include "posewright/outputs/plan.hpp"
+#include "posewright/planning/evaluate.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
 
@@ -26,6 +28,17 @@ struct SelectOptions {
 
 /// The same search on whitened Jacobian blocks that the user brings. Tolerances are unknown here, so parameters
 /// have tolerance 1 and the indices are those of the blocks as they are.
+/// Throws InputError for options that do not fit the blocks, CannotDo for too few poses.
+/// @param blocks  with the columns' names; `rows` of the options is not looked at
+Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor& monitor);
+/// The same for a file.
 Plan select_blocks(const std::filesystem::path& file, const SelectOptions& options, const Monitor& monitor);
+
+/// What chosen blocks are worth by a criterion in its own terms (docs/plan-file.md), from their evaluation.
+/// @param nuisance  leading columns that are nuisance
+/// @param scale     unit of every column for the criterion `a`; empty: 1
+/// Throws InputError for a criterion that needs more than blocks.
+double value_of_blocks(const std::string& criterion, const Evaluation& evaluation, int nuisance,
+                       const Eigen::VectorXd& scale = {});
 
 }  // namespace posewright

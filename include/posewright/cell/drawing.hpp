@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/cell/cell.hpp"
+#include "posewright/cell/solid.hpp"
+#include "posewright/model/tip_model.hpp"
+
+namespace posewright {
+
+class BodyFrames;
+
+/// One shape of a link, the tool or an obstacle as it is drawn.
+struct DrawnBody {
+  std::string name;
+  const char* kind = "robot";  ///< robot, tool, obstacle
+  int frame = 0;               ///< index into Drawing::frames()
+  Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
+  ShapeSpec shape;
+  TriangleMesh mesh;  ///< of a MeshShape, thinned to a few thousand triangles, m
+};
+
+/// Robot, targets and instrument at one configuration, measurement frame.
+struct DrawnPose {
+  std::vector<Eigen::Isometry3d> frames;
+  std::vector<Polyline> lines;  ///< arm from base to tip, or legs and rims
+  Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+  std::vector<std::optional<Eigen::Vector3d>> targets;
+};
+
+/// What a picture of the cell needs, for robots with and without link shapes. Nothing here judges anything: missing
+/// meshes leave a skeleton and a warning.
+class Drawing {
+ public:
+  /// @param cell  of this problem
+  Drawing(const Problem& problem, const Cell& cell);
+  ~Drawing();
+
+  /// Names of the frames that carry bodies; the first is the measurement frame.
+  const std::vector<std::string>& frames() const { return frame_names_; }
+  const std::vector<DrawnBody>& bodies() const { return bodies_; }
+  const std::vector<std::string>& targets() const { return target_names_; }
+  /// Instruments that stand still.
+  const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
+  /// Why there are no bodies, where some were expected; empty: nothing is missing.
+  const std::string& warning() const { return warning_; }
+
+  /// The robot at q (the first pose of a pair of configurations); empty for a robot without a tip.
+  DrawnPose at(std::span<const double> q) const;
+
+ private:
+  void add_bodies(const Problem& problem);
+  void add_instrument(const Problem& problem, const Cell& cell);
+
+  std::shared_ptr<const IdentificationModel> model_;
+  std::unique_ptr<BodyFrames> arm_;  // of a serial arm
+  std::unique_ptr<TipModel> tip_;    // of a parallel robot
+  Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
+  std::vector<std::string> frame_names_, target_names_;
+  std::vector<Eigen::Vector3d> targets_;  // tip frame
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;
+  std::vector<DrawnBody> bodies_;
+  std::string warning_;
+};
+
+/// A mesh with at most so many triangles: vertices that share a cell of a grid become one, finer grids first.
+TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles);
+
+}  // namespace posewright

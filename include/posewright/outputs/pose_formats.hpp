@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "posewright/outputs/pose_sequence.hpp"
+
+namespace posewright {
+
+/// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
+/// of the plan's joints, empty where the file has none.
+struct ControllerSettings {
+  std::string file;
+  std::map<std::string, int> lines;  ///< keys that are given, and where
+  std::vector<double> sign;          ///< +1 or −1
+  std::vector<double> zero_deg;
+  std::vector<double> pulses_per_degree;
+  std::optional<double> coupling;  ///< f in J3 = J3_urdf − f · J2_urdf
+  std::vector<std::string> axes;   ///< what the controller calls the joints
+  std::optional<int> decimals;
+  std::optional<std::array<double, 3>> pivot_mm;  ///< platform origin as the hexapod counts it
+};
+
+/// Throws InputError with file and line for unknown keys and values that make no sense.
+ControllerSettings parse_controller_settings(const std::string& text, const std::string& file);
+
+/// What the command line says; empty: the format's default.
+struct ExportOptions {
+  std::optional<double> speed;     ///< percent
+  std::optional<double> settle;    ///< s before each measurement
+  std::optional<double> wait;      ///< s for a measurement, instead of an input
+  std::optional<double> coupling;  ///< as in ControllerSettings, which it overrules
+  std::string digital_output, digital_input, name, group;
+  std::optional<int> tool, base;
+  ControllerSettings controller;
+};
+
+struct ExportedFile {
+  std::string name;  ///< relative to where the result goes, maybe in a folder
+  std::string bytes;
+};
+
+struct Exported {
+  std::vector<ExportedFile> files;
+  std::vector<std::string> notes;  ///< what the user must know
+};
+
+/// A cell of a pose list: a number in the column's unit, or a text (load case, station, number with its unit).
+using PoseCell = std::variant<double, std::string>;
+
+struct PoseRow {
+  int line = 0;  ///< 0: not known
+  std::vector<PoseCell> cells;
+  int id = 0;             ///< 0: by order
+  bool measured = false;  ///< of a plan: was there before
+};
+
+/// A unit that depends on what the column is: degrees of a joint that turns, millimetres of one that slides.
+inline constexpr const char* degrees_or_millimetres = "deg/mm";
+
+/// A pose list as a file has it, before it is known which robot it is for.
+struct PoseTable {
+  std::vector<std::string> names;  ///< of columns; empty: the coordinates in their order
+  std::vector<std::string>
+      units;  ///< of columns, empty text: SI; degrees_or_millimetres; else a unit of the problem file
+  std::vector<PoseRow> rows;
+  int header = 0;                ///< line of the names; 0: not known
+  std::string problem_sha256{};  ///< of the problem it was made for; empty: not known
+};
+
+/// One row a format.
+struct PoseFormat {
+  std::string name, description, used_by, extension;
+  std::string needs;                 ///< beside six or any joints; empty: nothing
+  std::vector<std::string> options;  ///< of the command line that the writer reads
+  bool controller = false;           ///< a program: syntax checked, not run on a controller
+  bool several_files = false;
+  Exported (*write)(const PoseSequence& sequence, const ExportOptions& options) = nullptr;
+  PoseTable (*read)(const std::string& bytes, const std::string& file) = nullptr;  ///< null: it is not read back
+};
+
+const std::vector<PoseFormat>& pose_formats();
+/// Throws InputError naming all formats.
+const PoseFormat& find_pose_format(const std::string& name);
+/// The same of those that can be read.
+const PoseFormat& find_readable_format(const std::string& name);
+std::string readable_format_names();
+
+/// A plan's or a route's poses as a list, load case and station in columns of that name.
+PoseTable table_of(const PoseSequence& sequence);
+/// CSV with a header of names, maybe with units ("joint_1 [deg]"); comments begin with '#'. Throws InputError.
+PoseTable read_csv_table(const std::string& bytes, const std::string& file);
+/// Cells of a CSV line (RFC 4180 quotes), without blanks around them.
+std::vector<std::string> csv_cells(const std::string& line);
+
+/// In every exported text that may hold a comment: what tells our files from others.
+inline constexpr std::string_view export_mark = "Written by posewright";
+
+}  // namespace posewright

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewright/outputs/plan.hpp"
+
+namespace posewright {
+
+/// A body as the report's 3-D view draws it, m.
+struct ReportBody {
+  std::string name, kind;  ///< kind: robot, tool, obstacle
+  int frame = 0;           ///< index into Report::frames
+  Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
+  enum class Shape { box, cylinder, sphere, plane, mesh } shape = Shape::box;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< edges of a box; normal of a plane (solid behind it)
+  double radius = 0.0, length = 0.0;
+  std::vector<Eigen::Vector3d> vertices{};
+  std::vector<std::array<int, 3>> triangles{};
+};
+
+/// The robot at one moment, measurement frame.
+struct ReportKeyframe {
+  std::optional<int> pose;  ///< where it stands still: pose id, 0 for home; none on the way
+  double seconds = 0.0;     ///< since the start of the route
+  std::vector<Eigen::Isometry3d> frames{};
+  std::vector<std::vector<Eigen::Vector3d>> lines{};
+  Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+  std::vector<std::optional<Eigen::Vector3d>> targets{};
+};
+
+/// What lets a page judge any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
+/// first.
+struct ReportInformation {
+  std::vector<PlannedParameter> columns;                 ///< of the first variant
+  std::vector<std::pair<int, Eigen::MatrixXd>> poses;    ///< pose id, JᵀJ
+  std::optional<Eigen::MatrixXd> prior;                  ///< counts beside the poses
+  std::vector<std::pair<double, Eigen::MatrixXd>> test;  ///< weight, AᵀA of a test point (m²)
+  Eigen::VectorXd singular_values;                       ///< interest columns, nuisance eliminated, descending
+};
+
+/// How much each candidate could still tell at the best weights.
+struct ReportCandidates {
+  std::vector<double> sensitivity;         ///< divided by what a candidate must reach to be worth measuring
+  std::vector<Eigen::Vector3d> positions;  ///< of the tip, m
+  std::vector<int> chosen;                 ///< those that are poses of the plan
+};
+
+/// Everything that the report's page shows beside the plan and the route themselves.
+struct Report {
+  std::string title;
+  std::vector<std::string> notes;     ///< what the reader should know before trusting it
+  std::string plan_json, route_json;  ///< as their files are; route empty: none
+  std::vector<std::string> frames;    ///< the first is fixed
+  std::vector<ReportBody> bodies;
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> stations;
+  std::vector<std::string> targets;
+  std::vector<ReportKeyframe> keyframes;  ///< in measuring order
+  ReportInformation information;
+  std::optional<ReportCandidates> candidates;
+  std::vector<CurvePoint> curve;                  ///< other numbers of poses; worst_sigma is σ / tolerance
+  std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet
+};
+
+/// Schema posewright/report/1 (docs/report.md).
+std::string report_json(const Report& report);
+/// The page: one file, no network.
+std::string report_html(const Report& report);
+
+}  // namespace posewright

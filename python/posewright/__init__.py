@@ -1,0 +1,77 @@
+"""Which poses to measure before a robot is calibrated, and how good the result will be.
+
+    import posewright as pw
+    problem = pw.Problem("problem.yaml")
+    plan = pw.plan(problem, poses=18)
+    print(plan.summary())
+
+All values are SI: m, rad, N. Wrong input raises InputError (a ValueError), what cannot be done CannotDo (a
+RuntimeError). docs/python.md shows every function.
+"""
+
+from ._core import (
+    BlockEvaluation,
+    Blocks,
+    CannotDo,
+    Certificate,
+    Change,
+    Coordinate,
+    Dependency,
+    Evaluation,
+    InputError,
+    Model,
+    Motion,
+    Observation,
+    Parameter,
+    Plan,
+    Pose,
+    Progress,
+    Route,
+    Score,
+    WorkspaceCertificate,
+    __version__,
+    criteria,
+    evaluate,
+    evaluate_blocks,
+    log_det,
+    methods,
+    observe,
+    plan,
+    route,
+    select,
+)
+from ._problem import Problem, blocks
+
+__all__ = [
+    "BlockEvaluation",
+    "Blocks",
+    "CannotDo",
+    "Certificate",
+    "Change",
+    "Coordinate",
+    "Dependency",
+    "Evaluation",
+    "InputError",
+    "Model",
+    "Motion",
+    "Observation",
+    "Parameter",
+    "Plan",
+    "Pose",
+    "Problem",
+    "Progress",
+    "Route",
+    "Score",
+    "WorkspaceCertificate",
+    "__version__",
+    "blocks",
+    "criteria",
+    "evaluate",
+    "evaluate_blocks",
+    "log_det",
+    "methods",
+    "observe",
+    "plan",
+    "route",
+    "select",
+]

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/outputs/plan.hpp"
+#include "posewright/pipeline/pose_list.hpp"
+#include "posewright/pipeline/variant_model.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+#include "watch.hpp"
+
+namespace posewright::python {
+
+namespace py = pybind11;
+
+/// A problem, and what its lines stand for where it was no file.
+struct GivenProblem {
+  Problem problem;
+  /// Key path of each line, first line first; empty: the lines are those of a file.
+  std::vector<std::string> places;
+};
+
+/// A variant ready to give Jacobian blocks.
+struct GivenModel {
+  std::shared_ptr<const GivenProblem> problem;
+  VariantModel variant;
+};
+
+/// Whitened blocks with their labels.
+struct Blocks {
+  std::shared_ptr<const BlockArray> array;
+  std::vector<Parameter> parameters;
+  int nuisance = 0;
+};
+
+/// The error's text with `file: key path` for `file:line`, where the keys are known; as it is for other files.
+std::string place_in_keys(const InputError& error, const std::string& file, const std::vector<std::string>& places);
+/// Runs `work`; errors that name a line of a problem that was no file name its key path instead.
+template <class Work>
+auto with_places(const GivenProblem& problem, Work&& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    if (problem.places.empty()) throw;
+    throw InputError({}, place_in_keys(error, problem.problem.file.string(), problem.places), "");
+  }
+}
+
+/// None where the value is no text and no path.
+std::optional<std::filesystem::path> file_name(const py::object& value);
+/// A Plan, a file's name, or an array of configurations.
+PoseSource pose_source(const py::object& poses);
+/// The kept columns of a plan's variant.
+std::vector<std::string> kept_parameters(const Plan& plan, const std::string& variant);
+
+/// json.loads.
+py::object parsed(const std::string& json);
+/// Writes text; FileExistsError where there is a file and `overwrite` is false.
+void save_text(const py::object& path, const std::string& text, bool overwrite);
+/// {"o1": …, …}
+py::dict indices_dict(const ObservabilityIndices& indices);
+/// What a notebook shows of a plan.
+std::string plan_html(const Plan& plan);
+/// The same in one line.
+std::string plan_line(const Plan& plan);
+
+void bind_errors(py::module_& m);
+void bind_problem(py::module_& m);
+void bind_model(py::module_& m);
+void bind_plan(py::module_& m);
+void bind_planning(py::module_& m);
+void bind_evaluation(py::module_& m);
+void bind_observation(py::module_& m);
+void bind_route(py::module_& m);
+void bind_blocks(py::module_& m);
+void bind_criteria(py::module_& m);
+
+}  // namespace posewright::python

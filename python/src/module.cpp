@@ -1,0 +1,46 @@
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/version.hpp"
+#include "planners/registry.hpp"
+
+namespace posewright::python {
+
+void bind_criteria(py::module_& m) {
+  m.def(
+      "criteria",
+      [] {
+        py::dict names;
+        for (const CriterionEntry& entry : criterion_registry()) names[py::str(entry.name)] = entry.summary;
+        return names;
+      },
+      "Names of the criteria, each with what it maximises.");
+  m.def(
+      "methods",
+      [] {
+        py::dict names;
+        for (const PlannerEntry& entry : planner_registry()) names[py::str(entry.name)] = entry.summary;
+        return names;
+      },
+      "Names of the planners, each with what it does.");
+}
+
+}  // namespace posewright::python
+
+PYBIND11_MODULE(_core, m) {
+  using namespace posewright::python;
+  m.doc() = "The compiled part of posewright.";
+  m.attr("__version__") = posewright::version;
+  bind_errors(m);
+  bind_progress(m);
+  bind_criteria(m);
+  bind_plan(m);
+  bind_problem(m);
+  bind_model(m);
+  bind_planning(m);
+  bind_evaluation(m);
+  bind_observation(m);
+  bind_route(m);
+  bind_blocks(m);
+}

@@ -1,0 +1,153 @@
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "posewright/pipeline/evaluate_problem.hpp"
+#include "posewright/pipeline/observe_problem.hpp"
+#include "posewright/pipeline/plan_problem.hpp"
+#include "posewright/pipeline/route_problem.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright::python {
+namespace {
+
+using Limit = std::optional<double>;
+
+Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
+          const std::string& variant, const py::object& candidates, const py::object& restarts,
+          const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
+          const py::object& measured, const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+  PlanOptions options;
+  if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
+  else options.poses = optional_number(poses, "poses", most_poses);
+  options.criterion = criterion;
+  options.method = method;
+  options.variant = variant;
+  options.candidates = optional_number(candidates, "candidates", most_candidates);
+  options.restarts = optional_number(restarts, "restarts", most_restarts);
+  options.repeats = repeats_of(repeats);
+  if (const std::string text = choice(scaling, "scaling", {"tolerance", "norm", "none"}); !text.empty())
+    options.scaling = text == "norm" ? Scaling::norm : text == "none" ? Scaling::none : Scaling::tolerance;
+  if (const std::string text = choice(prior, "prior", {"none", "tolerance"}); !text.empty())
+    options.prior = text == "tolerance";
+  options.reserve = reserve;
+  if (!measured.is_none()) options.measured = pose_source(measured);
+  options.seed = seed_of(seed);
+  options.threads = checked("threads", threads, 0, most_threads);
+  Plan result;
+  Watch watch(time_limit, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        result = with_places(given, [&] { return plan_problem(given.problem, options, monitor); });
+      },
+      OnInterrupt::keep_best);
+  return result;
+}
+
+PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, const py::object& drop,
+                            const py::object& add, const std::string& variant, const std::string& criterion,
+                            const std::string& method, const py::object& candidates, const py::object& restarts,
+                            const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+  EvaluateOptions options;
+  options.drop = optional_number(drop, "drop", most_poses);
+  options.add = optional_number(add, "add", most_poses);
+  options.plan.variant = variant;
+  options.plan.criterion = criterion;
+  options.plan.method = method;
+  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
+  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
+  options.plan.seed = seed_of(seed);
+  options.plan.threads = checked("threads", threads, 0, most_threads);
+  const PoseSource source = pose_source(poses);
+  PoseListEvaluation result;
+  Watch watch(time_limit, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        result = with_places(given, [&] { return evaluate_problem(given.problem, source, options, monitor); });
+      },
+      OnInterrupt::raise);
+  return result;
+}
+
+py::dict observe(const GivenProblem& given, const std::string& variant, long long candidates, const py::object& poses,
+                 const py::int_& seed, long long threads, py::object progress) {
+  ObserveOptions options;
+  options.variant = variant;
+  options.candidates = checked("candidates", candidates, 1, 1'000'000);
+  options.poses = optional_number(poses, "poses", most_poses);
+  options.seed = seed_of(seed);
+  options.threads = checked("threads", threads, 0, most_threads);
+  std::vector<Observation> found;
+  Watch watch({}, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        found = with_places(given, [&] { return observe_problem(given.problem, options, monitor); });
+      },
+      OnInterrupt::raise);
+  py::dict result;
+  for (Observation& observation : found) {
+    const py::str name(observation.variant);
+    result[name] = py::cast(std::move(observation));
+  }
+  return result;
+}
+
+Route route(const GivenProblem& given, const py::object& poses, bool from_home, bool closed, const py::object& start,
+            long long milestones, const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+  RouteOptions options;
+  options.from_home = from_home;
+  options.closed = closed;
+  options.start = optional_number(start, "start", most_poses);
+  options.milestones = checked("milestones", milestones, 1, 100000);
+  options.seed = seed_of(seed);
+  options.threads = checked("threads", threads, 0, most_threads);
+  if (from_home && options.start) throw InputError({}, "start stands beside from_home", "one of both is allowed");
+  const std::optional<std::filesystem::path> file = file_name(poses);
+  const PoseSource source = file ? PoseSource() : pose_source(poses);
+  Route result;
+  Watch watch(time_limit, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        result = with_places(given, [&] {
+          return file ? route_problem(given.problem, *file, options, monitor)
+                      : route_problem(given.problem, source, options, monitor);
+        });
+      },
+      OnInterrupt::raise);
+  if (py::isinstance<Plan>(poses))
+    result.problem_changed = poses.cast<const Plan&>().problem_sha256 != given.problem.sha256;
+  return result;
+}
+
+}  // namespace
+
+void bind_planning(py::module_& m) {
+  const py::none none;
+  m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
+        py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
+        py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
+        py::arg("measured") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
+        py::arg("progress") = none,
+        R"(Searches for the poses to measure. What is not said is as in the problem.
+
+poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
+already (Plan, file or array); repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress.
+The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
+the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)");
+  m.def("evaluate", &evaluate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("drop") = none,
+        py::arg("add") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("method") = "",
+        py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
+        R"(Judges poses that you have: a Plan, the name of a pose list, or an array N × n in SI units.
+
+drop, add: which so many poses to leave out, or to measure more.)");
+  m.def("observe", &observe, py::arg("problem"), py::arg("variant") = "", py::kw_only(), py::arg("candidates") = 2000,
+        py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
+        "What can be identified: {variant: Observation}, of one variant or of all.");
+  m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("from_home") = false,
+        py::arg("closed") = false, py::arg("start") = none, py::arg("milestones") = 200, py::arg("seed") = 0,
+        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        "Order of measurement and collision-free motions for a Plan, the name of a pose list, or an array N × n.");
+}
+
+}  // namespace posewright::python

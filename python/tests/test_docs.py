@@ -1,0 +1,29 @@
+"""Every example of docs/python.md runs as it is written, from top to bottom."""
+import re
+import shutil
+
+import pytest
+
+from conftest import ROOT
+
+
+def test_the_examples_of_the_documentation_run(examples, tmp_path, monkeypatch):
+    text = (ROOT / "docs" / "python.md").read_text()
+    shutil.copytree(examples / "kr270", tmp_path / "kr270")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    found = list(re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M))
+    assert len(found) > 8
+    for block in found:
+        # Lines of the document, so that a failure names them.
+        code = "\n" * text[: block.start(1)].count("\n") + block.group(1)
+        exec(compile(code, "docs/python.md", "exec"), names)
+    assert (tmp_path / "plan.json").exists() and (tmp_path / "route.json").exists()
+
+
+def test_every_function_is_in_the_documentation():
+    import posewright as pw
+
+    text = (ROOT / "docs" / "python.md").read_text()
+    functions = [name for name in pw.__all__ if callable(getattr(pw, name)) and not isinstance(getattr(pw, name), type)]
+    assert functions and all(f"pw.{name}(" in text for name in functions)

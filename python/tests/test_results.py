@@ -1,0 +1,125 @@
+import json
+
+import numpy as np
+import pytest
+
+import posewright as pw
+from conftest import without_times
+
+
+@pytest.fixture(scope="module")
+def cell(examples):
+    return pw.Problem(examples / "cell" / "problem.yaml")
+
+
+@pytest.fixture(scope="module")
+def cell_plan(cell):
+    return pw.plan(cell, candidates=200, restarts=1, method="exchange")
+
+
+def test_observe_says_what_the_command_line_says(program, kr270):
+    theirs = program("observe", kr270.file, "--candidates", 300)
+    mine = pw.observe(kr270, candidates=300)
+    assert list(mine) == kr270.variants
+    assert [o.to_dict() for o in mine.values()] == theirs["variants"]
+    one = pw.observe(kr270, "automatic", candidates=300)
+    assert list(one) == ["automatic"] and one["automatic"].to_dict() == mine["automatic"].to_dict()
+
+
+def test_an_observation_is_consistent(kr270):
+    o = pw.observe(kr270, "automatic", candidates=300)["automatic"]
+    assert o.rank == len(o.kept) == len(o.singular_values) - len(o.dependencies)
+    assert len(o.parameters) == o.rank + len(o.dependencies)
+    assert o.configurations == 300 and o.smallest_poses > 1
+    assert (np.diff(o.singular_values) <= 0).all()
+    for d in o.dependencies:
+        assert d.dropped not in o.kept and set(d.terms) <= set(o.kept) and d.dropped in d.equation
+    assert set(o.recommended) <= set(o.kept) and o.sigma.shape == (o.rank,)
+    assert o.summary().startswith("Variant automatic: rank ")
+    assert "automatic" in repr(o) and all("Dependency" in repr(d) for d in o.dependencies + o.near_dependencies)
+
+
+def test_evaluate_says_what_the_command_line_says(program, kr270, small_plan, tmp_path):
+    small_plan.save(tmp_path / "plan.json")
+    settings = ["--candidates", 200, "--restarts", 1, "--method", "exchange"]
+    theirs = program("evaluate", kr270.file, tmp_path / "plan.json", "--drop", 2, "--add", 1, *settings)
+    for poses in (small_plan, small_plan.configurations, tmp_path / "plan.json"):
+        mine = pw.evaluate(kr270, poses, drop=2, add=1, candidates=200, restarts=1, method="exchange")
+        assert without_times(mine.to_dict()) == without_times(theirs)
+    assert json.loads(mine.to_json())["schema"] == "posewright/evaluation/1"
+    assert mine.plan.log_det == pytest.approx(small_plan.log_det, rel=1e-12)
+    assert mine.scores["o1"].value == mine.plan.criterion_value
+    assert len(mine.drop.poses) == 2 and 0 < mine.drop.efficiency < 1
+    assert mine.add.configurations.shape == (1, 6) and mine.add.efficiency > 1
+    assert "Drop first" in mine.summary() and mine._repr_html_()
+    for shown in (mine, mine.add, mine.drop, mine.scores["o1"]):
+        assert repr(shown).startswith("<" + type(shown).__name__)
+    plain = pw.evaluate(kr270, small_plan, candidates=200)
+    assert plain.drop is None and plain.add is None
+
+
+def test_poses_that_are_not_feasible_are_named(cell, cell_plan):
+    inside = cell_plan.configurations.copy()
+    inside[4, 1:] = [0.6, 1.2, 0, 0, 0]
+    with pytest.raises(pw.InputError, match="configurations: pose 5 is not feasible"):
+        pw.evaluate(cell, inside, candidates=100)
+
+
+def test_a_choice_is_a_number_in_arrays_and_a_label_in_plans(examples):
+    problem = pw.Problem(examples / "instruments" / "tracker_two_stations.yaml")
+    plan = pw.plan(problem, candidates=300, restarts=1)
+    assert len(set(plan.stations)) == 2
+    model = pw.Model(problem, plan)
+    configurations = model.configurations(plan)
+    station = [c.name for c in model.coordinates].index("station")
+    labels = model.coordinates[station].labels
+    assert [labels[int(q)] for q in configurations[:, station]] == plan.stations
+    assert pw.log_det(model.blocks(configurations)) == pytest.approx(plan.log_det, rel=1e-12)
+    configurations[0, station] = 0.5
+    with pytest.raises(pw.InputError, match="'station' of pose 1 is 0.5"):
+        model.blocks(configurations)
+    with pytest.raises(pw.InputError, match="values; one for each of"):
+        model.blocks(plan.configurations)
+
+
+def test_a_route_is_that_of_the_command_line(program, cell, cell_plan, tmp_path):
+    cell_plan.save(tmp_path / "plan.json")
+    theirs = program("route", tmp_path / "plan.json", "--problem", cell.file, "--from-home", "--closed", "-o", "-")
+    route = pw.route(cell, tmp_path / "plan.json", from_home=True, closed=True)
+    assert without_seconds(route.to_dict()) == without_seconds(theirs)
+    assert not route.problem_changed
+    from_memory = pw.route(cell, cell_plan, from_home=True, closed=True)
+    assert from_memory.order == route.order
+    assert (from_memory.configurations == route.configurations).all()
+    by_id = {pose.id: pose.configuration for pose in cell_plan.poses}
+    assert sorted(route.order + list(route.unreachable)) == sorted(by_id)
+    assert [q.tolist() for q in route.configurations] == [by_id[i].tolist() for i in route.order]
+    assert [m.start for m in route.motions] == [0, *route.order]
+    assert [m.end for m in route.motions] == [*route.order, 0]
+    for motion in route.motions:
+        assert (motion.points[0] == (by_id[motion.start] if motion.start else route.home)).all()
+        assert motion.points.shape[1] == len(route.names) == len(route.units)
+    assert route.travel_seconds == pytest.approx(sum(m.seconds for m in route.motions))
+    route.save(tmp_path / "route.json")
+    assert json.loads((tmp_path / "route.json").read_text()) == route.to_dict()
+    assert route.to_csv().startswith("pose,") and route.summary()
+    assert "Route" in repr(route) and "Motion" in repr(route.motions[0])
+
+
+def without_seconds(route):
+    return {key: value for key, value in route.items() if key not in ("seconds", "statistics")}
+
+
+def test_a_route_of_another_problem_says_so(cell, cell_plan, examples):
+    text = (examples / "cell" / "problem.yaml").read_text() + "\n# changed\n"
+    changed = pw.Problem.from_text(text, examples / "cell")
+    assert pw.route(changed, cell_plan).problem_changed
+
+
+def test_bad_arguments_of_a_route(cell, cell_plan):
+    with pytest.raises(pw.InputError, match="start stands beside from_home"):
+        pw.route(cell, cell_plan, from_home=True, start=1)
+    with pytest.raises(pw.InputError, match="start= 99 is no pose of"):
+        pw.route(cell, cell_plan, start=99)
+    with pytest.raises(pw.InputError, match="milestones is 0"):
+        pw.route(cell, cell_plan, milestones=0)

@@ -1,0 +1,127 @@
+#include "posewright/cell/drawing.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "mesh_file.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/placement.hpp"
+#include "posewright/model/urdf_reader.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/support/error.hpp"
+#include "scene.hpp"
+
+namespace posewright {
+namespace {
+
+// A picture needs no more, and a report stays small.
+constexpr std::size_t most_triangles = 3000;
+// Cells along the longest edge of the box around a mesh, for the first attempt.
+constexpr int finest_grid = 64;
+
+const char* kind_name(BodyShape::Kind kind) {
+  if (kind == BodyShape::Kind::tool) return "tool";
+  return kind == BodyShape::Kind::obstacle ? "obstacle" : "robot";
+}
+
+TriangleMesh on_grid(const TriangleMesh& mesh, const Eigen::Vector3d& corner, double cell) {
+  TriangleMesh result;
+  std::map<std::array<long, 3>, int> cells;
+  std::vector<int> place;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    const Eigen::Vector3d at = (v - corner) / cell;
+    const std::array<long, 3> key = {std::lround(at.x()), std::lround(at.y()), std::lround(at.z())};
+    const auto [entry, is_new] = cells.try_emplace(key, int(result.vertices.size()));
+    if (is_new) result.vertices.push_back(v);
+    place.push_back(entry->second);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const std::array<int, 3> t = {place[std::size_t(a)], place[std::size_t(b)], place[std::size_t(c)]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.triangles.push_back(t);
+  }
+  return result;
+}
+
+/// Targets that the instrument looks at, in the tip's frame.
+std::vector<TargetSpec> targets_of(const MeasurementSpec& measurement) {
+  if (const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument)) return points->targets;
+  if (const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument)) return distance->targets;
+  if (const auto* pose = std::get_if<PoseMeasurement>(&measurement.instrument)) return pose->photogrammetry;
+  return {};
+}
+
+}  // namespace
+
+TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  TriangleMesh result = mesh;
+  for (double grid = finest_grid; result.triangles.size() > triangles && grid > 2; grid *= 0.75)
+    result = on_grid(mesh, box.min(), box.sizes().maxCoeff() / grid);
+  return result;
+}
+
+Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model), frame_names_{"measurement"} {
+  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
+    const ChainDescription chain = read_urdf_chain(*arm, problem.at(arm->line));
+    base_ = chain.X_MeasureBase.translation();
+    for (const ChainJoint& joint : chain.joints) frame_names_.push_back(joint.name);
+    arm_ = make_body_frames(problem, *model_);
+  } else {
+    tip_ = make_tip(problem, find_variant(problem, ""));
+    if (tip_ != nullptr) frame_names_.emplace_back("platform");
+  }
+  add_bodies(problem);
+  add_instrument(problem, cell);
+}
+
+Drawing::~Drawing() = default;
+
+void Drawing::add_bodies(const Problem& problem) {
+  if (arm_ == nullptr && tip_ == nullptr) return;
+  const Eigen::Isometry3d X_FrameTip = arm_ != nullptr ? arm_->X_FrameTip() : Eigen::Isometry3d::Identity();
+  std::map<std::filesystem::path, TriangleMesh> meshes;
+  for (const BodyShape& s : list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip)) {
+    DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, {}};
+    if (const auto* file = std::get_if<MeshShape>(&s.shape)) try {
+        const std::filesystem::path found = find_mesh(file->file, problem, s.place);
+        body.mesh = thinned(read_mesh(found, file->scale, s.place), most_triangles);
+      } catch (const InputError& error) {
+        if (warning_.empty()) warning_ = std::string("some shapes are not drawn: ") + error.what();
+        continue;
+      }
+    bodies_.push_back(std::move(body));
+  }
+}
+
+void Drawing::add_instrument(const Problem& problem, const Cell& cell) {
+  for (const TargetSpec& target : targets_of(problem.measurement)) {
+    target_names_.push_back(target.name);
+    targets_.push_back(target.position);
+  }
+  if (cell.sight == nullptr || cell.sight->rides_on_tip()) return;
+  for (std::size_t s = 0; s < cell.sight->stations().size(); ++s)
+    stations_.emplace_back(cell.sight->stations()[s], cell.sight->X_MeasureStation({}, int(s)));
+}
+
+DrawnPose Drawing::at(std::span<const double> q) const {
+  DrawnPose pose;
+  if (arm_ != nullptr) {
+    pose.frames.resize(std::size_t(arm_->count()));
+    arm_->poses(q, 0, pose.frames);
+    pose.tip = pose.frames.back() * arm_->X_FrameTip();
+    Polyline line = {base_};
+    for (std::size_t k = 1; k < pose.frames.size(); ++k) line.push_back(pose.frames[k].translation());
+    line.push_back(pose.tip.translation());
+    pose.lines.push_back(std::move(line));
+  } else if (tip_ != nullptr) {
+    pose.tip = model_->tool_pose(q);
+    pose.frames = {Eigen::Isometry3d::Identity(), pose.tip};
+    pose.lines = tip_->skeleton(q.first(tip_->coordinates().size()));
+  }
+  for (const Eigen::Vector3d& target : targets_)
+    pose.targets.push_back(pose.frames.empty() ? std::nullopt : std::optional<Eigen::Vector3d>(pose.tip * target));
+  return pose;
+}
+
+}  // namespace posewright

@@ -1,0 +1,226 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/support/file.hpp"
+#include "session.hpp"
+
+namespace posewright::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t plan_limit = 200'000'000, settings_limit = 1'000'000;
+constexpr const char* no_controller = "syntax checked, not run on a controller";
+
+po::options_description options() {
+  po::options_description options("Options");
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  options.add_options()                                                                                   //
+      ("to", text("FORMAT"), "format; list or none: the table of formats")                                //
+      ("output,o", text("FILE|DIR"), "where to (a name of the format's own; - for stdout)")               //
+      ("force", "replace files that posewright did not write")                                            //
+      ("name", text("NAME"), "of the program (as the file), of the robot in an SRDF")                     //
+      ("speed", text("%"), "whole percent of full speed (10; of the route's for joint-trajectory: 100)")  //
+      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")                 //
+      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")                   //
+      ("digital-output", text("N"),
+       "tells the instrument to measure: number, or name for abb-rapid and staubli-val3")                          //
+      ("digital-input", text("N"), "tells that it has measured")                                                   //
+      ("tool", text("N"), "tool of the controller")                                                                //
+      ("base", text("N"), "base or user frame of the controller")                                                  //
+      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")                        //
+      ("controller", text("FILE"), "YAML: sign, zero_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
+      ("group", text("NAME"), "planning group of an SRDF (manipulator)");
+  return options;
+}
+
+std::optional<double> number(const po::variables_map& values, const std::string& option, double lower, double upper) {
+  if (values.count(option) == 0) return std::nullopt;
+  const std::string text = text_of(values, option);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
+    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
+  return value;
+}
+
+/// An option that a format does not read is a mistake, not decoration.
+void require_read(const PoseFormat& format, const po::variables_map& values) {
+  for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base",
+                             "coupling", "controller", "group"})
+    if (values.count(option) > 0 &&
+        std::find(format.options.begin(), format.options.end(), option) == format.options.end())
+      throw InputError({}, fmt::format("--{} is not read for {}", option, format.name),
+                       format.options.empty() ? "it has no options"
+                                              : fmt::format("allowed: --{}", fmt::join(format.options, ", --")));
+}
+
+ExportOptions export_options(const PoseFormat& format, const po::variables_map& values, const fs::path& output) {
+  require_read(format, values);
+  ExportOptions result;
+  if (const auto speed = whole_number(values, "speed", 1, 100)) result.speed = *speed;
+  result.settle = number(values, "settle", 0, 3600);
+  result.wait = number(values, "wait", 0, 3600);
+  result.coupling = number(values, "coupling", -10, 10);
+  result.digital_output = text_of(values, "digital-output");
+  result.digital_input = text_of(values, "digital-input");
+  result.name = text_of(values, "name");
+  result.group = text_of(values, "group");
+  result.tool = whole_number(values, "tool", 0, 255);
+  result.base = whole_number(values, "base", 0, 255);
+  if (const std::string file = text_of(values, "controller"); !file.empty())
+    result.controller = parse_controller_settings(read_file(file, settings_limit), file);
+  // A program is called as its file.
+  if (result.name.empty() && format.controller && !format.extension.empty() && output.extension() == format.extension &&
+      std::find(format.options.begin(), format.options.end(), "name") != format.options.end())
+    result.name = output.stem().string();
+  return result;
+}
+
+/// Where each file goes.
+std::vector<fs::path> places(const PoseFormat& format, const Exported& exported, const fs::path& output) {
+  std::vector<fs::path> result;
+  const bool to_file = !output.empty() && !fs::is_directory(output) && output.has_filename();
+  if (!format.several_files && to_file) return {output};
+  // Files of one program are called as the program.
+  const bool named = to_file && !format.extension.empty() && output.extension() == format.extension;
+  if (named && output.filename() != exported.files.front().name)
+    throw InputError({},
+                     fmt::format("--name {} is not the name of {}",
+                                 fs::path(exported.files.front().name).stem().string(), output.filename().string()),
+                     "a " + format.name + " program is called as its file");
+  const fs::path folder = named ? output.parent_path() : output;
+  for (const ExportedFile& file : exported.files) result.push_back(folder / file.name);
+  return result;
+}
+
+/// Folders that are missing are made, and removed again where nothing comes of it.
+class Folders {
+ public:
+  explicit Folders(const std::vector<fs::path>& files) {
+    for (const fs::path& file : files)
+      for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder); folder = folder.parent_path())
+        missing_.push_back(folder);
+    for (const fs::path& file : files) {
+      std::error_code code;
+      if (file.has_parent_path()) fs::create_directories(file.parent_path(), code);
+    }
+  }
+  ~Folders() {
+    std::error_code code;
+    if (!kept_)
+      for (const fs::path& folder : missing_) fs::remove(folder, code);
+  }
+  Folders(const Folders&) = delete;
+  Folders& operator=(const Folders&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  std::vector<fs::path> missing_;  // innermost first
+  bool kept_ = false;
+};
+
+void require_ending(const PoseFormat& format, const fs::path& output) {
+  const bool wanted = format.extension == ".yaml" && (format.name == "moveit" || format.name == "robot-calibration");
+  if (wanted && output.has_filename() && !fs::is_directory(output) && output.extension() != ".yaml")
+    throw InputError({}, output.string() + " has another ending", format.used_by + " reads files that end in .yaml");
+}
+
+void print_table(bool json) {
+  if (json) {
+    nlohmann::ordered_json list = {{"schema", "posewright/formats/1"}, {"formats", nlohmann::ordered_json::array()}};
+    for (const PoseFormat& format : pose_formats())
+      list["formats"].push_back({{"name", format.name},
+                                 {"description", format.description},
+                                 {"used_by", format.used_by},
+                                 {"extension", format.extension},
+                                 {"needs", format.needs},
+                                 {"options", format.options},
+                                 {"read_back", format.read != nullptr},
+                                 {"note", format.controller ? no_controller : ""}});
+    fmt::print("{}\n", list.dump(1));
+    return;
+  }
+  using A = Table::Align;
+  Table table({"format", "what", "read by", "ending", "--from", "needs"}, std::vector<A>(6, A::left));
+  for (const PoseFormat& format : pose_formats())
+    table.row({format.name + (format.controller ? " *" : ""), format.description, format.used_by,
+               format.extension.empty() ? "folder" : format.extension, format.read != nullptr ? "yes" : "",
+               format.needs});
+  fmt::print("{}\n* {}\n", table.text(), no_controller);
+}
+
+std::string summary_json(const PoseFormat& format, const PoseSequence& sequence, const std::vector<fs::path>& files,
+                         const std::vector<std::string>& notes) {
+  nlohmann::ordered_json json = {{"schema", "posewright/export/1"}, {"format", format.name}, {"plan", sequence.file}};
+  json["poses"] =
+      std::count_if(sequence.poses.begin(), sequence.poses.end(), [](const auto& pose) { return !pose.measured; });
+  json["files"] = nlohmann::ordered_json::array();
+  for (const fs::path& file : files) json["files"].push_back(file.string());
+  json["notes"] = notes;
+  return json.dump(1) + "\n";
+}
+
+int run(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  const std::string to = text_of(values, "to");
+  if (to.empty() || to == "list") {
+    print_table(common.json);
+    return done;
+  }
+  const PoseFormat& format = find_pose_format(to);
+  const fs::path plan = single(positional, "PLAN");
+  const std::string given = text_of(values, "output");
+  const bool to_stdout = given == "-";
+  if (to_stdout && (common.json || format.several_files))
+    throw InputError({}, format.several_files ? format.name + " has several files" : "--json and -o - both want stdout",
+                     "give -o a file or folder");
+  const fs::path output = to_stdout ? fs::path() : fs::path(given);
+  const ExportOptions export_settings = export_options(format, values, output);
+  require_ending(format, output);
+  const PoseSequence sequence = parse_sequence(read_file(plan, plan_limit), plan.string());
+  Exported exported = format.write(sequence, export_settings);
+  if (format.controller) exported.notes.emplace_back(no_controller);
+  if (to_stdout) {
+    std::fwrite(exported.files.front().bytes.data(), 1, exported.files.front().bytes.size(), stdout);
+    print_notes(exported.notes);
+    return done;
+  }
+  const std::vector<fs::path> files = places(format, exported, output);
+  std::vector<fs::path> inputs = {plan};
+  if (values.count("controller") > 0) inputs.emplace_back(text_of(values, "controller"));
+  Folders folders(files);
+  check_outputs(files, inputs, values.count("force") > 0);
+  for (std::size_t i = 0; i < files.size(); ++i) write_file_atomically(files[i], exported.files[i].bytes);
+  folders.keep();
+  print_notes(exported.notes);
+  if (common.json) {
+    fmt::print("{}", summary_json(format, sequence, files, exported.notes));
+  } else {
+    std::string names;
+    for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
+    fmt::print("Written: {}\n", names);
+  }
+  return done;
+}
+
+}  // namespace
+
+Command export_command() {
+  return {"export",
+          "PLAN",
+          "Writes the poses of a plan or route as robot programs and as pose lists of calibration tools.",
+          options,
+          "posewright export route.json --to kuka-krl -o CALPOSES.src",
+          run};
+}
+
+}  // namespace posewright::cli

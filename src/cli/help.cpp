@@ -1,0 +1,49 @@
+#include "help.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace posewright::cli {
+namespace {
+
+std::string command_names() {
+  std::string names;
+  for (const Command& command : commands()) names += (names.empty() ? "" : ", ") + command.name;
+  return names;
+}
+
+}  // namespace
+
+std::string general_help() {
+  std::string text = fmt::format("posewright: {}\n\nUsage: posewright COMMAND [options]\n\nCommands:\n", purpose);
+  for (const Command& command : commands())
+    text += fmt::format("  {:<28}{}\n", command.name + " " + command.arguments, command.summary);
+  text += fmt::format(
+      "  {:<28}{}\n  {:<28}{}\n  {:<28}{}\n\nExample:\n  {}\n\n"
+      "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
+      "written).\n",
+      "help COMMAND", "Options of a command.", "help --man", "The manual page, for man -l.", "completion bash|zsh",
+      "Completion for a shell: source <(posewright completion bash)", general_example);
+  return text;
+}
+
+std::string command_help(const Command& command) {
+  std::ostringstream text;
+  text << "Usage: posewright " << command.name << " " << command.arguments << " [options]\n\n"
+       << command.summary << "\n\n"
+       << command.options() << "\n"
+       << common_options() << "\nExample:\n  " << command.example << "\n";
+  return text.str();
+}
+
+const Command& find_command(const std::string& name) {
+  const auto found =
+      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
+  if (found == commands().end())
+    throw InputError({}, "unknown command '" + name + "'", "commands of this version: " + command_names());
+  return *found;
+}
+
+}  // namespace posewright::cli

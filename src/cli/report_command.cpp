@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "packages.hpp"
+#include "posewright/pipeline/report_problem.hpp"
+#include "posewright/pipeline/route_problem.hpp"
+#include "posewright/support/file.hpp"
+#include "session.hpp"
+#include "write_result.hpp"
+
+namespace posewright::cli {
+namespace {
+
+po::options_description options() {
+  po::options_description options("Options");
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  options.add_options()                                                                          //
+      ("output,o", text("FILE"), "the page (report.html; - for none)")                           //
+      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")       //
+      ("problem", text("FILE"), "problem file (the one the plan names)")                         //
+      ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates")  //
+      ("force", "replace files that posewright did not write")                                   //
+      ("time-limit", text("S"), "begin no other number of poses after S seconds");
+  options.add(package_options());
+  return options;
+}
+
+int run(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  const std::filesystem::path plan = single(positional, "PLAN");
+  ReportOptions report_options;
+  report_options.route = text_of(values, "route");
+  report_options.sizes = report_options.candidates = values.count("brief") == 0;
+  report_options.threads = common.threads;
+  const std::filesystem::path given = text_of(values, "problem");
+  const std::filesystem::path file = given.empty() ? problem_of_plan(plan) : given;
+  const std::filesystem::path page = output_file(values, "output", "report.html");
+  std::vector<std::filesystem::path> inputs = {plan, file};
+  if (!report_options.route.empty()) inputs.push_back(report_options.route);
+  check_output_files(values, {page}, inputs);
+  const Problem problem = problem_with_packages(file, values);
+  const auto [report, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
+    return report_problem(problem, plan, report_options, monitor);
+  });
+  if (!page.empty()) write_file_atomically(page, report_html(report));
+  if (common.json) {
+    fmt::print("{}", report_json(report));
+  } else {
+    for (const std::string& note : report.notes) fmt::print("{}\n", note);
+    fmt::print("{}", written_text({page}));
+  }
+  return was_interrupted ? interrupted : done;
+}
+
+}  // namespace
+
+Command report_command() {
+  return {"report",
+          "PLAN",
+          "Writes a page to look at: robot, poses, accuracy, what each pose brings.",
+          options,
+          "posewright report plan.json --route route.json -o report.html",
+          run};
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace posewright::cli {
+
+/// Whether bold and colour may go to this stream: a terminal that knows them, and NO_COLOR is not set (no-color.org).
+bool has_colour(std::FILE* stream);
+
+/// A report on stdout, its first line bold where there are colours.
+void print_report(const std::string& text);
+
+/// One line on stderr with the program's name before it, red where there are colours.
+void print_error(const std::string& text);
+
+}  // namespace posewright::cli

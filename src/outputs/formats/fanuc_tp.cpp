@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include "formats.hpp"
+#include "posewright/support/error.hpp"
+#include "program.hpp"
+#include "text.hpp"
+
+// Form: public TP listings (ros-industrial/fanuc fanuc_driver/tpe); coupling: fanuc_driver/src/fanuc_utils.cpp;
+// docs/export.md.
+
+namespace posewright::formats {
+namespace {
+
+const ProgramRules rules = {
+    .format = "fanuc-tp",
+    .longest_name = 36,
+    .capitals = true,
+    .axes = {"J1", "J2", "J3", "J4", "J5", "J6"},
+    .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
+    .coupling_needed =
+        "the controller's J3 is J3 - F*J2 of a URDF: F is 1 for nearly all FANUC arms, -1 for the "
+        "M-430iA, 0 where the plan counts as the controller; the wrong one is a collision",
+    .decimals = 5};
+
+constexpr std::size_t most_lines = 9999;
+constexpr std::size_t longest_remark = 32, longest_message = 24;
+
+std::vector<std::string> measure_lines(const RobotProgram& program, int output, int input) {
+  std::vector<std::string> lines = {fmt::format("  WAIT {:>6}(sec) ;", fixed(program.settle, 2)),
+                                    fmt::format("  DO[{}]=ON ;", output)};
+  lines.push_back(program.wait ? fmt::format("  WAIT {:>6}(sec) ;", fixed(*program.wait, 2))
+                               : fmt::format("  WAIT DI[{}]=ON ;", input));
+  lines.push_back(fmt::format("  DO[{}]=OFF ;", output));
+  if (!program.wait) lines.push_back(fmt::format("  WAIT DI[{}]=OFF ;", input));
+  return lines;
+}
+
+/// What stands behind the line numbers of /MN.
+std::vector<std::string> main_lines(const RobotProgram& program, const ExportOptions& options) {
+  const int output = signal_number(options.digital_output, "--digital-output", 1, 32767, 1);
+  const int input = signal_number(options.digital_input, "--digital-input", 1, 32767, 1);
+  std::vector<std::string> lines = {
+      fmt::format("  !{} ;", export_mark), fmt::format("  UFRAME_NUM={} ;", options.base.value_or(0)),
+      fmt::format("  UTOOL_NUM={} ;", options.tool.value_or(1)), fmt::format("  DO[{}]=OFF ;", output)};
+  for (const ProgramStep& step : program.steps) {
+    if (!step.comment.empty()) lines.push_back("  !" + program_text(step.comment, longest_remark) + " ;");
+    if (step.kind == ProgramStep::Kind::move)
+      lines.push_back(fmt::format("J P[{}] {}% FINE    ;", step.point + 1, short_fixed(program.speed, 0)));
+    if (step.kind == ProgramStep::Kind::measure)
+      for (std::string& line : measure_lines(program, output, input)) lines.push_back(std::move(line));
+    for (const std::string& message : step.messages)
+      lines.push_back(fmt::format("  MESSAGE[{}] ;", program_text(message, longest_message)));
+    if (step.kind == ProgramStep::Kind::stop) lines.push_back("  PAUSE ;");
+  }
+  if (lines.size() > most_lines)
+    throw CannotDo(fmt::format("fanuc-tp: {} lines are more than a program holds ({})", lines.size(), most_lines));
+  return lines;
+}
+
+std::string position(const RobotProgram& program, std::size_t k, int frame, int tool) {
+  std::vector<std::string> cells;
+  for (const std::string& axis : rules.axes)
+    for (std::size_t i = 0; i < program.axes.size(); ++i)
+      if (program.axes[i] == axis)
+        cells.push_back(fmt::format("{}={:>{}} deg", axis, fixed(program.points[k].axes[i], program.decimals),
+                                    program.decimals + 7));
+  return fmt::format("P[{}]{{\n   GP1:\n\tUF : {}, UT : {},\n\t{},\t{},\t{},\n\t{},\t{},\t{}\n}};\n", k + 1, frame,
+                     tool, cells[0], cells[1], cells[2], cells[3], cells[4], cells[5]);
+}
+
+Exported write(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, rules);
+  const std::vector<std::string> lines = main_lines(program, options);
+  std::string text = fmt::format(
+      "/PROG  {}\n/ATTR\nOWNER\t\t= MNEDITOR;\nCOMMENT\t\t= \"CALIBRATION\";\nPROG_SIZE\t= 0;\n"
+      "CREATE\t\t= DATE 26-01-01  TIME 12:00:00;\nMODIFIED\t= DATE 26-01-01  TIME 12:00:00;\nFILE_NAME\t= ;\n"
+      "VERSION\t\t= 0;\nLINE_COUNT\t= {};\nMEMORY_SIZE\t= 0;\nPROTECT\t\t= READ_WRITE;\n"
+      "TCD:  STACK_SIZE\t= 0,\n      TASK_PRIORITY\t= 50,\n      TIME_SLICE\t= 0,\n      BUSY_LAMP_OFF\t= 0,\n"
+      "      ABORT_REQUEST\t= 0,\n      PAUSE_REQUEST\t= 0;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n"
+      "CONTROL_CODE\t= 00000000 00000000;\n/MN\n",
+      program.name, lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) text += fmt::format("{:>4}:{}\n", i + 1, lines[i]);
+  text += "/POS\n";
+  for (std::size_t k = 0; k < program.points.size(); ++k)
+    text += position(program, k, options.base.value_or(0), options.tool.value_or(1));
+  if (program.name.size() > 8) program.notes.push_back("controllers before R-30iA take names of 8 characters");
+  return one_file(program.name + ".LS", with_crlf(text + "/END\n"), program.notes);
+}
+
+}  // namespace
+
+PoseFormat fanuc_tp() {
+  return {
+      "fanuc-tp",
+      "FANUC TP listing",
+      "FANUC controllers with ASCII upload, or maketp",
+      ".LS",
+      "six turning joints; --coupling",
+      {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling", "controller"},
+      true,
+      false,
+      write,
+      nullptr};
+}
+
+}  // namespace posewright::formats

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "posewright/outputs/pose_formats.hpp"
+
+/// One function a format; the table is in registry.cpp.
+namespace posewright::formats {
+
+PoseFormat kuka_krl();
+PoseFormat abb_rapid();
+PoseFormat fanuc_tp();
+PoseFormat urscript();
+PoseFormat yaskawa_inform();
+PoseFormat staubli_val3();
+PoseFormat hexapod_gcs();
+PoseFormat robot_calibration();
+PoseFormat figaroh();
+PoseFormat figaroh_csv();
+PoseFormat pybotics_npy();
+PoseFormat pybotics_csv();
+PoseFormat moveit();
+PoseFormat industrial_calibration();
+PoseFormat caljob();
+PoseFormat delmia();
+PoseFormat robodk_csv();
+PoseFormat lt_irb120();
+PoseFormat mukca();
+PoseFormat joint_trajectory();
+PoseFormat srdf();
+PoseFormat plain_csv();
+PoseFormat plain_json();
+
+}  // namespace posewright::formats

@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+
+#include "formats.hpp"
+#include "number_rows.hpp"
+#include "program.hpp"
+#include "text.hpp"
+
+// Form: generated_joints.txt of LT-IRB120, as numpy.savetxt writes it: degrees.
+
+namespace posewright::formats {
+namespace {
+
+Exported write(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  std::string text;
+  for (const SequencePose& pose : sequence.poses)
+    for (std::size_t i = 0; i < pose.values.size(); ++i)
+      text += fmt::format("{:.18e}{}", to_degrees_or_millimetres(pose.values[i], sequence.units[i]),
+                          i + 1 < pose.values.size() ? " " : "\n");
+  return one_file("generated_joints.txt", text, list_notes(sequence));
+}
+
+PoseTable read(const std::string& bytes, const std::string& file) {
+  PoseTable table;
+  for (const NumberRow& numbers : read_number_rows(bytes, file, ' ', false))
+    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
+  table.units.assign(table.rows.front().cells.size(), degrees_or_millimetres);
+  return table;
+}
+
+}  // namespace
+
+PoseFormat lt_irb120() {
+  return {
+      "lt-irb120", "joint values, deg, between blanks", "LT-IRB120, numpy.loadtxt", ".txt", "", {}, false, false, write,
+      read};
+}
+
+}  // namespace posewright::formats

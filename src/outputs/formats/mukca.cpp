@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "formats.hpp"
+#include "number_rows.hpp"
+#include "program.hpp"
+#include "text.hpp"
+
+// Form: data/<robot>/<tool position>/hole_0.csv of MUKCa: no header, rad.
+
+namespace posewright::formats {
+namespace {
+
+Exported write(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  std::string text;
+  for (const SequencePose& pose : sequence.poses)
+    for (std::size_t i = 0; i < pose.values.size(); ++i)
+      text += fmt::format("{:.18e}{}", pose.values[i], i + 1 < pose.values.size() ? "," : "\n");
+  return one_file("hole_0.csv", text, list_notes(sequence));
+}
+
+PoseTable read(const std::string& bytes, const std::string& file) {
+  PoseTable table;
+  for (const NumberRow& numbers : read_number_rows(bytes, file, ',', false))
+    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
+  return table;
+}
+
+}  // namespace
+
+PoseFormat mukca() {
+  return {"mukca", "joint values, rad and m, no header", "MUKCa", ".csv", "", {}, false, false, write, read};
+}
+
+}  // namespace posewright::formats

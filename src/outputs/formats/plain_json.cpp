@@ -1,0 +1,43 @@
+#include <nlohmann/json.hpp>
+
+#include "formats.hpp"
+#include "program.hpp"
+
+// Schema posewright/poses/1.
+
+namespace posewright::formats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Exported write(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  Json json = {{"schema", "posewright/poses/1"}, {"names", sequence.names}, {"units", sequence.units}};
+  json["poses"] = Json::array();
+  for (const SequencePose& pose : sequence.poses) {
+    Json entry = {{"id", pose.id}, {"values", pose.values}};
+    if (!pose.load_case.empty()) entry["load_case"] = pose.load_case;
+    if (!pose.station.empty()) entry["station"] = pose.station;
+    json["poses"].push_back(entry);
+  }
+  return one_file("poses.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+PoseTable read(const std::string& bytes, const std::string& file) { return table_of(parse_sequence(bytes, file)); }
+
+}  // namespace
+
+PoseFormat plain_json() {
+  return {"json",
+          "names, units and values, SI",
+          "anything; plan.json and route.json are read too",
+          ".json",
+          "",
+          {},
+          false,
+          false,
+          write,
+          read};
+}
+
+}  // namespace posewright::formats

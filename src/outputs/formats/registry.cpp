@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "formats.hpp"
+#include "posewright/support/error.hpp"
+#include "text.hpp"
+
+namespace posewright {
+
+const std::vector<PoseFormat>& pose_formats() {
+  using namespace formats;
+  static const std::vector<PoseFormat> table = {kuka_krl(),
+                                                abb_rapid(),
+                                                fanuc_tp(),
+                                                urscript(),
+                                                yaskawa_inform(),
+                                                staubli_val3(),
+                                                hexapod_gcs(),
+                                                joint_trajectory(),
+                                                srdf(),
+                                                moveit(),
+                                                robot_calibration(),
+                                                figaroh(),
+                                                figaroh_csv(),
+                                                industrial_calibration(),
+                                                caljob(),
+                                                pybotics_npy(),
+                                                pybotics_csv(),
+                                                delmia(),
+                                                robodk_csv(),
+                                                lt_irb120(),
+                                                mukca(),
+                                                plain_csv(),
+                                                plain_json()};
+  return table;
+}
+
+namespace {
+
+const PoseFormat& find(const std::string& name, bool readable) {
+  std::string names;
+  for (const PoseFormat& format : pose_formats()) {
+    if (readable && format.read == nullptr) continue;
+    if (format.name == name) return format;
+    names += (names.empty() ? "" : ", ") + format.name;
+  }
+  throw InputError({}, fmt::format("{} is no format that is {}", formats::quoted(name), readable ? "read" : "written"),
+                   "allowed: " + names);
+}
+
+}  // namespace
+
+const PoseFormat& find_pose_format(const std::string& name) { return find(name, false); }
+const PoseFormat& find_readable_format(const std::string& name) { return find(name, true); }
+
+std::string readable_format_names() {
+  std::string names;
+  for (const PoseFormat& format : pose_formats())
+    if (format.read != nullptr) names += (names.empty() ? "" : ", ") + format.name;
+  return names;
+}
+
+PoseTable table_of(const PoseSequence& sequence) {
+  PoseTable table;
+  table.names = sequence.names;
+  table.problem_sha256 = sequence.problem_sha256;
+  table.units.resize(table.names.size());
+  const auto has = [&](std::string SequencePose::*label) {
+    return std::any_of(sequence.poses.begin(), sequence.poses.end(),
+                       [&](const SequencePose& pose) { return !(pose.*label).empty(); });
+  };
+  std::vector<std::string SequencePose::*> labels;
+  if (has(&SequencePose::load_case)) labels.push_back(&SequencePose::load_case), table.names.push_back("load_case");
+  if (has(&SequencePose::station)) labels.push_back(&SequencePose::station), table.names.push_back("station");
+  table.units.resize(table.names.size());
+  for (const SequencePose& pose : sequence.poses) {
+    PoseRow row;
+    row.cells.assign(pose.values.begin(), pose.values.end());
+    for (const auto label : labels) row.cells.emplace_back(pose.*label);
+    row.id = pose.id;
+    row.measured = pose.measured;
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace posewright

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "formats.hpp"
+#include "posewright/support/error.hpp"
+#include "program.hpp"
+#include "text.hpp"
+
+// Form: UniversalRobots/URScript_Examples; docs/export.md.
+
+namespace posewright::formats {
+namespace {
+
+const ProgramRules rules = {.format = "urscript",
+                            .default_name = "calposes",
+                            .longest_name = 64,
+                            .axes = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"},
+                            .settings = {"sign", "zero_deg", "axes", "decimals"},
+                            .decimals = 6};
+
+constexpr double full_speed = 3.0;    // rad/s, what --speed is a part of
+constexpr double acceleration = 0.5;  // rad/s²
+constexpr double rounding = 1e-6;     // rad
+
+std::string joints(const RobotProgram& program, const ProgramPoint& point) {
+  std::string text;
+  for (const std::string& axis : rules.axes)
+    for (std::size_t i = 0; i < program.axes.size(); ++i)
+      if (program.axes[i] == axis) {
+        const double value = point.axes[i] * (std::numbers::pi / 180);
+        if (std::abs(value) > 2 * std::numbers::pi + rounding)
+          throw CannotDo(fmt::format("urscript: {} turns {} to {:.4f} rad; the controller takes -2 pi to 2 pi",
+                                     point.name, axis, value));
+        text += (text.empty() ? "" : ", ") + fixed(value, program.decimals);
+      }
+  return text;
+}
+
+std::string measure_lines(const RobotProgram& program, int output, int input) {
+  const auto wait_while = [&](const char* state) {
+    return fmt::format("  while (get_standard_digital_in({}) == {}):\n    sync()\n  end\n", input, state);
+  };
+  std::string text =
+      fmt::format("  sleep({})\n  set_standard_digital_out({}, True)\n", fixed(program.settle, 2), output);
+  text += program.wait ? fmt::format("  sleep({})\n", fixed(*program.wait, 2)) : wait_while("False");
+  text += fmt::format("  set_standard_digital_out({}, False)\n", output);
+  return program.wait ? text : text + wait_while("True");
+}
+
+Exported write(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, rules);
+  const int output = signal_number(options.digital_output, "--digital-output", 0, 7, 0);
+  const int input = signal_number(options.digital_input, "--digital-input", 0, 7, 0);
+  std::string text =
+      fmt::format("def {}():\n  # {}\n  set_standard_digital_out({}, False)\n", program.name, export_mark, output);
+  for (const ProgramStep& step : program.steps) {
+    if (!step.comment.empty()) text += "  # " + program_text(step.comment, 200) + "\n";
+    if (step.kind == ProgramStep::Kind::move)
+      text += fmt::format("  movej([{}], a={}, v={})\n", joints(program, program.points[step.point]),
+                          short_fixed(acceleration, 3), short_fixed(full_speed * program.speed / 100, 4));
+    if (step.kind == ProgramStep::Kind::measure) text += measure_lines(program, output, input);
+    std::string message;
+    for (const std::string& line : step.messages) message += (message.empty() ? "" : ", ") + program_text(line, 100);
+    if (step.kind == ProgramStep::Kind::stop)
+      text += fmt::format("  popup(\"{}\", title=\"Calibration\", blocking=True)\n", message);
+  }
+  return one_file(program.name + ".script", text + "end\n", program.notes);
+}
+
+}  // namespace
+
+PoseFormat urscript() {
+  return {"urscript",
+          "URScript program",
+          "Universal Robots",
+          ".script",
+          "six turning joints",
+          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "controller"},
+          true,
+          false,
+          write,
+          nullptr};
+}
+
+}  // namespace posewright::formats

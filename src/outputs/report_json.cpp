@@ -1,0 +1,150 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "posewright/outputs/report.hpp"
+#include "posewright/version.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What is drawn needs no more than 10 µm and 10 µrad.
+constexpr double drawn_step = 1e5;
+
+double drawn(double value) {
+  const double rounded = std::round(value * drawn_step) / drawn_step;
+  return rounded == 0 ? 0.0 : rounded;  // no minus zero
+}
+
+Json point_json(const Eigen::Vector3d& p) { return {drawn(p.x()), drawn(p.y()), drawn(p.z())}; }
+
+Json placement_json(const Eigen::Isometry3d& X) {
+  const Eigen::Quaterniond q(X.linear());
+  Json json = point_json(X.translation());
+  for (const double value : {q.x(), q.y(), q.z(), q.w()}) json.push_back(drawn(value));
+  return json;
+}
+
+Json shape_json(const ReportBody& body) {
+  switch (body.shape) {
+    case ReportBody::Shape::box:
+      return {{"type", "box"}, {"size", point_json(body.size)}};
+    case ReportBody::Shape::cylinder:
+      return {{"type", "cylinder"}, {"radius", body.radius}, {"length", body.length}};
+    case ReportBody::Shape::sphere:
+      return {{"type", "sphere"}, {"radius", body.radius}};
+    case ReportBody::Shape::plane:
+      return {{"type", "plane"}, {"normal", point_json(body.size)}};
+    case ReportBody::Shape::mesh:
+      break;
+  }
+  Json vertices = Json::array(), triangles = Json::array();
+  for (const Eigen::Vector3d& v : body.vertices)
+    for (const double x : v) vertices.push_back(drawn(x));
+  for (const auto& triangle : body.triangles)
+    for (const int i : triangle) triangles.push_back(i);
+  return {{"type", "mesh"}, {"vertices", vertices}, {"triangles", triangles}};
+}
+
+Json keyframe_json(const ReportKeyframe& k) {
+  Json json = {{"pose", k.pose ? Json(*k.pose) : Json(nullptr)}, {"seconds", drawn(k.seconds)}};
+  json["frames"] = Json::array();
+  for (const Eigen::Isometry3d& X : k.frames) json["frames"].push_back(placement_json(X));
+  json["lines"] = Json::array();
+  for (const auto& line : k.lines) {
+    Json points = Json::array();
+    for (const Eigen::Vector3d& p : line) points.push_back(point_json(p));
+    json["lines"].push_back(points);
+  }
+  json["tip"] = placement_json(k.tip);
+  json["targets"] = Json::array();
+  for (const auto& target : k.targets) json["targets"].push_back(target ? point_json(*target) : Json(nullptr));
+  return json;
+}
+
+/// Lower triangle row by row, as written doubles: a page recomputes log det from it.
+Json packed(const Eigen::MatrixXd& M) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < M.rows(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) json.push_back(M(i, j));
+  return json;
+}
+
+Json information_json(const ReportInformation& information) {
+  Json json = {{"poses", Json::array()}};
+  for (const auto& [id, M] : information.poses) json["poses"].push_back({{"id", id}, {"packed", packed(M)}});
+  json["prior"] = information.prior ? packed(*information.prior) : Json(nullptr);
+  json["test"] = Json::array();
+  for (const auto& [weight, M] : information.test) json["test"].push_back({{"weight", weight}, {"packed", packed(M)}});
+  return json;
+}
+
+Json columns_json(const ReportInformation& information) {
+  Json json = Json::array();
+  for (const PlannedParameter& p : information.columns)
+    json.push_back({{"name", p.label.name},
+                    {"unit", p.label.unit},
+                    {"tolerance", p.label.tolerance},
+                    {"role", p.label.role == Role::interest ? "interest" : "nuisance"},
+                    {"variant", p.variant}});
+  return json;
+}
+
+Json candidates_json(const ReportCandidates& candidates) {
+  Json positions = Json::array(), sensitivity = Json::array();
+  for (const Eigen::Vector3d& p : candidates.positions)
+    for (const double x : p) positions.push_back(std::round(x * 1e3) / 1e3);
+  for (const double d : candidates.sensitivity) sensitivity.push_back(drawn(d));
+  return {{"sensitivity", sensitivity}, {"bound", 1.0}, {"positions", positions}, {"chosen", candidates.chosen}};
+}
+
+Json curve_point_json(const std::optional<CurvePoint>& point) {
+  if (!point) return nullptr;
+  return {{"poses", point->poses},
+          {"log_det", point->log_det},
+          {"rho0", point->rho0 ? Json(*point->rho0) : Json(nullptr)},
+          {"largest_sigma_ratio", point->worst_sigma ? Json(*point->worst_sigma) : Json(nullptr)}};
+}
+
+Json bodies_json(const Report& report) {
+  Json json = Json::array();
+  for (const ReportBody& body : report.bodies)
+    json.push_back({{"name", body.name},
+                    {"kind", body.kind},
+                    {"frame", body.frame},
+                    {"placement", placement_json(body.X_FrameBody)},
+                    {"shape", shape_json(body)}});
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(const Report& report) {
+  Json json = {{"schema", "posewright/report/1"},
+               {"version", version},
+               {"title", report.title},
+               {"notes", report.notes},
+               {"plan", Json::parse(report.plan_json)},
+               {"route", report.route_json.empty() ? Json(nullptr) : Json::parse(report.route_json)},
+               {"frames", report.frames},
+               {"bodies", bodies_json(report)}};
+  json["stations"] = Json::array();
+  for (const auto& [name, X] : report.stations)
+    json["stations"].push_back({{"name", name}, {"placement", placement_json(X)}});
+  json["targets"] = report.targets;
+  json["keyframes"] = Json::array();
+  for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
+  json["columns"] = columns_json(report.information);
+  json["information"] = information_json(report.information);
+  json["singular_values"] = Json::array();
+  for (const double s : report.information.singular_values) json["singular_values"].push_back(s);
+  json["candidates"] = report.candidates ? candidates_json(*report.candidates) : Json(nullptr);
+  json["curve"] = Json::array();
+  for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
+  json["prefix"] = Json::array();
+  for (const auto& point : report.prefix) json["prefix"].push_back(curve_point_json(point));
+  return json.dump() + "\n";
+}
+
+}  // namespace posewright

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "posewright/cell/cell.hpp"
+#include "posewright/outputs/report.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Fills what the report draws: bodies, stations, targets, and the robot at every pose and, along a route, between
+/// them.
+/// @param poses  configuration of each pose of the plan by its id
+/// @param route  its file's text; empty: none
+/// Throws InputError for a route that names poses or coordinates that are not there.
+void fill_scene(Report& report, const Problem& problem, const Cell& cell,
+                const std::vector<std::pair<int, std::vector<double>>>& poses,
+                const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file);
+
+}  // namespace posewright

@@ -1,0 +1,104 @@
+"""What the program writes is what the schemas say: check_output_schemas.py PROGRAM."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import sources
+from schemas import SCHEMAS, closed, errors
+
+CLOSED = closed(SCHEMAS)
+EXAMPLES = sources.ROOT / "examples"
+QUICK = ["--method", "exchange", "--restarts", "1"]
+program = ""
+
+SMALLEST = """posewright: 1
+robot:
+  model: five_bar
+  encoder_noise: "0.005 deg"
+  legs:
+    - {base: ["-150 mm", 0], proximal: "250 mm", distal: "350 mm", elbow: left}
+    - {base: ["150 mm", 0],  proximal: "250 mm", distal: "350 mm", elbow: right}
+  range: {x: ["-200 mm", "200 mm"], y: ["250 mm", "500 mm"]}
+measurement: {type: joints, device: {type: isotropic, noise: "0.01 deg"}}
+variants:
+  all: {parameters: ["leg_?.proximal", "leg_?.distal", "leg_?.offset", "leg_?.sensor_offset"], tolerance: {"*offset": "0.5 deg"}}
+  few: {parameters: ["leg_?.proximal", "leg_?.offset"]}
+design: {variant: all, poses: auto, candidates: 300, require: {sigma: {"*": "0.2 mm", "*offset": "0.02 deg"}}, test_poses: {random: 5}}
+"""
+
+
+class Outputs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "smallest.yaml").write_text(SMALLEST)
+
+    def run_program(self, *words):
+        run = subprocess.run([program, *map(str, words)], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(run.stdout)
+
+    def check(self, schema, document):
+        self.assertEqual(errors(f"{schema}.schema.json", document), [])
+        self.assertEqual(errors(f"{schema}.schema.json", document, CLOSED), [], "a key is missing in the schema")
+        self.assertNotEqual(errors(f"{schema}.schema.json", {**document, "schema": "other"}), [])
+
+    def test_plans_of_arms_and_platforms(self):
+        for words in (["telescope/problem.yaml", "--candidates", 100, *QUICK], ["delta/problem.yaml", "--candidates", 100, "--reserve", *QUICK],
+                      ["kr270/compensator.yaml", "--candidates", 60, *QUICK, "--prior", "tolerance"]):
+            self.check("plan", self.run_program("plan", EXAMPLES / words[0], *words[1:], "--json"))
+
+    def test_plan_with_the_smallest_number_of_poses_and_one_for_several_variants(self):
+        plan = self.run_program("plan", "smallest.yaml", "--json")
+        self.assertTrue(plan["curve"])
+        self.check("plan", plan)
+        plan = self.run_program("plan", "smallest.yaml", "--poses", 8, "--criterion", "compound", "--json")
+        self.assertTrue(plan["variants"])
+        self.check("plan", plan)
+        self.check("plan", self.run_program("plan", "smallest.yaml", "--poses", 8, "--criterion", "o3", "--json"))
+
+    def test_selection_of_blocks(self):
+        rows = ["%g,%g" % ((7 * i) % 11 - 5, (5 * i) % 13 - 6) for i in range(40)]
+        (self.folder / "blocks.csv").write_text("\n".join(rows) + "\n")
+        self.check("plan", self.run_program("select", "blocks.csv", "--rows", 2, "--poses", 4, "--json"))
+
+    def test_evaluation(self):
+        problem = EXAMPLES / "delta/problem.yaml"
+        self.run_program("plan", problem, "--candidates", 200, *QUICK, "--json")
+        evaluation = self.run_program("evaluate", problem, "poses.csv", "--candidates", 200, *QUICK, "--drop", 2, "--add", 1, "--json")
+        self.assertEqual(len(evaluation["drop"]["poses"]), 2)
+        self.assertEqual(len(evaluation["add"]["poses"]), 1)
+        self.check("evaluation", evaluation)
+
+    def test_observation(self):
+        self.check("observation", self.run_program("observe", EXAMPLES / "telescope/problem.yaml", "--candidates", 300, "--json"))
+
+    def test_plan_route_and_stations_of_a_cell(self):
+        cell = self.folder / "cell.yaml"
+        text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")
+        cell.write_text(text.replace("reachable: true", "reachable: false").replace("points: [3, 3, 1]", "points: [2, 1, 1]"))
+        plan = self.run_program("plan", cell, "--candidates", 150, "--poses", 8, *QUICK, "--json")
+        self.assertIn("targets", plan["poses"][0])
+        self.check("plan", plan)
+        self.check("route", self.run_program("route", "plan.json", "--from-home", "--closed", "--json"))
+        ranking = self.run_program("stations", cell, "--full", 0, "--poses", 8, "--json")
+        self.check("stations", ranking)
+
+
+class ProblemSchema(unittest.TestCase):
+    def test_has_the_criteria_and_methods_of_the_program(self):
+        design = SCHEMAS["problem.schema.json"]["$defs"]["design"]["properties"]
+        for option in ("criterion", "method"):
+            run = subprocess.run([program, "plan", EXAMPLES / "delta/problem.yaml", f"--{option}", "nothing"],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 2)
+            self.assertEqual(run.stderr.strip().split("available: ")[1].split(", "), design[option]["enum"])
+
+
+if __name__ == "__main__":
+    program = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,77 @@
+"""What the C++ sources say of the problem file: keys, words, units, and the bad files of its tests."""
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
+ESCAPES = {"n": "\n", "t": "\t", '"': '"', "\\": "\\", "'": "'"}
+
+
+def texts(cpp):
+    """The string literals of a piece of C++, unescaped."""
+    return [re.sub(r"\\(.)", lambda m: ESCAPES[m[1]], found) for found in LITERAL.findall(cpp)]
+
+
+def readers():
+    return {file.name: file.read_text() for file in sorted((ROOT / "src/problem").glob("*.cpp"))}
+
+
+def allowed_keys():
+    """One set of keys for every allow({…}) of the readers; a name in place of a literal stands for either of its values."""
+    found = set()
+    for text in readers().values():
+        for arguments in re.findall(r"\.allow\(\s*\{(.*?)\}\s*\)", text, re.S):
+            keys = set(texts(arguments))
+            for name in re.findall(r"(?<![\w\"])([a-z_]+)(?![\w\"])", LITERAL.sub("", arguments)):
+                for pair in re.findall(rf"\b{name} = \w+ \? \"(\w+)\" : \"(\w+)\"", text):
+                    found.update(frozenset(keys | {one}) for one in pair)
+                break
+            else:
+                found.add(frozenset(keys))
+    # Stands in a message only: an arm has no model.
+    return {keys for keys in found if not {"urdf", "model"} <= keys}
+
+
+def asked_keys():
+    """Every key that some reader asks for by name."""
+    found = set()
+    for text in readers().values():
+        found.update(re.findall(r"(?:\.at|\.find|\.has)\(\"(\w+)\"\)", text))
+    return found
+
+
+def choices():
+    found = set()
+    for text in readers().values():
+        found.update(frozenset(texts(words)) for words in re.findall(r"choice\(\s*\{(.*?)\}", text, re.S))
+    return found
+
+
+def models():
+    return set(re.findall(r'\{"(\w+)", \[\]\(const Section& robot\)', readers()["read_robot.cpp"]))
+
+
+def units():
+    found = {}
+    for unit, quantity in re.findall(r'\{"([^"]+)", Quantity::(\w+), ', readers()["units.cpp"]):
+        found.setdefault(quantity, set()).add(unit)
+    return found
+
+
+def good_files():
+    text = (ROOT / "tests/problem/example_files.hpp").read_text()
+    return dict(re.findall(r'inline const std::string (\w+) =\s*R"\((.*?)\)";', text, re.S))
+
+
+def bad_files():
+    """(name, text, message) of every row of the tests' tables."""
+    good = good_files()
+    good = {"arm": good["serial"], "platform": good["six_pus"], "cell": good["cell"]}
+    source = (ROOT / "tests/problem/bad_files_test.cpp").read_text()
+    literal = r'((?:"(?:[^"\\]|\\.)*"\s*)+)'
+    row = rf'\{{"(\w+)", (\w+),\s*(?:{literal}|\w+\.c_str\(\)),\s*{literal},\s*(\d+),\s*{literal}\}}'
+    for name, base, before, after, _, message in re.findall(row, source):
+        before = "".join(texts(before)) if before else good[base]
+        if before not in good[base]:
+            raise ValueError(f"{name}: the good file has no {before!r}")
+        yield name, good[base].replace(before, "".join(texts(after)), 1), "".join(texts(message))

@@ -12,10 +12,11 @@ namespace posewright {
 
 /// Configurations as a user lists them, with a weight where the list has one.
 struct PoseList {
-  std::vector<std::vector<double>> configurations;  ///< in the order of the problem's coordinates, SI; a choice as 0, 1, …
-  std::vector<double> weights;                      ///< as many, or none
-  std::vector<bool> measured{};                     ///< of a plan: which poses were there before it; else empty
-  std::string name{};                               ///< of the list, for messages: its file
+  std::vector<std::vector<double>>
+      configurations;            ///< in the order of the problem's coordinates, SI; a choice as 0, 1, …
+  std::vector<double> weights;   ///< as many, or none
+  std::vector<bool> measured{};  ///< of a plan: which poses were there before it; else empty
+  std::string name{};            ///< of the list, for messages: its file
 };
 
 /// A list that is read once the coordinates of the problem are known, and judged by them: InputError for values that do

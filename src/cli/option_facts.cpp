@@ -6,6 +6,7 @@
 
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/pose_formats.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -30,7 +31,7 @@ std::vector<std::string> names_of(const Registry& registry) {
 Expected expected_of(const std::string& value) {
   static const std::map<std::string, std::vector<std::string>> files = {
       {"PROBLEM", {"yaml", "yml"}}, {"PLAN", {"json"}}, {"POSES", {"csv", "json"}},
-      {"BLOCKS", {"npy", "csv"}},   {"FILE", {"*"}},
+      {"BLOCKS", {"npy", "csv"}},   {"FILE", {"*"}},    {"FILE|DIR", {"*"}},
   };
   Expected expected;
   if (const auto found = files.find(value); found != files.end()) expected.suffixes = found->second;
@@ -50,6 +51,9 @@ OptionFacts facts_of(const po::option_description& option) {
   facts.many = option.semantic()->is_composing();
   facts.expected = expected_of(facts.value);
   if (facts.name == "criterion") facts.expected.words = names_of(criterion_registry());
+  if (facts.name == "to" || facts.name == "from")
+    for (const PoseFormat& format : pose_formats())
+      if (facts.name == "to" || format.read != nullptr) facts.expected.words.push_back(format.name);
   if (facts.name == "method") facts.expected.words = names_of(planner_registry());
   return facts;
 }

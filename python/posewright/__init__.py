@@ -25,11 +25,13 @@ from ._core import (
     Parameter,
     Plan,
     Pose,
+    Problem,
     Progress,
     Route,
     Score,
     WorkspaceCertificate,
     __version__,
+    blocks,
     criteria,
     evaluate,
     evaluate_blocks,
@@ -40,7 +42,6 @@ from ._core import (
     route,
     select,
 )
-from ._problem import Problem, blocks
 
 __all__ = [
     "BlockEvaluation",
@@ -75,3 +76,7 @@ __all__ = [
     "route",
     "select",
 ]
+
+# Where users find them, and what tracebacks show.
+for _public in [value for value in vars().values() if isinstance(value, type)]:
+    _public.__module__ = __name__

@@ -13,6 +13,8 @@ def problem_text(problem: Mapping[str, Any]) -> tuple[str, list[str]]:
 
     Values may be what numpy and pathlib make; TypeError names the key of anything else.
     """
+    if not isinstance(problem, Mapping):
+        raise TypeError(f"a problem is a file's name or a mapping, not {type(problem).__name__}")
     lines = list(_lines(problem, "", "", ""))
     return "\n".join(text for text, _ in lines) + "\n", [place for _, place in lines]
 

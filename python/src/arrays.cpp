@@ -22,8 +22,8 @@ py::array_t<double> real_array(const py::object& value, const std::string& name,
   const py::array array = py::module_::import("numpy").attr("asarray")(value);
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u' && array.size() > 0)
-    throw py::type_error(fmt::format("{} must be real numbers, not {}", name,
-                                     py::str(py::object(array.dtype())).cast<std::string>()));
+    throw py::type_error(
+        fmt::format("{} must be real numbers, not {}", name, py::str(py::object(array.dtype())).cast<std::string>()));
   if (array.ndim() != dimensions)
     throw InputError({}, fmt::format("{} is {}", name, shape_text(array)), shape + " is expected");
   return py::array_t<double, py::array::forcecast>(array);

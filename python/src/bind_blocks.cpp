@@ -20,7 +20,8 @@ struct Labelled {
 
 BlockArray copy_of(const BlockArray& blocks) {
   BlockArray copy(blocks.count(), blocks.rows(), blocks.columns());
-  std::memcpy(copy.data(), blocks.data(), blocks.count() * std::size_t(blocks.rows() * blocks.stride()) * sizeof(double));
+  std::memcpy(copy.data(), blocks.data(),
+              blocks.count() * std::size_t(blocks.rows() * blocks.stride()) * sizeof(double));
   return copy;
 }
 
@@ -182,11 +183,12 @@ void bind_blocks(py::module_& m) {
   bind_blocks_class(m);
   bind_judged(m);
   const py::none none;
-  m.def("select", &select, py::arg("blocks"), py::arg("poses"), py::kw_only(), py::arg("criterion") = "o1",
-        py::arg("method") = "exchange", py::arg("nuisance") = none, py::arg("names") = none, py::arg("rows") = none,
-        py::arg("repeats") = none, py::arg("restarts") = 10, py::arg("reserve") = false, py::arg("seed") = 0,
-        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        R"(The same search on whitened Jacobian blocks of your own: an array n × r × m, (n·r) × m beside rows=r, or Blocks.
+  m.def(
+      "select", &select, py::arg("blocks"), py::arg("poses"), py::kw_only(), py::arg("criterion") = "o1",
+      py::arg("method") = "exchange", py::arg("nuisance") = none, py::arg("names") = none, py::arg("rows") = none,
+      py::arg("repeats") = none, py::arg("restarts") = 10, py::arg("reserve") = false, py::arg("seed") = 0,
+      py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+      R"(The same search on whitened Jacobian blocks of your own: an array n × r × m, (n·r) × m beside rows=r, or Blocks.
 
 nuisance: how many leading columns are eliminated (Blocks know it); repeats: "forbid", "allow" or how often. Columns are
 taken as they are: multiply them by their tolerances for criteria that depend on the scale. plan.candidates are the

@@ -10,12 +10,13 @@ namespace posewright::python {
 namespace {
 
 std::unique_ptr<GivenModel> make_model(std::shared_ptr<GivenProblem> problem, const std::string& variant,
-                                       std::vector<std::string> parameters, long long candidates, const py::int_& seed,
-                                       long long threads, py::object progress) {
+                                       std::vector<std::string> parameters, const py::object& candidates,
+                                       const py::int_& seed, long long threads, py::object progress) {
   VariantModelOptions options;
   options.variant = variant;
   options.parameters = std::move(parameters);
-  options.candidates = checked("candidates", candidates, 1, most_candidates);
+  options.candidates =
+      optional_number(candidates, "candidates", most_candidates).value_or(problem->problem.design.candidates.value);
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
   auto made = std::make_unique<GivenModel>();
@@ -23,8 +24,8 @@ std::unique_ptr<GivenModel> make_model(std::shared_ptr<GivenProblem> problem, co
   Watch watch({}, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        made->variant = with_places(*made->problem,
-                                    [&] { return make_variant_model(made->problem->problem, options, monitor); });
+        made->variant =
+            with_places(*made->problem, [&] { return make_variant_model(made->problem->problem, options, monitor); });
       },
       OnInterrupt::raise);
   return made;
@@ -40,7 +41,7 @@ std::unique_ptr<GivenModel> model_of_plan(std::shared_ptr<GivenProblem> problem,
   }
   std::vector<std::string> kept = kept_parameters(plan, plan.variants.empty() ? "" : variant);
   if (kept.empty()) throw InputError({}, "the plan has no parameters of variant '" + variant + "'", "");
-  return make_model(std::move(problem), variant, std::move(kept), 1, py::int_(0), threads, py::none());
+  return make_model(std::move(problem), variant, std::move(kept), py::none(), py::int_(0), threads, py::none());
 }
 
 Configurations configurations_of(const GivenModel& model, const py::object& poses) {
@@ -63,6 +64,14 @@ Blocks blocks_at(const GivenModel& model, const py::object& poses, long long thr
   const py::gil_scoped_release release;
   return {std::make_shared<BlockArray>(build_blocks(*model.variant.model, columns.selected, list, workers)),
           columns.parameters, columns.nuisance};
+}
+
+Blocks blocks_of_problem(std::shared_ptr<GivenProblem> problem, const py::object& poses, const std::string& variant,
+                         long long threads) {
+  const auto model = py::isinstance<Plan>(poses)
+                         ? model_of_plan(std::move(problem), poses.cast<const Plan&>(), variant, threads)
+                         : make_model(std::move(problem), variant, {}, py::none(), py::int_(0), threads, py::none());
+  return blocks_at(*model, poses, threads);
 }
 
 py::tuple jacobians(const GivenModel& model, const py::object& poses) {
@@ -91,9 +100,8 @@ py::array_t<double> candidates(const GivenModel& model, long long count, const p
   options.threads = checked("threads", threads, 0, most_threads);
   Configurations drawn;
   Watch watch({}, std::move(progress));
-  watch.run(
-      [&](const Monitor& monitor) { drawn = sample_configurations(*model.variant.workspace, options, monitor); },
-      OnInterrupt::raise);
+  watch.run([&](const Monitor& monitor) { drawn = sample_configurations(*model.variant.workspace, options, monitor); },
+            OnInterrupt::raise);
   return array_of(drawn);
 }
 
@@ -119,10 +127,11 @@ void bind_model(py::module_& m) {
   py::class_<GivenModel>(m, "Model", R"(A variant of a problem, ready to give Jacobian blocks at any configuration.
 
 Configurations are an array N × len(coordinates) in SI units (a choice as 0, 1, …; choices with one label may be left
-out), the name of a pose list, or a Plan. For an `auto` variant the columns are those of a plan from as many candidates
-with the same seed; Model(problem, plan) has exactly the plan's.)")
+out), the name of a pose list, or a Plan. For an `auto` variant so many candidates (as in the problem, where it is not
+said) are drawn, and the columns are those of a plan from as many with the same seed; Model(problem, plan) draws none
+and has exactly the plan's.)")
       .def(py::init(&make_model), py::arg("problem"), py::arg("variant") = "",
-           py::arg("parameters") = std::vector<std::string>(), py::kw_only(), py::arg("candidates") = 10000,
+           py::arg("parameters") = std::vector<std::string>(), py::kw_only(), py::arg("candidates") = py::none(),
            py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = py::none())
       .def(py::init(&model_of_plan), py::arg("problem"), py::arg("plan"), py::arg("variant") = "", py::kw_only(),
            py::arg("threads") = 0)
@@ -157,6 +166,11 @@ with the same seed; Model(problem, plan) has exactly the plan's.)")
                std::to_string(g.variant.columns.parameters.size()) + " parameters, " +
                std::to_string(g.variant.columns.nuisance) + " of them nuisance>";
       });
+  m.def("blocks", &blocks_of_problem, py::arg("problem"), py::arg("configurations"), py::arg("variant") = "",
+        py::kw_only(), py::arg("threads") = 0,
+        R"(Whitened Jacobian blocks of a Plan, the name of a pose list, or an array N × n in SI units.
+
+Of a Plan the columns are exactly those it identifies. For many calls make a Model once and call its blocks().)");
 }
 
 }  // namespace posewright::python

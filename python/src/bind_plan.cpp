@@ -55,8 +55,8 @@ void bind_parameter(py::module_& m) {
       .def_property_readonly("name", [](const P& p) { return p.label.name; })
       .def_property_readonly(
           "unit", [](const P& p) { return p.label.unit; }, "m, rad, … or 1 for a number without dimension")
-      .def_property_readonly(
-          "role", [](const P& p) { return p.label.role == Role::interest ? "interest" : "nuisance"; })
+      .def_property_readonly("role",
+                             [](const P& p) { return p.label.role == Role::interest ? "interest" : "nuisance"; })
       .def_property_readonly("nominal", [](const P& p) { return p.label.nominal; })
       .def_property_readonly(
           "tolerance", [](const P& p) { return p.label.tolerance; }, "1σ known before the calibration")
@@ -186,7 +186,8 @@ void bind_plan_class(py::module_& m) {
       .def_readonly("problem_sha256", &Plan::problem_sha256)
       .def("summary", &plan_summary, "The table that the command line prints.")
       .def("to_json", &plan_json, "plan.json.")
-      .def("to_dict", [](const Plan& p) { return parsed(plan_json(p)); }, "plan.json as a dictionary.")
+      .def(
+          "to_dict", [](const Plan& p) { return parsed(plan_json(p)); }, "plan.json as a dictionary.")
       .def("to_csv", &poses_csv, "poses.csv.")
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
            "Writes plan.json, or poses.csv where the name ends in .csv. FileExistsError where there is a file, unless "

@@ -26,26 +26,45 @@ Packages packages_of(const py::dict& given) {
 }
 
 std::shared_ptr<GivenProblem> read(const fs::path& file, const py::dict& packages) {
-  auto given = std::make_shared<GivenProblem>();
-  given->problem = read_problem(file);
-  given->problem.packages = packages_of(packages);
-  return given;
+  auto problem = std::make_shared<GivenProblem>();
+  problem->problem = read_problem(file);
+  problem->problem.packages = packages_of(packages);
+  return problem;
 }
 
 std::shared_ptr<GivenProblem> parse(const std::string& text, const fs::path& file, std::vector<std::string> places,
                                     const py::dict& packages) {
-  auto given = std::make_shared<GivenProblem>();
-  given->places = std::move(places);
+  auto problem = std::make_shared<GivenProblem>();
+  problem->places = std::move(places);
   // What a failed reading says needs the file's name before there is a problem.
-  given->problem.file = file;
-  given->problem = with_places(*given, [&] { return parse_problem(text, file); });
-  given->problem.packages = packages_of(packages);
-  return given;
+  problem->problem.file = file;
+  problem->problem = with_places(*problem, [&] { return parse_problem(text, file); });
+  problem->problem.packages = packages_of(packages);
+  return problem;
 }
 
-std::vector<std::string> variant_names(const GivenProblem& given) {
+fs::path in_folder(const py::object& base, const char* name) {
+  return base.is_none() ? fs::path(name) : base.cast<fs::path>() / name;
+}
+
+std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& base, const py::dict& packages) {
+  if (const auto file = file_name(source)) {
+    if (!base.is_none()) throw py::type_error("base belongs to a mapping; paths in a file are relative to the file");
+    return read(*file, packages);
+  }
+  const py::tuple text = py::module_::import("posewright._mapping").attr("problem_text")(source);
+  return parse(text[0].cast<std::string>(), in_folder(base, "problem"), text[1].cast<std::vector<std::string>>(),
+               packages);
+}
+
+std::shared_ptr<GivenProblem> from_text(const std::string& text, const py::object& base, const std::string& name,
+                                        const py::dict& packages) {
+  return parse(text, in_folder(base, name.c_str()), {}, packages);
+}
+
+std::vector<std::string> variant_names(const GivenProblem& problem) {
   std::vector<std::string> names;
-  for (const VariantSpec& variant : given.problem.variants) names.push_back(variant.name);
+  for (const VariantSpec& variant : problem.problem.variants) names.push_back(variant.name);
   return names;
 }
 
@@ -63,9 +82,18 @@ PoseSource pose_source(const py::object& poses) {
 }
 
 void bind_problem(py::module_& m) {
-  py::class_<GivenProblem, std::shared_ptr<GivenProblem>>(m, "Problem")
-      .def(py::init(&read), py::arg("file"), py::arg("packages"))
-      .def(py::init(&parse), py::arg("text"), py::arg("file"), py::arg("places"), py::arg("packages"))
+  // Made here and not in a class of Python's, whose __init__ would show tracebacks an object that is not one yet.
+  py::class_<GivenProblem, std::shared_ptr<GivenProblem>>(m, "Problem",
+                                                          R"(Robot, instrument, variants and workspace.
+
+source: the name of a problem file (docs/problem-file.md), or a mapping with its keys. base: folder that paths in a
+mapping are relative to (the current one); in a file they are relative to the file. packages: {name: folder} for meshes
+named package://name/…)")
+      .def(py::init(&given), py::arg("source"), py::arg("base") = py::none(), py::kw_only(),
+           py::arg("packages") = py::dict())
+      .def_static("from_text", &from_text, py::arg("text"), py::arg("base") = py::none(), py::kw_only(),
+                  py::arg("name") = "problem", py::arg("packages") = py::dict(),
+                  "The text of a problem file; messages call it by `name`.")
       .def_property_readonly(
           "file", [](const GivenProblem& p) { return p.problem.file.string(); }, "The file, or what stands for it.")
       .def_property_readonly(

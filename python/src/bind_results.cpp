@@ -3,9 +3,9 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "posewright/outputs/route.hpp"
 #include "src/cli/evaluation_report.hpp"
 #include "src/cli/observation_report.hpp"
-#include "posewright/outputs/route.hpp"
 
 namespace posewright::python {
 namespace {
@@ -48,8 +48,7 @@ py::array_t<double> configurations(const std::vector<PlannedPose>& poses) {
 void bind_dependency(py::module_& m) {
   using D = NamedDependency;
   py::class_<D>(m, "Dependency", "A parameter that looks like a combination of others.")
-      .def_property_readonly(
-          "dropped", [](const D& d) { return d.parameters[std::size_t(d.dependency.dropped)].name; })
+      .def_property_readonly("dropped", [](const D& d) { return d.parameters[std::size_t(d.dependency.dropped)].name; })
       .def_property_readonly(
           "terms",
           [](const D& d) {
@@ -119,9 +118,12 @@ void bind_observation(py::module_& m) {
           "of G with columns in units of tolerance, descending")
       .def_property_readonly(
           "parameters", [](const O& o) { return labelled(o.parameters); }, "all free ones, nuisance first")
-      .def_property_readonly("kept", [](const O& o) { return names_of(o.kept); }, "names of the independent ones")
-      .def_property_readonly("dependencies", [](const O& o) { return named(o.identifiability.dependencies, o.parameters); })
-      .def_property_readonly("indices", [](const O& o) { return indices_dict(o.indices); }, "of the whole pool")
+      .def_property_readonly(
+          "kept", [](const O& o) { return names_of(o.kept); }, "names of the independent ones")
+      .def_property_readonly("dependencies",
+                             [](const O& o) { return named(o.identifiability.dependencies, o.parameters); })
+      .def_property_readonly(
+          "indices", [](const O& o) { return indices_dict(o.indices); }, "of the whole pool")
       .def_readonly("smallest_poses", &O::smallest_poses, "that determine all kept ones; None: the pool does not tell")
       .def_property_readonly(
           "recommended",
@@ -138,9 +140,7 @@ void bind_observation(py::module_& m) {
           "predicted 1σ of the kept ones, SI")
       .def_property_readonly(
           "near_dependencies",
-          [](const O& o) {
-            return o.practical ? named(o.practical->near, o.kept) : std::vector<NamedDependency>();
-          },
+          [](const O& o) { return o.practical ? named(o.practical->near, o.kept) : std::vector<NamedDependency>(); },
           "of kept ones that mostly look like others")
       .def("summary", &cli::observation_text, "The table that the command line prints.")
       .def("to_dict", [](const O& o) { return parsed(cli::observation_json(o).dump()); })
@@ -174,7 +174,8 @@ void bind_route(py::module_& m) {
           },
           "pose ids")
       .def_readonly("poses", &Route::poses, "in measuring order")
-      .def_property_readonly("configurations", [](const Route& r) { return configurations(r.poses); }, "in that order")
+      .def_property_readonly(
+          "configurations", [](const Route& r) { return configurations(r.poses); }, "in that order")
       .def_readonly("motions", &Route::motions)
       .def_readonly("names", &Route::names, "of what moves")
       .def_readonly("units", &Route::units)

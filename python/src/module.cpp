@@ -1,9 +1,9 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/version.hpp"
-#include "planners/registry.hpp"
 
 namespace posewright::python {
 

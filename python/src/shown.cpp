@@ -49,10 +49,10 @@ std::string plan_html(const Plan& plan) {
                      row({"parameter", "nominal", "tolerance", "σ after calibration", ""}, "th") + "</thead><tbody>";
   for (const PlannedParameter& p : plan.parameters) {
     const std::string& unit = p.label.unit;
-    const std::string note = !p.sigma                           ? p.dropped_because
-                             : p.label.role == Role::nuisance   ? "nuisance"
-                             : *p.sigma >= p.label.tolerance    ? "not worth identifying"
-                                                                : "";
+    const std::string note = !p.sigma                         ? p.dropped_because
+                             : p.label.role == Role::nuisance ? "nuisance"
+                             : *p.sigma >= p.label.tolerance  ? "not worth identifying"
+                                                              : "";
     text += row({(p.variant.empty() ? "" : p.variant + ": ") + p.label.name, shown_value(p.label.nominal, unit),
                  shown_value(p.label.tolerance, unit), p.sigma ? shown_value(*p.sigma, unit) : "", note},
                 "td");

@@ -27,9 +27,8 @@ Watch::Watch(std::optional<double> time_limit, py::object progress) : progress_(
   if (time_limit) {
     if (!(*time_limit > 0) || !(*time_limit < 1e9))
       throw InputError({}, "time_limit is " + std::to_string(*time_limit), "a number of seconds above 0 is allowed");
-    monitor_.deadline =
-        Monitor::Clock::now() +
-        std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(*time_limit));
+    monitor_.deadline = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
+                                                    std::chrono::duration<double>(*time_limit));
   }
   if (!progress_.is_none()) monitor_.on_progress = [this](const Progress& p) { report(p); };
 }
@@ -111,9 +110,8 @@ void bind_progress(py::module_& m) {
       .def_readonly("best", &Progress::best, "criterion's value so far, or None")
       .def_readonly("bound", &Progress::bound, "upper bound of it, or None")
       .def_readonly("efficiency", &Progress::efficiency, "lower bound of what `best` reaches of the optimum, or None")
-      .def("__repr__", [](const Progress& p) {
-        return py::str("<Progress {}: {:g} of {:g}>").format(p.stage, p.done, p.total);
-      });
+      .def("__repr__",
+           [](const Progress& p) { return py::str("<Progress {}: {:g} of {:g}>").format(p.stage, p.done, p.total); });
 }
 
 }  // namespace posewright::python

@@ -24,8 +24,8 @@ class Watch {
   /// @param progress    called with a Progress, or None
   Watch(std::optional<double> time_limit, py::object progress);
 
-  /// Runs the work. Throws what it throws, what the progress function raised, and KeyboardInterrupt: with keep_best only
-  /// where Ctrl-C came twice or nothing was found yet; else it warns that the result is the best so far.
+  /// Runs the work. Throws what it throws, what the progress function raised, and KeyboardInterrupt: with keep_best
+  /// only where Ctrl-C came twice or nothing was found yet; else it warns that the result is the best so far.
   void run(const std::function<void(const Monitor&)>& work, OnInterrupt on_interrupt);
 
  private:

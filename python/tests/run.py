@@ -10,4 +10,4 @@ for needed in ("numpy", "pytest"):
 
 import pytest
 
-sys.exit(pytest.main([str(pathlib.Path(__file__).parent), "-q", "-ra", "-p", "no:cacheprovider", *sys.argv[1:]]))
+sys.exit(pytest.main(["-q", "-ra", "-p", "no:cacheprovider", *(sys.argv[1:] or [str(pathlib.Path(__file__).parent)])]))

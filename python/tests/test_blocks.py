@@ -100,10 +100,10 @@ def test_arguments_that_do_not_fit_the_blocks(blocks, arguments, error, said):
     assert said in str(raised.value)
 
 
-@pytest.mark.parametrize("name", ["kr270", "five_bar", "telescope", "cell", "delta"])
+@pytest.mark.parametrize("name", ["kr270", "five_bar", "telescope", "delta"])
 def test_blocks_at_the_planned_poses_give_the_plans_figures(examples, name):
     problem = pw.Problem(examples / name / "problem.yaml")
-    plan = pw.plan(problem, candidates=300, restarts=1)
+    plan = pw.plan(problem, candidates=200, restarts=1, method="exchange")
     blocks = pw.blocks(problem, plan)
     rows = blocks.values.reshape(-1, blocks.shape[2])
     # Columns in units of their tolerance, so that numpy's determinant is as good as ours.
@@ -154,10 +154,10 @@ def test_candidates_blocks_and_select_make_the_plan_of_a_variant(kr270):
 
 
 def test_a_model_of_a_plan_has_the_plans_columns(kr270):
-    plan = pw.plan(kr270, variant="automatic", candidates=300, restarts=1)
+    plan = pw.plan(kr270, variant="automatic", candidates=200, restarts=1, method="greedy")
     model = pw.Model(kr270, plan)
     assert sorted(p.name for p in model.parameters) == sorted(p.name for p in plan.parameters if p.sigma is not None)
-    same = pw.Model(kr270, "automatic", candidates=300)
+    same = pw.Model(kr270, "automatic", candidates=200)
     assert [p.name for p in same.parameters] == [p.name for p in model.parameters]
     few = pw.Model(kr270, "geometric", ["px1", "base.x"])
     assert [p.name for p in few.parameters] == ["base.x", "px1"] and few.nuisance == 1
@@ -180,10 +180,10 @@ def test_models_say_what_a_configuration_is(kr270):
     "make, said",
     [
         (lambda q: q[0], "configurations is 6; N poses × n coordinates"),
-        (lambda q: q[:, :5], "pose 1 has 5 values; one for each of joint_a1"),
+        (lambda q: q[:, :5], "pose 1: has 5 values; one for each of joint_a1"),
         (lambda q: q[:0], "has no poses"),
-        (lambda q: np.where(q == q[3, 2], np.nan, q), "'joint_a3' of pose 4 is not finite"),
-        (lambda q: q + 10, "'joint_a1' is"),
+        (lambda q: np.where(q == q[3, 2], np.nan, q), "pose 4: 'joint_a3' is not finite"),
+        (lambda q: q + 10, "pose 1: 'joint_a1' is"),
     ],
 )
 def test_bad_configurations_are_input_errors(kr270, small_plan, make, said):
@@ -193,8 +193,8 @@ def test_bad_configurations_are_input_errors(kr270, small_plan, make, said):
 
 
 def test_log_det_of_chosen_blocks_counts_repeats(blocks):
-    assert pw.log_det(blocks, [1, 1, 5]) == pytest.approx(log_det(blocks[[1, 1, 5]].reshape(-1, 8)), abs=1e-9)
-    judged = pw.evaluate_blocks(blocks, np.array([1, 1, 5]), tolerance=np.full(8, 2.0))
+    assert pw.log_det(blocks, [1, 1, 5, 9]) == pytest.approx(log_det(blocks[[1, 1, 5, 9]].reshape(-1, 8)), abs=1e-9)
+    judged = pw.evaluate_blocks(blocks, np.array([1, 1, 5, 9]), tolerance=np.full(8, 2.0))
     assert judged.contributions.sum() == pytest.approx(1)
     for name in ("o1", "o2", "o3", "o4", "o5", "a", "ds"):
         assert np.isfinite(judged.value(name))

@@ -30,6 +30,7 @@ function reminder(list) {
 
 /** @param {import('./types.js').Report} report */
 function build(report) {
+  document.getElementById('kind').append(`, from ${report.plan.problem.file}`);
   document.title = `Measurement plan: ${report.title}`;
   const list = new PoseList(report);
   const sections = [

@@ -102,7 +102,7 @@ std::vector<fs::path> places(const PoseFormat& format, const Exported& exported,
   return result;
 }
 
-/// Folders that are missing are made, and removed again where nothing comes of it.
+/// Folders of programs of several files are made where they are missing, and removed again where nothing comes of it.
 class Folders {
  public:
   explicit Folders(const std::vector<fs::path>& files) {
@@ -129,9 +129,10 @@ class Folders {
 };
 
 void require_ending(const PoseFormat& format, const fs::path& output) {
-  const bool wanted = format.extension == ".yaml" && (format.name == "moveit" || format.name == "robot-calibration");
-  if (wanted && output.has_filename() && !fs::is_directory(output) && output.extension() != ".yaml")
-    throw InputError({}, output.string() + " has another ending", format.used_by + " reads files that end in .yaml");
+  if (format.ending_matters && output.has_filename() && !fs::is_directory(output) &&
+      output.extension() != format.extension)
+    throw InputError({}, output.string() + " has another ending",
+                     format.used_by + " reads files that end in " + format.extension);
 }
 
 void print_table(bool json) {
@@ -197,7 +198,7 @@ int run(const po::variables_map& values, const Words& positional) {
   const std::vector<fs::path> files = places(format, exported, output);
   std::vector<fs::path> inputs = {plan};
   if (values.count("controller") > 0) inputs.emplace_back(text_of(values, "controller"));
-  Folders folders(files);
+  Folders folders(format.several_files ? files : std::vector<fs::path>());
   check_outputs(files, inputs, values.count("force") > 0);
   for (std::size_t i = 0; i < files.size(); ++i) write_file_atomically(files[i], exported.files[i].bytes);
   folders.keep();

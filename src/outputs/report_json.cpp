@@ -94,7 +94,7 @@ Json columns_json(const ReportInformation& information) {
 Json candidates_json(const ReportCandidates& candidates) {
   Json positions = Json::array(), sensitivity = Json::array();
   for (const Eigen::Vector3d& p : candidates.positions)
-    for (const double x : p) positions.push_back(std::round(x * 1e3) / 1e3);
+    for (const double x : p) positions.push_back(drawn(x));
   for (const double d : candidates.sensitivity) sensitivity.push_back(drawn(d));
   return {{"sensitivity", sensitivity}, {"bound", 1.0}, {"positions", positions}, {"chosen", candidates.chosen}};
 }
@@ -133,6 +133,8 @@ std::string report_json(const Report& report) {
   for (const auto& [name, X] : report.stations)
     json["stations"].push_back({{"name", name}, {"placement", placement_json(X)}});
   json["targets"] = report.targets;
+  json["actuator_units"] = Json::object();
+  for (const auto& [name, unit] : report.actuators) json["actuator_units"][name] = unit;
   json["keyframes"] = Json::array();
   for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
   json["columns"] = columns_json(report.information);

@@ -14,14 +14,14 @@ namespace {
 
 /// Values of q that are no choice follow `coordinates` where choices are left out.
 std::vector<double> completed(const std::vector<double>& q, const std::vector<Coordinate>& coordinates,
-                              const SourcePlace& place, const std::string& pose) {
+                              const SourcePlace& place) {
   if (q.size() == coordinates.size()) return q;
   const auto open = std::count_if(coordinates.begin(), coordinates.end(),
                                   [](const Coordinate& c) { return !c.choice() || c.labels.size() > 1; });
   if (q.size() != std::size_t(open)) {
     std::string names;
     for (const Coordinate& c : coordinates) names += (names.empty() ? "" : ", ") + c.name;
-    throw InputError(place, fmt::format("{} has {} values", pose, q.size()),
+    throw InputError(place, fmt::format("has {} values", q.size()),
                      fmt::format("one for each of {} is expected", names));
   }
   std::vector<double> whole;
@@ -31,12 +31,12 @@ std::vector<double> completed(const std::vector<double>& q, const std::vector<Co
   return whole;
 }
 
-void judge_value(double& value, const Coordinate& c, const SourcePlace& place, const std::string& pose) {
-  if (!std::isfinite(value)) throw InputError(place, fmt::format("'{}' of {} is not finite", c.name, pose), "");
+void judge_value(double& value, const Coordinate& c, const SourcePlace& place) {
+  if (!std::isfinite(value)) throw InputError(place, fmt::format("'{}' is not finite", c.name), "a number is expected");
   if (c.choice()) {
     if (std::find(c.values.begin(), c.values.end(), value) == c.values.end())
       throw InputError(
-          place, fmt::format("'{}' of {} is {:.6g}", c.name, pose, value),
+          place, fmt::format("'{}' is {:.6g}", c.name, value),
           fmt::format("a number from 0 to {} stands for one of {}", c.labels.size() - 1, fmt::join(c.labels, ", ")));
     return;
   }
@@ -62,10 +62,9 @@ PoseSource poses_given(std::vector<std::vector<double>> configurations) {
     list.name = "configurations";
     if (given.empty()) throw InputError({list.name, 0}, "has no poses", "at least one is needed");
     for (std::size_t i = 0; i < given.size(); ++i) {
-      const std::string pose = fmt::format("pose {}", i + 1);
-      const SourcePlace place{list.name, 0};
-      std::vector<double> q = completed(given[i], coordinates, place, pose);
-      for (std::size_t k = 0; k < q.size(); ++k) judge_value(q[k], coordinates[k], place, pose);
+      const SourcePlace place{fmt::format("{}: pose {}", list.name, i + 1), 0};
+      std::vector<double> q = completed(given[i], coordinates, place);
+      for (std::size_t k = 0; k < q.size(); ++k) judge_value(q[k], coordinates[k], place);
       list.configurations.push_back(std::move(q));
     }
     return list;

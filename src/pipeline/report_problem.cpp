@@ -82,6 +82,7 @@ class Reporting {
     }
     const auto& coordinates = prepared_.first().workspace->coordinates();
     fill_scene(report_, problem_, *prepared_.cell, poses, coordinates, options_.route);
+    for (const Coordinate& c : prepared_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
     fill_prefix();
     if (options_.candidates) fill_candidates();
     if (options_.sizes) fill_curve();

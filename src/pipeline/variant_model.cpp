@@ -11,8 +11,8 @@ namespace {
 VariantColumns named_columns(const VariantColumns& all, const std::vector<std::string>& names) {
   std::vector<int> kept;
   for (const std::string& name : names) {
-    const auto at = std::find_if(all.parameters.begin(), all.parameters.end(),
-                                 [&](const Parameter& p) { return p.name == name; });
+    const auto at =
+        std::find_if(all.parameters.begin(), all.parameters.end(), [&](const Parameter& p) { return p.name == name; });
     if (at == all.parameters.end())
       throw InputError({}, "variant '" + all.name + "' has no parameter '" + name + "'", "names of its parameters");
     kept.push_back(int(at - all.parameters.begin()));
@@ -41,8 +41,7 @@ VariantModel make_variant_model(const Problem& problem, const VariantModelOption
     sampling.seed = options.seed;
     sampling.threads = options.threads;
     const Configurations sample = sample_configurations(*result.workspace, sampling, monitor);
-    result.columns =
-        resolve_columns({result.model.get(), &sample}, problem, variant, false, options.threads).columns;
+    result.columns = resolve_columns({result.model.get(), &sample}, problem, variant, false, options.threads).columns;
   }
   return result;
 }

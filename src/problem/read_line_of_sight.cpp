@@ -131,8 +131,7 @@ MotionSpec read_motion(const Value& value) {
   seconds("settle", motion.settle);
   seconds("station_change", motion.station_change);
   seconds("load_change", motion.load_change);
-  if (const Value* reachable = section.find("reachable"))
-    motion.reachable = reachable->flag();
+  if (const Value* reachable = section.find("reachable")) motion.reachable = reachable->flag();
   return motion;
 }
 

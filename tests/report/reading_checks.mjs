@@ -1,4 +1,7 @@
 // What a reader reads: tables, heat map, names of controls, no leftovers, nothing too wide.
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
 import { check } from './checks.mjs';
 
 /** Sorting, heat map, and that everything has a name. */
@@ -38,6 +41,24 @@ export async function checkReading(page, { plan }) {
     !/\b(undefined|NaN|null|Infinity)\b/.test(text),
     'no leftover of the program shows',
     text.match(/.{20}\b(undefined|NaN|null|Infinity)\b.{20}/)?.[0],
+  );
+}
+
+/** The command that the page states makes the same plan again. @param {import('./make_reports.mjs').Case} c */
+export async function checkRepeat(page, { plan, folder }, program) {
+  const line = (await page.locator('#reproduce pre').innerText())
+    .split('\n')
+    .find((l) => l.startsWith('posewright plan '));
+  const again = join(folder, 'again.json');
+  const words = line
+    .split(' ')
+    .slice(1)
+    .map((w) => ({ 'plan.json': again, 'poses.csv': '-' })[w] ?? w);
+  execFileSync(resolve(program), [...words, '--force', '--quiet'], { cwd: new URL('../../', import.meta.url) });
+  const configurations = (p) => JSON.stringify(p.poses.map((pose) => pose.configuration));
+  check(
+    configurations(JSON.parse(readFileSync(again, 'utf8'))) === configurations(plan),
+    'the command stated gives the same poses',
   );
 }
 

@@ -9,7 +9,7 @@ import { checkAltered } from './altered_checks.mjs';
 import { makeReports } from './make_reports.mjs';
 import { checkNumbers } from './numbers_checks.mjs';
 import { checkList, checkPlots, checkViewer } from './page_checks.mjs';
-import { checkReading, overflow } from './reading_checks.mjs';
+import { checkReading, checkRepeat, overflow } from './reading_checks.mjs';
 
 const { values } = parseArgs({
   options: { program: { type: 'string' }, out: { type: 'string' }, screenshots: { type: 'string' } },
@@ -33,6 +33,7 @@ async function checkCase(browser, c) {
   await checkPlots(page, c);
   await checkList(page, c, values.program);
   await checkReading(page, c);
+  if (!c.route) await checkRepeat(page, c, values.program);
   check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
   await page.close();
   for (const width of [1280, 400])

@@ -82,6 +82,7 @@ struct PoseFormat {
   bool several_files = false;
   Exported (*write)(const PoseSequence& sequence, const ExportOptions& options) = nullptr;
   PoseTable (*read)(const std::string& bytes, const std::string& file) = nullptr;  ///< null: it is not read back
+  bool ending_matters = false;  ///< whoever reads it goes by the ending of the file's name
 };
 
 const std::vector<PoseFormat>& pose_formats();

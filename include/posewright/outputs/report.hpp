@@ -60,7 +60,8 @@ struct Report {
   std::vector<ReportBody> bodies;
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations;
   std::vector<std::string> targets;
-  std::vector<ReportKeyframe> keyframes;  ///< in measuring order
+  std::vector<std::pair<std::string, std::string>> actuators;  ///< of a parallel robot: name and unit of each
+  std::vector<ReportKeyframe> keyframes;                       ///< in measuring order
   ReportInformation information;
   std::optional<ReportCandidates> candidates;
   std::vector<CurvePoint> curve;                  ///< other numbers of poses; worst_sigma is σ / tolerance

@@ -18,9 +18,9 @@ struct PlanOptions {
   bool smallest = false;  ///< the smallest number of poses that reaches design: require
   std::optional<Repeats> repeats;
   std::optional<Scaling> scaling;
-  std::optional<bool> prior;      ///< count tolerances as prior knowledge
-  bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
-  PoseSource measured;   ///< poses that are measured already; empty = as in the file
+  std::optional<bool> prior;  ///< count tolerances as prior knowledge
+  bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
+  PoseSource measured;        ///< poses that are measured already; empty = as in the file
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

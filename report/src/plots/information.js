@@ -78,7 +78,7 @@ export function contributionPlot(report) {
       'Bars: share of all information that a pose brings. Dots: how much efficiency the plan loses if that pose alone cannot be measured; 100 % means that it is indispensable.',
     options: {
       series: [
-        { label: 'pose', value: (u, v) => (v === null ? '–' : String(ids[Math.round(v) - 1] ?? '–')) },
+        { label: 'pose', value: (u, v) => (v === null ? '' : String(ids[Math.round(v) - 1] ?? '')) },
         bars('contribution, %', 'bar'),
         dots('loss without it, %', 'accent'),
       ],

@@ -4,22 +4,38 @@ import { newPoses } from '../text/sentences.js';
 /** A word of a shell command, quoted where it has to be. @param {string} word */
 const shell = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
+/** Options of the search, as far as plan.json tells. @param {any} plan @param {string} variant */
+function planOptions(plan, variant) {
+  const { criterion, certificate, statistics } = plan;
+  const repeats = certificate.candidates?.repeats ?? 'forbid';
+  return [
+    variant,
+    `--criterion ${criterion.name}`,
+    `--method ${shell(plan.method)}`,
+    `--poses ${plan.curve?.length > 0 ? 'auto' : newPoses(plan).length}`,
+    `--candidates ${statistics.candidates_feasible}`,
+    `--restarts ${statistics.restarts}`,
+    repeats === 'forbid' ? '' : `--repeats ${shell(String(repeats))}`,
+    criterion.scaling === 'tolerance' ? '' : `--scaling ${shell(criterion.scaling)}`,
+    criterion.prior === 'tolerance' ? '--prior tolerance' : '',
+    criterion.reserve ? '--reserve' : '',
+    `--seed ${plan.seed}`,
+  ].filter(Boolean);
+}
+
 /** @param {import('../types.js').Report} report */
-function commands(report) {
-  const { plan, route } = report;
+function commands({ plan, route }) {
   const file = shell(plan.problem.file);
   const several = (plan.variants ?? []).length > 1;
-  const variant = plan.variant && !several ? ` --variant ${shell(plan.variant)}` : '';
+  const variant = plan.variant && !several ? `--variant ${shell(plan.variant)}` : '';
   const lines = [
     `sha256sum ${file}`,
-    `posewright plan ${file}${variant} --criterion ${plan.criterion.name} --method ${shell(plan.method)} --poses ${newPoses(plan).length} --restarts ${plan.statistics.restarts} --seed ${plan.seed} -o plan.json --poses-csv poses.csv`,
-    `posewright evaluate ${file} poses.csv${variant}`,
+    `posewright plan ${file} ${planOptions(plan, variant).join(' ')} -o plan.json --poses-csv poses.csv`,
+    `posewright evaluate ${file} poses.csv ${variant}`.trim(),
   ];
-  if (route)
-    lines.push(
-      `posewright route plan.json${route.from_home ? ' --from-home' : ''}${route.closed ? ' --closed' : ''} --seed ${route.seed} -o route.json`,
-    );
-  return lines;
+  if (!route) return lines;
+  const ends = `${route.from_home ? '--from-home ' : ''}${route.closed ? '--closed ' : ''}`;
+  return [...lines, `posewright route plan.json ${ends}--seed ${route.seed} -o route.json`];
 }
 
 /** @param {import('../types.js').Report} report */
@@ -43,8 +59,8 @@ export function reproduceSection(report) {
     h(
       'p',
       { class: 'note' },
-      'Number of candidates, repeats and other options come from the problem file unless they were given on the command line; then give them again. ' +
-        'A search that was ended by a time limit or by hand is not repeatable.',
+      'Poses measured before (--augment) and a time limit are not in the plan: give them again. ' +
+        'A search that was ended by a time limit or by hand cannot be repeated exactly.',
     ),
   );
 }

@@ -77,11 +77,11 @@ export function candidateCloud(positions, sensitivity) {
   return new Points(
     geometry,
     new PointsMaterial({
-      size: 4,
+      size: 6,
       sizeAttenuation: false,
       vertexColors: true,
       map: disc(),
-      alphaTest: 0.5,
+      alphaTest: 0.3,
       transparent: true,
       opacity: 0.7,
     }),

@@ -67,7 +67,7 @@ export function viewer(list) {
   list.addEventListener('list', () => player.rebuild());
   list.addEventListener('current', show);
   onTheme(() => (view.paint(), show()));
-  player.go(0);
+  player.go(player.stops[0]?.index ?? 0);
 
   const lines = 'This browser has no WebGL, so the picture is drawn in lines; bodies appear as boxes.';
   const element = h(

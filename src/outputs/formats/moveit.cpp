@@ -36,7 +36,7 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat moveit() {
-  return {"moveit", "joint states", "MoveIt Calibration", ".yaml", "", {}, false, false, write, read};
+  return {"moveit", "joint states", "MoveIt Calibration", ".yaml", "", {}, false, false, write, read, true};
 }
 
 }  // namespace posewright::formats

@@ -59,7 +59,8 @@ PoseFormat robot_calibration() {
           false,
           false,
           write,
-          read};
+          read,
+          true};
 }
 
 }  // namespace posewright::formats

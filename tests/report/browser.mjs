@@ -48,6 +48,8 @@ export async function open(browser, file, options = {}) {
     reducedMotion: 'reduce',
     ...options,
   });
+  // Software rendering on a busy machine takes its time.
+  page.setDefaultTimeout(240_000);
   const complaints = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(String(error)));

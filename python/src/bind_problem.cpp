@@ -75,9 +75,10 @@ std::optional<fs::path> file_name(const py::object& value) {
   return value.cast<fs::path>();
 }
 
-PoseSource pose_source(const py::object& poses) {
+PoseSource pose_source(const py::object& poses, const std::string& format) {
+  if (const auto file = file_name(poses)) return poses_in_file(*file, format);
+  if (!format.empty()) throw InputError({}, "format is '" + format + "'", "it belongs to the name of a pose list");
   if (py::isinstance<Plan>(poses)) return poses_of(poses.cast<const Plan&>());
-  if (const auto file = file_name(poses)) return poses_in_file(*file);
   return poses_given(rows_of(poses, "configurations"));
 }
 

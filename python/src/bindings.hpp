@@ -55,8 +55,8 @@ auto with_places(const GivenProblem& problem, Work&& work) {
 
 /// None where the value is no text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);
-/// A Plan, a file's name, or an array of configurations.
-PoseSource pose_source(const py::object& poses);
+/// A Plan, a file's name (with the format of a list that another program wrote), or an array of configurations.
+PoseSource pose_source(const py::object& poses, const std::string& format = "");
 /// The kept columns of a plan's variant.
 std::vector<std::string> kept_parameters(const Plan& plan, const std::string& variant);
 

@@ -45,9 +45,10 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
 }
 
 PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, const py::object& drop,
-                            const py::object& add, const std::string& variant, const std::string& criterion,
-                            const std::string& method, const py::object& candidates, const py::object& restarts,
-                            const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+                            const py::object& add, const std::string& format, const std::string& variant,
+                            const std::string& criterion, const std::string& method, const py::object& candidates,
+                            const py::object& restarts, const py::int_& seed, long long threads, Limit time_limit,
+                            py::object progress) {
   EvaluateOptions options;
   options.drop = optional_number(drop, "drop", most_poses);
   options.add = optional_number(add, "add", most_poses);
@@ -58,7 +59,7 @@ PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, 
   options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
   options.plan.seed = seed_of(seed);
   options.plan.threads = checked("threads", threads, 0, most_threads);
-  const PoseSource source = pose_source(poses);
+  const PoseSource source = pose_source(poses, format);
   PoseListEvaluation result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
@@ -92,8 +93,9 @@ py::dict observe(const GivenProblem& given, const std::string& variant, long lon
   return result;
 }
 
-Route route(const GivenProblem& given, const py::object& poses, bool from_home, bool closed, const py::object& start,
-            long long milestones, const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+Route route(const GivenProblem& given, const py::object& poses, const std::string& format, bool from_home, bool closed,
+            const py::object& start, long long milestones, const py::int_& seed, long long threads, Limit time_limit,
+            py::object progress) {
   RouteOptions options;
   options.from_home = from_home;
   options.closed = closed;
@@ -102,20 +104,14 @@ Route route(const GivenProblem& given, const py::object& poses, bool from_home, 
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
   if (from_home && options.start) throw InputError({}, "start stands beside from_home", "one of both is allowed");
-  const std::optional<std::filesystem::path> file = file_name(poses);
-  const PoseSource source = file ? PoseSource() : pose_source(poses);
+  const PoseSource source = pose_source(poses, format);
   Route result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        result = with_places(given, [&] {
-          return file ? route_problem(given.problem, *file, options, monitor)
-                      : route_problem(given.problem, source, options, monitor);
-        });
+        result = with_places(given, [&] { return route_problem(given.problem, source, options, monitor); });
       },
       OnInterrupt::raise);
-  if (py::isinstance<Plan>(poses))
-    result.problem_changed = poses.cast<const Plan&>().problem_sha256 != given.problem.sha256;
   return result;
 }
 
@@ -135,19 +131,22 @@ already (Plan, file or array); repeats: "forbid", "allow" or how often; time_lim
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
 the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)");
   m.def("evaluate", &evaluate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("drop") = none,
-        py::arg("add") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("method") = "",
-        py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0, py::arg("threads") = 0,
-        py::arg("time_limit") = none, py::arg("progress") = none,
+        py::arg("add") = none, py::arg("format") = "", py::arg("variant") = "", py::arg("criterion") = "",
+        py::arg("method") = "", py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0,
+        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Judges poses that you have: a Plan, the name of a pose list, or an array N × n in SI units.
 
-drop, add: which so many poses to leave out, or to measure more.)");
+drop, add: which so many poses to leave out, or to measure more; format: of a list that another program wrote
+(docs/export.md).)");
   m.def("observe", &observe, py::arg("problem"), py::arg("variant") = "", py::kw_only(), py::arg("candidates") = 2000,
         py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
         "What can be identified: {variant: Observation}, of one variant or of all.");
-  m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("from_home") = false,
-        py::arg("closed") = false, py::arg("start") = none, py::arg("milestones") = 200, py::arg("seed") = 0,
-        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        "Order of measurement and collision-free motions for a Plan, the name of a pose list, or an array N × n.");
+  m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("format") = "",
+        py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("milestones") = 200,
+        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        "Order of measurement and collision-free motions for a Plan, the name of a pose list (format as in evaluate), "
+        "or an "
+        "array N × n.");
 }
 
 }  // namespace posewright::python

@@ -132,3 +132,15 @@ def test_bad_arguments_of_a_route(kr270, small_plan):
         pw.route(kr270, small_plan, start=99)
     with pytest.raises(pw.InputError, match="milestones is 0"):
         pw.route(kr270, small_plan, milestones=0)
+
+
+def test_lists_that_other_programs_wrote_are_read_by_their_format(kr270, small_plan, tmp_path):
+    file = tmp_path / "poses.npy"
+    np.save(file, small_plan.configurations)
+    settings = dict(candidates=100, restarts=1, method="exchange")
+    by_file = pw.evaluate(kr270, file, format="pybotics-npy", **settings)
+    assert without_times(by_file.to_dict()) == without_times(pw.evaluate(kr270, small_plan, **settings).to_dict())
+    with pytest.raises(pw.InputError, match="it belongs to the name of a pose list"):
+        pw.evaluate(kr270, small_plan, format="pybotics-npy")
+    with pytest.raises(pw.InputError, match="format"):
+        pw.route(kr270, file, format="nothing")

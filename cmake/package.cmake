@@ -29,6 +29,8 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
 install(FILES README.md ${packed}/copyright ${packed}/changelog.gz ${packed}/changelog.Debian.gz
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+# What the program's report page holds of others.
+install(FILES report/dist/LICENSES.txt RENAME report-licenses.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program)

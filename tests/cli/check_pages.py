@@ -1,6 +1,7 @@
 """Manual page and completions: check_pages.py PROGRAM. Each says what --help says; tools that are missing are named."""
 import os
 import pathlib
+import pty
 import re
 import shutil
 import subprocess
@@ -123,22 +124,39 @@ class Zsh(Pages):
 
 
 class Terminal(Pages):
-    def run_in_terminal(self, **environment):
-        """What the program says of an unknown command to a pseudo-terminal."""
-        import pty
-        main, side = pty.openpty()
-        subprocess.run([program, "nothing"], stderr=side, env={**os.environ, "TERM": "xterm", **environment})
-        os.close(side)
-        text = os.read(main, 4000).decode()
-        os.close(main)
-        return text
+    PROBLEM = pathlib.Path(__file__).resolve().parents[2] / "examples/five_bar/problem.yaml"
 
-    def test_errors_are_coloured_there_and_nowhere_else(self):
+    def in_terminal(self, *words, **environment):
+        """What the program writes, both streams, to a pseudo-terminal."""
+        ours, its = pty.openpty()
+        run = subprocess.Popen([program, *map(str, words)], stdout=its, stderr=its, env={**os.environ, "TERM": "xterm", **environment})
+        os.close(its)
+        text = b""
+        try:
+            while piece := os.read(ours, 4096):
+                text += piece
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        run.wait()
+        return text.decode()
+
+    def setUp(self):
+        super().setUp()
         os.environ.pop("NO_COLOR", None)
-        self.assertIn("\x1b[", self.run_in_terminal())
-        self.assertNotIn("\x1b[", self.run_in_terminal(NO_COLOR="1"))
-        self.assertNotIn("\x1b[", self.run_in_terminal(TERM="dumb"))
+
+    def test_errors_are_red_there_and_nowhere_else(self):
+        self.assertIn("\x1b[1;31mposewright:\x1b[0m unknown command", self.in_terminal("nothing"))
+        self.assertNotIn("\x1b[", self.in_terminal("nothing", NO_COLOR="1"))
+        self.assertNotIn("\x1b[", self.in_terminal("nothing", TERM="dumb"))
         self.assertNotIn("\x1b[", subprocess.run([program, "nothing"], capture_output=True, text=True).stderr)
+
+    def test_the_first_line_of_a_report_is_bold_there_and_nowhere_else(self):
+        words = ["observe", self.PROBLEM, "--candidates", 50, "--variant", "links_and_offsets", "--quiet"]
+        bold = self.in_terminal(*words)
+        self.assertTrue(bold.startswith("\x1b[1mVariant links_and_offsets"), bold[:200])
+        plain = subprocess.run([program, *map(str, words)], capture_output=True, text=True).stdout
+        self.assertEqual(re.sub("\x1b\\[[01]m", "", bold).replace("\r\n", "\n"), plain)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ NEEDED = [
     "usr/share/posewright/schemas/plan.schema.json", "usr/share/posewright/examples/telescope/problem.yaml",
     "usr/share/posewright/examples/kr270/kr270.urdf", "usr/share/doc/posewright/copyright",
     "usr/share/doc/posewright/changelog.gz", "usr/share/doc/posewright/changelog.Debian.gz",
-    "usr/share/doc/posewright/README.md", "usr/share/doc/posewright/docs/problem-file.md"]
+    "usr/share/doc/posewright/README.md", "usr/share/doc/posewright/report-licenses.txt", "usr/share/doc/posewright/docs/problem-file.md"]
 
 
 def run(*words, cwd):

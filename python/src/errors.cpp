@@ -23,13 +23,35 @@ std::string in_python(const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+/// Whether the message begins with these keys already. Entries of lists are counted from 1 in messages and from 0 in
+/// Python.
+bool same_keys(const std::string& message, const std::string& keys) {
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys[k] == '[') {
+      if (i >= message.size() || message[i] != '[') return false;
+      const std::size_t close = keys.find(']', k), end = message.find(']', i);
+      if (close == std::string::npos || end == std::string::npos) return false;
+      k = close;
+      i = end + 1;
+    } else if (i >= message.size() || message[i++] != keys[k]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 std::string place_in_keys(const InputError& error, const std::string& file, const std::vector<std::string>& places) {
   const std::string text = error.what();
   const SourcePlace& place = error.place();
   if (places.empty() || place.file != file || place.line < 1 || std::size_t(place.line) > places.size()) return text;
   const std::string head = file + ":" + std::to_string(place.line) + ": ";
   const std::string rest = text.substr(head.size()), &keys = places[std::size_t(place.line) - 1];
-  return file + ": " + (keys.empty() || rest.starts_with(keys) ? "" : keys + ": ") + rest;
+  return file + ": " + (keys.empty() || same_keys(rest, keys) ? "" : keys + ": ") + rest;
 }
 
 void bind_errors(py::module_& m) {

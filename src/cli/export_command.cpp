@@ -68,7 +68,8 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   ExportOptions result;
   if (const auto speed = whole_number(values, "speed", 1, 100)) result.speed = *speed;
   result.settle = number(values, "settle", 0, 3600);
-  result.wait = number(values, "wait", 0, 3600);
+  // Programs say hundredths of a second.
+  result.wait = number(values, "wait", 0.01, 3600);
   result.coupling = number(values, "coupling", -10, 10);
   result.digital_output = text_of(values, "digital-output");
   result.digital_input = text_of(values, "digital-input");
@@ -128,7 +129,20 @@ class Folders {
   bool kept_ = false;
 };
 
+/// What was measured and put into a file is not replaced by predictions.
+void keep_measurements(const PoseFormat& format, const std::vector<fs::path>& files, const Exported& exported) {
+  if (!format.to_be_filled) return;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (fs::is_regular_file(files[i]) && read_file(files[i], plan_limit) != exported.files[i].bytes)
+      throw CannotDo(files[i].string() + " exists and may hold measurements by now; --force replaces it");
+}
+
 void require_ending(const PoseFormat& format, const fs::path& output) {
+  if (format.several_files && output.has_extension() && !fs::is_directory(output) &&
+      output.extension() != format.extension)
+    throw InputError({}, output.string() + " has another ending",
+                     format.name + " has several files: name a folder" +
+                         (format.extension.empty() ? "" : " or a file that ends in " + format.extension));
   if (format.ending_matters && output.has_filename() && !fs::is_directory(output) &&
       output.extension() != format.extension)
     throw InputError({}, output.string() + " has another ending",
@@ -188,7 +202,7 @@ int run(const po::variables_map& values, const Words& positional) {
   const ExportOptions export_settings = export_options(format, values, output);
   require_ending(format, output);
   const PoseSequence sequence = parse_sequence(read_file(plan, plan_limit), plan.string());
-  Exported exported = format.write(sequence, export_settings);
+  Exported exported = export_poses(format, sequence, export_settings);
   if (format.controller) exported.notes.emplace_back(no_controller);
   if (to_stdout) {
     std::fwrite(exported.files.front().bytes.data(), 1, exported.files.front().bytes.size(), stdout);
@@ -200,6 +214,7 @@ int run(const po::variables_map& values, const Words& positional) {
   if (values.count("controller") > 0) inputs.emplace_back(text_of(values, "controller"));
   Folders folders(format.several_files ? files : std::vector<fs::path>());
   check_outputs(files, inputs, values.count("force") > 0);
+  if (values.count("force") == 0) keep_measurements(format, files, exported);
   for (std::size_t i = 0; i < files.size(); ++i) write_file_atomically(files[i], exported.files[i].bytes);
   folders.keep();
   print_notes(exported.notes);

@@ -33,7 +33,7 @@ class Reader {
           value, key, [](double x) { return x == 1 || x == -1; }, "1 or -1");
     else if (key == "zero_deg")
       settings_.zero_deg = checked(
-          value, key, [](double x) { return x >= -360 && x <= 360; }, "-360 to 360");
+          value, key, [](double x) { return std::abs(x) < 1e6; }, "numbers");
     else if (key == "pulses_per_degree")
       settings_.pulses_per_degree = checked(
           value, key, [](double x) { return x > 0 && x < 1e7; }, "numbers above 0");

@@ -94,6 +94,12 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
           {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
 }
 
+nlohmann::ordered_json actuators_json(const PlannedPose& pose) {
+  Json actuators = Json::object();
+  for (const NamedValue& v : pose.actuators) actuators[v.name] = v.value;
+  return actuators;
+}
+
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
   const Eigen::Quaterniond q(X.linear());
   const Eigen::Vector3d p = X.translation();
@@ -127,11 +133,7 @@ Json pose_json(const PlannedPose& pose) {
     json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
     json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
   }
-  if (!pose.actuators.empty()) {
-    Json actuators = Json::object();
-    for (const NamedValue& v : pose.actuators) actuators[v.name] = v.value;
-    json["actuators"] = actuators;
-  }
+  if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
   if (!pose.sights.empty()) {
     json["targets"] = Json::array();

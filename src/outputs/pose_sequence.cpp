@@ -119,6 +119,7 @@ class Reader {
           "one value a coordinate");
     pose.load_case = label_of(json, "load_case", place_);
     pose.station = label_of(json, "station", place_);
+    if (json.contains("actuators") && !json["actuators"].empty()) sequence_.is_platform = true;
     if (json.contains("tool_pose")) pose.tool_pose = tool_pose_of(json["tool_pose"], place_);
     if (json.contains("targets"))
       for (const Json& target : json["targets"])
@@ -137,6 +138,11 @@ class Reader {
   }
 
   void read_route() {
+    // A program that skipped a stop would take a way that nobody checked.
+    for (const SequencePose& pose : sequence_.poses)
+      if (pose.measured)
+        throw InputError(place_, fmt::format("pose {} of a route is marked as measured", pose.id),
+                         "a new route of the poses that are left: mark them in the plan");
     sequence_.from_home = json_.at("from_home").get<bool>();
     sequence_.closed = json_.at("closed").get<bool>();
     sequence_.home = numbers_of(json_.at("home"), place_);

@@ -26,6 +26,7 @@ Json stop_json(const PlannedPose& pose) {
   Json json = {{"id", pose.id}, {"configuration", values}};
   json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
   json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+  if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
   if (!pose.sights.empty()) {
     json["targets"] = Json::array();

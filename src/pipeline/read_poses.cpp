@@ -58,7 +58,12 @@ class Mapping {
   void map_by_name() {
     for (std::size_t k = 0; k < coordinates_.size(); ++k) {
       for (std::size_t i = 0; i < table_.names.size(); ++i)
-        if (table_.names[i] == coordinates_[k].name) column_[k] = int(i);
+        if (table_.names[i] == coordinates_[k].name) {
+          if (column_[k] >= 0)
+            throw InputError({file_, table_.header}, "has column '" + coordinates_[k].name + "' twice",
+                             "each name once");
+          column_[k] = int(i);
+        }
       if (column_[k] < 0 && needs_column(coordinates_[k]))
         throw InputError({file_, table_.header}, "has no column '" + coordinates_[k].name + "'",
                          "the names of all coordinates are expected");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "fill_plan.hpp"
 #include "judgement.hpp"
@@ -35,6 +36,7 @@ PlanOptions options_of(const Json& plan, int poses) {
   const Json& criterion = plan.at("criterion");
   options.criterion = criterion.at("name").get<std::string>();
   if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
+  options.reserve = criterion.value("reserve", false);
   options.prior = criterion.at("prior").get<std::string>() == "tolerance";
   const std::string scaling = criterion.at("scaling").get<std::string>();
   options.scaling = scaling == "norm" ? Scaling::norm : scaling == "none" ? Scaling::none : Scaling::tolerance;
@@ -54,6 +56,9 @@ class Reporting {
   Reporting(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
             const Monitor& monitor)
       : problem_(problem), file_(file), options_(options), monitor_(monitor) {
+    // The time limit is for other numbers of poses: a shortened set of candidates would be shown as if it were whole.
+    whole_.interrupted = monitor.interrupted;
+    whole_.on_progress = monitor.on_progress;
     report_.plan_json = read_file(file, size_limit);
     if (!options.route.empty()) report_.route_json = read_file(options.route, size_limit);
     try {
@@ -65,7 +70,8 @@ class Reporting {
     } catch (const std::logic_error&) {  // a number that is none
       throw_no_plan();
     }
-    prepared_ = prepare(problem, settings_, monitor);
+    prepared_ = prepare(problem, settings_, whole_);
+    if (whole_.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
     read_list();
   }
 
@@ -78,7 +84,7 @@ class Reporting {
     std::vector<std::pair<int, std::vector<double>>> poses;
     for (std::size_t i = 0; i < all_.count(); ++i) {
       const auto q = all_[i];
-      poses.emplace_back(int(i) + 1, std::vector<double>(q.begin(), q.end()));
+      poses.emplace_back(ids_[i], std::vector<double>(q.begin(), q.end()));
     }
     const auto& coordinates = prepared_.first().workspace->coordinates();
     fill_scene(report_, problem_, *prepared_.cell, poses, coordinates, options_.route);
@@ -116,6 +122,7 @@ class Reporting {
     all_.dimension = new_.dimension = prepared_.configurations.dimension;
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       append(all_, list.configurations[i]);
+      ids_.push_back(list.ids[i]);
       if (!list.measured[i]) append(new_, list.configurations[i]);
     }
   }
@@ -150,7 +157,7 @@ class Reporting {
     const BlockArray blocks = build_blocks(*variant.model, columns.selected, all_, options_.threads);
     for (std::size_t i = 0; i < blocks.count(); ++i) {
       const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
-      information.poses.emplace_back(int(i) + 1, scaled.transpose() * scaled);
+      information.poses.emplace_back(ids_[i], scaled.transpose() * scaled);
     }
     if (settings_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
     for (const TestPoint& point : variant.test_points) {
@@ -178,13 +185,13 @@ class Reporting {
   void fill_prefix() {
     Configurations list;
     list.dimension = new_.dimension;
-    const Json& poses = plan_.at("poses");
+    // A closed tour shows its first pose twice.
+    std::set<int> seen;
     for (const ReportKeyframe& keyframe : report_.keyframes) {
-      if (!keyframe.pose || *keyframe.pose < 1 || std::size_t(*keyframe.pose) > all_.count()) continue;
-      if (poses.at(std::size_t(*keyframe.pose) - 1).value("measured", false)) continue;
-      // A closed tour shows its first pose twice.
-      if (list.count() == new_.count()) break;
-      append(list, all_[std::size_t(*keyframe.pose) - 1]);
+      if (!keyframe.pose || *keyframe.pose < 1 || !seen.insert(*keyframe.pose).second) continue;
+      const auto i = std::size_t(std::find(ids_.begin(), ids_.end(), *keyframe.pose) - ids_.begin());
+      if (plan_.at("poses").at(i).value("measured", false)) continue;
+      append(list, all_[i]);
       report_.prefix.push_back(point_of(list, int(list.count())));
     }
   }
@@ -195,6 +202,7 @@ class Reporting {
     request.method = settings_.method;
     request.poses = poses;
     request.repeats = settings_.repeats;
+    request.reserve = settings_.reserve;
     request.planner = settings_.planner;
     if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
     return request;
@@ -203,7 +211,11 @@ class Reporting {
   void fill_candidates() {
     const Configurations& pool = prepared_.configurations;
     if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    Bound bound = bound_only(search_parts(prepared_, pool, options_.threads), request(settings_.poses), monitor_);
+    Bound bound = bound_only(search_parts(prepared_, pool, options_.threads), request(settings_.poses), whole_);
+    if (whole_.should_stop()) {
+      report_.notes.emplace_back("Stopped early: what each candidate could tell is left out.");
+      return;
+    }
     if (bound.sensitivity.empty() || !(bound.price > 0)) return;
     ReportCandidates candidates;
     for (const double d : bound.sensitivity) candidates.sensitivity.push_back(d / bound.price);
@@ -218,23 +230,33 @@ class Reporting {
     report_.candidates = std::move(candidates);
   }
 
+  void add_to_curve(int poses) {
+    const Configurations& pool = prepared_.configurations;
+    try {
+      const SearchResult found = search(search_parts(prepared_, pool, options_.threads), request(poses), whole_);
+      if (whole_.should_stop()) return;  // not the best plan of so many
+      Configurations list;
+      list.dimension = pool.dimension;
+      for (const int i : found.design.members) append(list, pool[std::size_t(i)]);
+      if (const auto point = point_of(list, poses)) report_.curve.push_back(*point);
+    } catch (const CannotDo&) {
+      return;  // so few poses do not determine the parameters
+    }
+  }
+
   void fill_curve() {
     const int own = int(new_.count());
     const Configurations& pool = prepared_.configurations;
+    std::set<int> tried = {own};
     for (const double share : shares) {
       const int poses = int(std::lround(share * own));
-      monitor_.report({"other numbers of poses", double(&share - shares), double(std::size(shares)), {}, {}, {}});
-      if (poses == own || poses < 1 || double(poses) > double(pool.count()) * settings_.repeats.most) continue;
-      if (monitor_.should_stop()) break;
-      try {
-        const SearchResult found = search(search_parts(prepared_, pool, options_.threads), request(poses), monitor_);
-        Configurations list;
-        list.dimension = pool.dimension;
-        for (const int i : found.design.members) append(list, pool[std::size_t(i)]);
-        if (const auto point = point_of(list, poses)) report_.curve.push_back(*point);
-      } catch (const CannotDo&) {
-        continue;  // so few poses do not determine the parameters
-      }
+      whole_.report({"other numbers of poses", double(&share - shares), double(std::size(shares)), {}, {}, {}});
+      if (poses < 1 || double(poses) > double(pool.count()) * settings_.repeats.most || !tried.insert(poses).second)
+        continue;
+      if (!monitor_.should_stop()) add_to_curve(poses);
+      if (!monitor_.should_stop()) continue;
+      report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+      break;
     }
     if (const auto point = point_of(new_, own)) report_.curve.push_back(*point);
     std::sort(report_.curve.begin(), report_.curve.end(),
@@ -245,10 +267,12 @@ class Reporting {
   const std::filesystem::path& file_;
   const ReportOptions& options_;
   const Monitor& monitor_;
+  Monitor whole_;  // without the time limit
   Json plan_;
   Settings settings_;
   Preparation prepared_;
   Configurations all_, new_;
+  std::vector<int> ids_;  // of all poses
   Report report_;
 };
 

@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 // Between two pictures a joint turns by no more than this (rad; m), unless there would be too many of them.
 constexpr double turn_step = 0.15, slide_step = 0.05;
 constexpr double most_keyframes = 600;
+constexpr double same_pose = 1e-9;  // rad, m
 
 /// One overload a shape.
 struct Fill {
@@ -62,6 +63,7 @@ class Film {
       if (at == coordinates_.end()) throw std::invalid_argument("no coordinate " + name.get<std::string>());
       places_.push_back(std::size_t(at - coordinates_.begin()));
     }
+    for (const auto& stop : route.at("poses")) require_same(stop, poses);
     const std::size_t stops = route.at("poses").size();
     const double settle = stops > 0 ? route.at("seconds").at("settle").get<double>() / double(stops) : 0.0;
     choose_step(route);
@@ -79,6 +81,16 @@ class Film {
   }
 
  private:
+  /// A stop of the route is where the plan's pose of that id is.
+  void require_same(const Json& stop, const std::vector<std::pair<int, std::vector<double>>>& poses) const {
+    const int id = stop.at("id").get<int>();
+    const std::vector<double>& q = base(poses, id);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < coordinates_.size(); ++i)
+      if (!coordinates_[i].choice() && !(std::abs(stop.at("configuration").at(k++).get<double>() - q[i]) < same_pose))
+        throw std::invalid_argument("pose " + std::to_string(id) + " is elsewhere");
+  }
+
   /// Whole configuration of a pose; of home, whose choices show nothing, that of the first one.
   static const std::vector<double>& base(const std::vector<std::pair<int, std::vector<double>>>& poses, int id) {
     for (const auto& [own, q] : poses)

@@ -80,6 +80,23 @@ TEST(ExportCommand, ReplacesItsOwnFilesAndNoOthers) {
   }
 }
 
+TEST(ExportCommand, KeepsWhatWasMeasuredAndPutIntoAFile) {
+  const TemporaryFolder folder;
+  for (const char* format : {"figaroh-csv", "industrial-calibration", "pybotics-csv", "delmia"}) {
+    const std::vector<std::string> words = {"export", plan, "--to",
+                                            format,   "-o", "m" + find_pose_format(format).extension};
+    ASSERT_EQ(run_program(folder.path(), words).exit_code, 0) << format;
+    EXPECT_EQ(run_program(folder.path(), words).exit_code, 0) << "nothing was filled in yet: " << format;
+    const std::string filled = read_file(folder / words[5]) + " ";
+    folder.write(words[5], filled);
+    const ProgramRun refused = run_program(folder.path(), words);
+    EXPECT_EQ(refused.exit_code, 1) << format;
+    EXPECT_THAT(refused.err, HasSubstr("may hold measurements by now"));
+    EXPECT_EQ(read_file(folder / words[5]), filled);
+    fs::remove(folder / words[5]);
+  }
+}
+
 struct Bad {
   std::vector<std::string> words;
   int exit_code;

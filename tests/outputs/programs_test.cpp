@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
 #include "program_readers.hpp"
 #include "sequences.hpp"
 
@@ -162,6 +163,50 @@ TEST(RobotPrograms, LeaveOutPosesThatAreMeasuredAndNameTheOthersByTheirIds) {
     EXPECT_THAT(program.comments, testing::Contains("pose 4")) << c.format;
     EXPECT_THAT(program.comments, testing::Not(testing::Contains("pose 3"))) << c.format;
   }
+}
+
+TEST(RobotPrograms, ARouteWithAPoseMarkedAsMeasuredIsRefused) {
+  // Its motions lead through that pose; a program without it would take a way that nobody checked.
+  std::string text = read_file(std::string(POSEWRIGHT_SOURCE_DIR) + "/tests/outputs/golden/route.json");
+  EXPECT_NO_THROW(parse_sequence(text, "route.json"));
+  text.replace(text.find("\"id\": 1,"), 8, "\"id\": 1, \"measured\": true,");
+  try {
+    parse_sequence(text, "route.json");
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("pose 1 of a route is marked as measured"));
+  }
+}
+
+TEST(RobotPrograms, ZerosOfSlidingAxesMayBeMetresAway) {
+  PoseSequence sequence = random_sequence(7, 3, 4);
+  sequence.names.front() = "rail";
+  sequence.units.front() = "m";
+  ExportOptions options;
+  options.controller =
+      parse_controller_settings("axes: [E1, A1, A2, A3, A4, A5, A6]\nzero_deg: [1500, 0, 0, 0, 0, 0, 0]", "r.yaml");
+  EXPECT_NO_THROW(find_pose_format("kuka-krl").write(sequence, options));
+  options.controller =
+      parse_controller_settings("axes: [E1, A1, A2, A3, A4, A5, A6]\nzero_deg: [0, 1500, 0, 0, 0, 0, 0]", "r.yaml");
+  EXPECT_THROW(find_pose_format("kuka-krl").write(sequence, options), InputError);
+}
+
+TEST(PoseLists, OfJointsRefusePlatformsAndPairsOfConfigurations) {
+  PoseSequence platforms = random_sequence(6, 2, 1), pairs = random_sequence(12, 2, 1);
+  platforms.is_platform = true;
+  for (std::size_t i = 6; i < 12; ++i) pairs.names[i] = pairs.names[i - 6] + ".second";
+  int open = 0;
+  for (const PoseFormat& format : pose_formats()) {
+    if (format.any_coordinates) {
+      ++open;
+      continue;
+    }
+    ExportOptions options;
+    options.coupling = 0;
+    EXPECT_THROW(export_poses(format, platforms, options), CannotDo) << format.name;
+    EXPECT_THROW(export_poses(format, pairs, options), CannotDo) << format.name;
+  }
+  EXPECT_EQ(open, 3) << "csv, json, hexapod-gcs";
 }
 
 TEST(RobotPrograms, ExternalAxesStandWhereTheControllerHasThem) {
@@ -333,6 +378,13 @@ TEST(Hexapod, RefusesWhatItCannotPlace) {
   for (SequencePose& pose : level.poses) std::fill(pose.values.begin() + 3, pose.values.end(), 0.0);
   EXPECT_EQ(readers::read_gcs(format.write(level, {}).files[0].bytes).moves.size(), 3U)
       << "does not turn: no pivot needed";
+  PoseSequence leaning = level;
+  leaning.is_route = leaning.from_home = true;
+  leaning.home = {0, 0, 0, 0.1, 0, 0};
+  EXPECT_THROW(format.write(leaning, {}), InputError) << "turns at home";
+  leaning.home[3] = 0;
+  leaning.motions = {{0, 1, {leaning.home, {0, 0, 0, 0, 0.1, 0}, leaning.poses[0].values}, 1.0}};
+  EXPECT_THROW(format.write(leaning, {}), InputError) << "turns on the way";
   level.poses.back().station = "B";
   EXPECT_THROW(format.write(level, {}), CannotDo) << "cannot wait for people";
 }

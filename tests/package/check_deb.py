@@ -23,9 +23,10 @@ def run(*words, cwd):
 
 
 def main(cpack, build):
-    if shutil.which("dpkg-shlibdeps") is None:
-        print("skipped: dpkg-shlibdeps is missing (Debian: dpkg-dev)")
-        sys.exit(77)
+    for program, package in (("dpkg-shlibdeps", "dpkg-dev"), ("file", "file")):
+        if shutil.which(program) is None:
+            print(f"skipped: {program} is missing (Debian: {package})")
+            sys.exit(77)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         run(cpack, "-G", "DEB", "-B", folder, cwd=build)

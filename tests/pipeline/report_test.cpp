@@ -166,6 +166,56 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   }
 }
 
+TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
+  PlanOptions options = quick(12, 100);
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, options, Monitor{})));
+  options.seed = 5;
+  const auto other = folder.write("other.json", plan_json(plan_problem(problem, options, Monitor{})));
+  RouteOptions closed;
+  closed.closed = true;
+  Route route = route_problem(problem, file, closed, Monitor{});
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  brief.route = folder.write("route.json", route_json(route));
+  EXPECT_THROW(report_problem(problem, other, brief, Monitor{}), InputError);
+  EXPECT_EQ(report_problem(problem, file, brief, Monitor{}).prefix.size(), 12U);
+  // Without the last pose the tour closes one motion earlier.
+  route.poses.pop_back();
+  route.motions.erase(route.motions.end() - 2);
+  route.motions.back().from = route.poses.back().id;
+  route.motions.back().points.front() = route.motions[route.motions.size() - 2].points.back();
+  brief.route = folder.write("shorter.json", route_json(route));
+  EXPECT_EQ(report_problem(problem, file, brief, Monitor{}).prefix.size(), 11U);
+}
+
+TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "delta" / "problem.yaml");
+  json plan = json::parse(plan_json(plan_problem(problem, quick(12, 60), Monitor{})));
+  plan["poses"].erase(1);
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const Report report = report_problem(problem, folder.write("plan.json", plan.dump()), brief, Monitor{});
+  std::vector<int> ids;
+  for (const auto& [id, M] : report.information.poses) ids.push_back(id);
+  EXPECT_EQ(ids, (std::vector<int>{1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+  EXPECT_EQ(report.keyframes[1].pose, 3);
+}
+
+TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "delta" / "problem.yaml");
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick(12, 60), Monitor{})));
+  Monitor late;
+  late.deadline = Monitor::Clock::now();
+  const Report report = report_problem(problem, file, {}, late);
+  EXPECT_EQ(report.candidates->sensitivity.size(), 60U);
+  EXPECT_EQ(report.curve.size(), 1U) << "the plan itself";
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("left out of the curve")));
+}
+
 TEST(Report, PageHoldsItsDataOnceAndNothingInItEndsTheElement) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "five_bar" / "problem.yaml");

@@ -82,7 +82,9 @@ struct PoseFormat {
   bool several_files = false;
   Exported (*write)(const PoseSequence& sequence, const ExportOptions& options) = nullptr;
   PoseTable (*read)(const std::string& bytes, const std::string& file) = nullptr;  ///< null: it is not read back
-  bool ending_matters = false;  ///< whoever reads it goes by the ending of the file's name
+  bool ending_matters = false;   ///< whoever reads it goes by the ending of the file's name
+  bool to_be_filled = false;     ///< users put what they measured into the file
+  bool any_coordinates = false;  ///< has a place for a platform's coordinates and for pairs of configurations
 };
 
 const std::vector<PoseFormat>& pose_formats();
@@ -91,6 +93,10 @@ const PoseFormat& find_pose_format(const std::string& name);
 /// The same of those that can be read.
 const PoseFormat& find_readable_format(const std::string& name);
 std::string readable_format_names();
+
+/// What the format's writer makes. Throws CannotDo where the format is for joints and the plan's coordinates are those
+/// of a platform or of pairs of configurations; else as the writer.
+Exported export_poses(const PoseFormat& format, const PoseSequence& sequence, const ExportOptions& options);
 
 /// A plan's or a route's poses as a list, load case and station in columns of that name.
 PoseTable table_of(const PoseSequence& sequence);

@@ -35,6 +35,7 @@ struct PoseSequence {
   std::string file;
   std::string problem_sha256;  ///< of the problem it was made for; empty: not known
   bool is_route = false;       ///< motions are checked and in measuring order
+  bool is_platform = false;    ///< coordinates are a platform's, its actuators follow from them
   bool from_home = false, closed = false;
   double settle = 0.0;                    ///< s at each pose, of a route
   std::vector<std::string> names, units;  ///< "rad" or "m"

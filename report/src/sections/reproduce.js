@@ -31,7 +31,7 @@ function commands({ plan, route }) {
   const lines = [
     `sha256sum ${file}`,
     `posewright plan ${file} ${planOptions(plan, variant).join(' ')} -o plan.json --poses-csv poses.csv`,
-    `posewright evaluate ${file} poses.csv ${variant}`.trim(),
+    `posewright evaluate ${file} poses.csv ${variant} --candidates ${plan.statistics.candidates_feasible} --seed ${plan.seed}`.replace(/ {2,}/g, ' '),
   ];
   if (!route) return lines;
   const ends = `${route.from_home ? '--from-home ' : ''}${route.closed ? '--closed ' : ''}`;

@@ -76,7 +76,7 @@ export function proof(plan) {
 export function proofMeaning(plan) {
   const c = plan.certificate.candidates;
   if (!c || !isDeterminant(plan) || c.efficiency >= 1) return '';
-  return `So no choice among them can shrink the parameters’ σ (geometric mean) by more than ${percent(Math.ceil((1 - Math.sqrt(c.efficiency)) * 1e3) / 1e3)}.`;
+  return `So no choice among them can shrink the parameters’ joint confidence region (geometric mean of its axes) by more than ${percent(Math.ceil((1 - Math.sqrt(c.efficiency)) * 1e3) / 1e3)}.`;
 }
 
 /** @param {any} plan */

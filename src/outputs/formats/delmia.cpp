@@ -64,9 +64,11 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat delmia() {
-  return {
+  PoseFormat format = {
       "delmia", "tag table between tabs, mm and deg", "DELMIA Auto ID", ".txt", "tool poses", {}, false, false, write,
       read};
+  format.to_be_filled = true;
+  return format;
 }
 
 }  // namespace posewright::formats

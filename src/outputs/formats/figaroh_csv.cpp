@@ -58,16 +58,18 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
 }  // namespace
 
 PoseFormat figaroh_csv() {
-  return {"figaroh-csv",
-          "measurements: joints and marker columns",
-          "FIGAROH",
-          ".csv",
-          "targets for predicted positions",
-          {},
-          false,
-          false,
-          write,
-          read_csv_table};
+  PoseFormat format = {"figaroh-csv",
+                       "measurements: joints and marker columns",
+                       "FIGAROH",
+                       ".csv",
+                       "targets for predicted positions",
+                       {},
+                       false,
+                       false,
+                       write,
+                       read_csv_table};
+  format.to_be_filled = true;
+  return format;
 }
 
 }  // namespace posewright::formats

@@ -45,10 +45,16 @@ std::array<double, 6> commanded(const std::vector<double>& q) {
   return {q[0] * 1e3, q[1] * 1e3, q[2] * 1e3, to_degrees(u), to_degrees(v), to_degrees(w)};
 }
 
+/// Whether the platform is turned at a pose, at home or on the way.
 bool turns(const PoseSequence& sequence) {
-  return std::any_of(sequence.poses.begin(), sequence.poses.end(), [](const SequencePose& pose) {
-    return std::any_of(pose.values.begin() + 3, pose.values.end(), [](double x) { return std::abs(x) > no_rotation; });
-  });
+  const auto turned = [](const std::vector<double>& q) {
+    return std::any_of(q.begin() + 3, q.end(), [](double x) { return std::abs(x) > no_rotation; });
+  };
+  if (sequence.from_home && turned(sequence.home)) return true;
+  for (const SequenceMotion& motion : sequence.motions)
+    if (std::any_of(motion.points.begin(), motion.points.end(), turned)) return true;
+  return std::any_of(sequence.poses.begin(), sequence.poses.end(),
+                     [&](const SequencePose& pose) { return turned(pose.values); });
 }
 
 std::string move(const std::vector<double>& q) {
@@ -95,16 +101,18 @@ Exported write(const PoseSequence& all, const ExportOptions& options) {
 }  // namespace
 
 PoseFormat hexapod_gcs() {
-  return {"hexapod-gcs",
-          "PI GCS commands of a hexapod",
-          "PI C-887 and the like, through a host that polls",
-          ".gcs",
-          "a six-legged platform; pivot_mm in --controller where it turns",
-          {"speed", "controller"},
-          true,
-          false,
-          write,
-          nullptr};
+  PoseFormat format = {"hexapod-gcs",
+                       "PI GCS commands of a hexapod",
+                       "PI C-887 and the like, through a host that polls",
+                       ".gcs",
+                       "a six-legged platform; pivot_mm in --controller where it turns",
+                       {"speed", "controller"},
+                       true,
+                       false,
+                       write,
+                       nullptr};
+  format.any_coordinates = true;
+  return format;
 }
 
 }  // namespace posewright::formats

@@ -47,16 +47,18 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat industrial_calibration() {
-  return {"industrial-calibration",
-          "measurements, poses to be filled in",
-          "industrial_calibration",
-          ".yaml",
-          "",
-          {},
-          false,
-          false,
-          write,
-          read};
+  PoseFormat format = {"industrial-calibration",
+                       "measurements, poses to be filled in",
+                       "industrial_calibration",
+                       ".yaml",
+                       "",
+                       {},
+                       false,
+                       false,
+                       write,
+                       read};
+  format.to_be_filled = true;
+  return format;
 }
 
 }  // namespace posewright::formats

@@ -89,16 +89,18 @@ PoseTable read_csv_table(const std::string& bytes, const std::string& file) {
 namespace formats {
 
 PoseFormat plain_csv() {
-  return {"csv",
-          "names and units in a header, SI",
-          "anything; poses.csv of a plan",
-          ".csv",
-          "",
-          {},
-          false,
-          false,
-          write,
-          read_csv_table};
+  PoseFormat format = {"csv",
+                       "names and units in a header, SI",
+                       "anything; poses.csv of a plan",
+                       ".csv",
+                       "",
+                       {},
+                       false,
+                       false,
+                       write,
+                       read_csv_table};
+  format.any_coordinates = true;
+  return format;
 }
 
 }  // namespace formats

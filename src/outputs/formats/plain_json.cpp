@@ -28,16 +28,18 @@ PoseTable read(const std::string& bytes, const std::string& file) { return table
 }  // namespace
 
 PoseFormat plain_json() {
-  return {"json",
-          "names, units and values, SI",
-          "anything; plan.json and route.json are read too",
-          ".json",
-          "",
-          {},
-          false,
-          false,
-          write,
-          read};
+  PoseFormat format = {"json",
+                       "names, units and values, SI",
+                       "anything; plan.json and route.json are read too",
+                       ".json",
+                       "",
+                       {},
+                       false,
+                       false,
+                       write,
+                       read};
+  format.any_coordinates = true;
+  return format;
 }
 
 }  // namespace posewright::formats

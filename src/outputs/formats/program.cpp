@@ -45,6 +45,11 @@ class Axes {
     require_joints();
     require_length(settings_.sign.size(), "sign");
     require_length(settings_.zero_deg.size(), "zero_deg");
+    for (std::size_t i = 0; i < settings_.zero_deg.size(); ++i)
+      if (sequence_.units[i] == "rad" && std::abs(settings_.zero_deg[i]) > 360)
+        throw InputError({settings_.file, settings_.lines.at("zero_deg")},
+                         fmt::format("zero_deg has {} for a joint that turns", settings_.zero_deg[i]),
+                         "-360 to 360; mm where the axis slides");
     require_length(settings_.pulses_per_degree.size(), "pulses_per_degree");
   }
 

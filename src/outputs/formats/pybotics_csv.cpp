@@ -52,11 +52,13 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat pybotics_csv() {
-  return {"pybotics-csv", "joint values and tool poses, deg and mm",
-          "pybotics",     ".csv",
-          "tool poses",   {},
-          false,          false,
-          write,          read};
+  PoseFormat format = {"pybotics-csv", "joint values and tool poses, deg and mm",
+                       "pybotics",     ".csv",
+                       "tool poses",   {},
+                       false,          false,
+                       write,          read};
+  format.to_be_filled = true;
+  return format;
 }
 
 }  // namespace posewright::formats

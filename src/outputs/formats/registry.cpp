@@ -61,6 +61,19 @@ std::string readable_format_names() {
   return names;
 }
 
+Exported export_poses(const PoseFormat& format, const PoseSequence& sequence, const ExportOptions& options) {
+  if (!format.any_coordinates) {
+    const char* others = "; csv and json have a place for them";
+    if (sequence.is_platform)
+      throw CannotDo(format.name + " is a list of joint values, the plan's coordinates are those of a platform" +
+                     others);
+    if (std::any_of(sequence.names.begin(), sequence.names.end(),
+                    [](const std::string& name) { return name.ends_with(".second"); }))
+      throw CannotDo(format.name + " has one robot pose in a row, the plan pairs of them" + others);
+  }
+  return format.write(sequence, options);
+}
+
 PoseTable table_of(const PoseSequence& sequence) {
   PoseTable table;
   table.names = sequence.names;

@@ -75,7 +75,8 @@ void Watch::show(const Progress& progress) {
   if (progress.efficiency)
     line += fmt::format("  at least {:.2f} % of the optimum", std::floor(1e4 * *progress.efficiency) / 100);
   const double elapsed = std::chrono::duration<double>(now - stage_begin_).count();
-  if (progress.total > 0 && progress.done > 0 && progress.done < progress.total)
+  // A stage that has only just begun, or begun again after another one, tells nothing of its speed yet.
+  if (elapsed > 1 && progress.total > 0 && progress.done > 0 && progress.done < progress.total)
     line += fmt::format("  {:.0f} s left", std::ceil(elapsed * (progress.total - progress.done) / progress.done));
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   fmt::print(stderr, "{}{}{}", terminal ? "\r\x1b[K" : "", line, terminal ? "" : "\n");

@@ -93,6 +93,9 @@ class Bash(Pages):
         self.assertEqual(self.complete("plan", "--method", "=")[:2], ["auto", "exchange"])
         self.assertEqual(self.complete("select", "--repeats", ""), ["allow", "forbid"])
         self.assertEqual(self.complete("plan", "--candidates", ""), [])
+        self.assertIn("kuka-krl", self.complete("export", "plan.json", "--to", ""))
+        self.assertNotIn("kuka-krl", self.complete("evaluate", "--from", ""))
+        self.assertIn("csv", self.complete("evaluate", "--from", ""))
         self.assertEqual(self.complete("completion", ""), ["bash", "zsh"])
 
     def test_offers_files_by_kind(self):
@@ -103,6 +106,7 @@ class Bash(Pages):
         self.assertEqual(sorted(self.complete("select", "a")), ["a.csv", "a.npy", "arm"])
         self.assertEqual(sorted(self.complete("route", "a")), ["a.json", "arm"])
         self.assertIn("a.txt", self.complete("plan", "-o", "a"))
+        self.assertIn("a.txt", self.complete("export", "-o", "a"))
         self.assertEqual(self.complete("plan", "--package", "x", "=", "a"), ["arm"])
 
 

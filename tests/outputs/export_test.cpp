@@ -178,8 +178,10 @@ TEST(PosesBack, ARouteIsAPoseListAndListsAreRouted) {
   const auto second = nlohmann::json::parse(read_file(folder / "again.json"));
   EXPECT_EQ(second["order"][0], 3);
   for (const auto& pose : second["poses"])
-    for (const auto& other : first["poses"])
-      if (other["id"] == pose["id"]) EXPECT_EQ(other["configuration"], pose["configuration"]);
+    for (const auto& other : first["poses"]) {
+      if (other["id"] != pose["id"]) continue;
+      EXPECT_EQ(other["configuration"], pose["configuration"]);
+    }
   ASSERT_EQ(run_program(folder, {"export", "p.json", "--to", "moveit", "-o", "m.yaml"}).exit_code, 0);
   EXPECT_THAT(run_program(folder, {"route", "m.yaml", "--from", "moveit"}).err,
               HasSubstr("give it with --problem FILE"));

@@ -133,7 +133,8 @@ TEST(Report, AccuracyFollowsFromTheMatricesOfTestPoses) {
 
 TEST(Report, PlaysTheRouteThroughEveryPose) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(examples / "cell" / "problem.yaml");
+  Problem problem = read_problem(examples / "cell" / "problem.yaml");
+  problem.workspace.motion.reachable = false;  // the route finds out, and the test is quick
   const Plan plan = plan_problem(problem, quick(14, 200), Monitor{});
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions route_options;
@@ -157,11 +158,12 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   EXPECT_FALSE(report["bodies"].empty());
   EXPECT_EQ(report["stations"].size(), 1U);
   // At a stop the tip is where the plan says.
-  for (const json& keyframe : report["keyframes"])
-    for (const PlannedPose& pose : plan.poses)
-      if (keyframe["pose"] == pose.id)
-        for (int k = 0; k < 3; ++k)
-          EXPECT_NEAR(keyframe["tip"][std::size_t(k)].get<double>(), pose.tool_pose->translation()[k], 1e-5);
+  for (const json& keyframe : report["keyframes"]) {
+    if (keyframe["pose"].is_null() || keyframe["pose"] == 0) continue;
+    const PlannedPose& pose = plan.poses.at(keyframe["pose"].get<std::size_t>() - 1);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(keyframe["tip"][std::size_t(k)].get<double>(), pose.tool_pose->translation()[k], 1e-5);
+  }
 }
 
 TEST(Report, PageHoldsItsDataOnceAndNothingInItEndsTheElement) {

@@ -85,6 +85,7 @@ class Outputs(unittest.TestCase):
         self.assertIn("targets", plan["poses"][0])
         self.check("plan", plan)
         self.check("route", self.run_program("route", "plan.json", "--from-home", "--closed", "--json"))
+        self.check("poses", self.run_program("export", "route.json", "--to", "json", "-o", "-"))
         ranking = self.run_program("stations", cell, "--full", 0, "--poses", 8, "--json")
         self.check("stations", ranking)
 

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 import posewright
+from conftest import ROOT
 from posewright import _core
 
 STUBS = ast.parse(pathlib.Path(_core.__file__).with_name("_core.pyi").read_text())
@@ -70,16 +71,16 @@ def test_types_pass_mypy(tmp_path):
         pytest.skip("mypy is absent (Debian: python3-mypy)")
     script = tmp_path / "user.py"
     script.write_text(USER)
-    folder = pathlib.Path(posewright.__file__).parent
+    source, built = ROOT / "python" / "posewright", pathlib.Path(posewright.__file__).parent
     # Classes of pybind11 have a metaclass of their own, and __init__ takes anything where there is none.
     allowed = tmp_path / "allowed"
     allowed.write_text(r"posewright\._core\.[A-Z]\w*(\.__init__)?")
     for command in (
-        ["mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(folder), str(script)],
+        ["mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(source), str(script)],
         ["mypy.stubtest", "posewright._core", "--allowlist", str(allowed)],
     ):
         done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, cwd=tmp_path,
-                              env={"MYPYPATH": str(folder.parent), "PYTHONPATH": str(folder.parent), "PATH": "/usr/bin"})
+                              env={"MYPYPATH": str(source.parent), "PYTHONPATH": str(built.parent), "PATH": "/usr/bin"})
         assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -25,30 +25,36 @@ export class Tips {
   /** @param {import('./picture.js').Picture} picture */
   constructor(picture) {
     this.picture = picture;
-    this.mesh = new InstancedMesh(
-      new SphereGeometry(1, 18, 12),
-      new MeshBasicMaterial(),
-      Math.max(1, picture.tips.length),
-    );
+    const ball = new SphereGeometry(1, 18, 12);
+    this.mesh = new InstancedMesh(ball, new MeshBasicMaterial({ transparent: true }), Math.max(1, picture.tips.length));
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 2;
-    this.mesh.material.transparent = true;
     this.mesh.count = picture.tips.length;
+    // The tip shown is often inside a hand or a tool: it shines through.
+    this.now = new Mesh(ball, new MeshBasicMaterial({ transparent: true, depthTest: false }));
+    this.now.renderOrder = 3;
+    this.root = new Group();
+    this.root.add(this.mesh, this.now);
   }
 
   /** @param {number|null} current @param {Set<number>} on */
   update(current, on) {
     const matrix = new Matrix4();
-    const [now, measured, off] = ['now', 'tip', 'off'].map((name) => new Color(colour(name)));
+    const [measured, off] = ['tip', 'off'].map((name) => new Color(colour(name)));
     const { tips, dot } = this.picture;
     tips.forEach((tip, k) => {
-      const size = dot * (tip.id === current ? 1.9 : 1);
-      this.mesh.setMatrixAt(k, matrix.makeScale(size, size, size).setPosition(new Vector3(...tip.position)));
-      this.mesh.setColorAt(k, tip.id === current ? now : on.has(tip.id) ? measured : off);
+      this.mesh.setMatrixAt(k, matrix.makeScale(dot, dot, dot).setPosition(new Vector3(...tip.position)));
+      this.mesh.setColorAt(k, on.has(tip.id) ? measured : off);
     });
     this.mesh.instanceMatrix.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
     this.mesh.computeBoundingSphere();
+    const shown = tips.find((tip) => tip.id === current);
+    this.now.visible = shown !== undefined;
+    if (!shown) return;
+    this.now.position.set(...shown.position);
+    this.now.scale.setScalar(1.9 * dot);
+    this.now.material.color.set(colour('now'));
   }
 }
 
@@ -64,11 +70,11 @@ function disc() {
 
 /** @param {number[]} positions flat @param {number[]} sensitivity */
 export function candidateCloud(positions, sensitivity) {
-  const highest = sensitivity.reduce((a, b) => Math.max(a, b), 1e-12);
+  const [low, high] = [Math.min, Math.max].map((end) => sensitivity.reduce((a, b) => end(a, b)));
   const colours = new Float32Array(3 * sensitivity.length);
   const c = new Color();
   sensitivity.forEach((s, k) => {
-    const [r, g, b] = viridisAt(s / highest);
+    const [r, g, b] = viridisAt(high > low ? (s - low) / (high - low) : 1);
     c.setRGB(r / 255, g / 255, b / 255, 'srgb').toArray(colours, 3 * k);
   });
   const geometry = new BufferGeometry();

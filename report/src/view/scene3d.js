@@ -57,7 +57,7 @@ export class Scene3d {
     this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.009));
     this.tips = new Tips(this.picture);
     this.sights = new Sights(report, unit * 0.008);
-    this.scene.add(this.bodies.root, this.skeleton.root, this.tips.mesh, this.sights.root);
+    this.scene.add(this.bodies.root, this.skeleton.root, this.tips.root, this.sights.root);
     const step = this.picture.grid;
     this.grid = new GridHelper(step * 20, 20);
     this.grid.rotation.x = Math.PI / 2;

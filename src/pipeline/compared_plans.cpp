@@ -68,7 +68,7 @@ PlansToCompare searched_plans(const Preparation& prepared, const Settings& setti
       append(poses, std::size_t(i) < candidates.count()
                         ? candidates[std::size_t(i)]
                         : std::span<const double>(found.design.added[std::size_t(i) - candidates.count()]));
-    result.plans.push_back({"best for " + name, name, int(poses.count()), found.stopped});
+    result.plans.push_back({"best for " + name, name, int(poses.count())});
     result.poses.push_back(std::move(poses));
   }
   return result;
@@ -87,7 +87,7 @@ PlansToCompare given_plans(const Preparation& prepared, const std::vector<Compar
     }
     if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
     result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
-    result.plans.push_back({list.name, "", int(poses.count()), false});
+    result.plans.push_back({list.name, "", int(poses.count())});
     result.poses.push_back(std::move(poses));
   }
   return result;

@@ -35,7 +35,6 @@ struct ComparedPlan {
   std::string name;
   std::string own_of;  ///< the variant that it was searched for; empty: given
   int poses = 0;       ///< to be measured
-  bool interrupted = false;
 };
 
 /// One plan as one variant sees it.

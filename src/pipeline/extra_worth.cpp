@@ -66,9 +66,9 @@ std::optional<double> ExtraWorth::error_without() const {
 }
 
 std::optional<bool> ExtraWorth::worth() const {
-  const std::optional<double> without = error_without();
-  if (!error_with || !without) return std::nullopt;
-  return *error_with < *without;
+  const std::optional<double> other = error_without();
+  if (!error_with || !other) return std::nullopt;
+  return *error_with < *other;
 }
 
 }  // namespace posewright

@@ -13,6 +13,8 @@ using Align = Table::Align;
 
 // Names of extra parameters that a sentence lists before it counts the rest.
 constexpr std::size_t names_shown = 3;
+// A bias that is this share of the noise is rounding.
+constexpr double no_bias = 1e-9;
 
 /// Rounded down: what is stated as reached must be.
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
@@ -161,7 +163,7 @@ std::string worth_text(const ExtraWorth& w) {
   text += *w.worth() ? "pays" : "does not pay, even";
   return text + fmt::format(" if {} is the case: {} {} with {}, {} without ({} noise, {} bias)", w.with, what,
                             shown(*w.error_with), names_of(w.extra), shown(*w.error_without()), shown(*w.noise_without),
-                            shown(*w.bias_without));
+                            *w.bias_without < no_bias * *w.noise_without ? "no" : shown(*w.bias_without));
 }
 
 std::string comparison_text(const Comparison& c, bool aliases_in_full) {

@@ -8,6 +8,9 @@
 namespace posewright {
 namespace {
 
+// Two names for the same effect give the same error but for rounding.
+constexpr double rounding = 1e-6;
+
 /// Root mean square over the parameters of interest that both estimate, in units of the tolerances of `with`.
 void compare_shared(ExtraWorth& worth, const JudgedVariant& with, const JudgedVariant& without,
                     const VariantAlias& alias) {
@@ -68,7 +71,7 @@ std::optional<double> ExtraWorth::error_without() const {
 std::optional<bool> ExtraWorth::worth() const {
   const std::optional<double> other = error_without();
   if (!error_with || !other) return std::nullopt;
-  return *error_with < *other;
+  return *error_with < (1 - rounding) * *other;
 }
 
 }  // namespace posewright

@@ -36,6 +36,7 @@ Command plan_command();
 Command observe_command();
 Command select_command();
 Command evaluate_command();
+Command compare_command();
 Command route_command();
 Command stations_command();
 Command export_command();

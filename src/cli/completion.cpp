@@ -100,7 +100,8 @@ std::string zsh_command(const Command& command) {
   std::string text = fmt::format("      {})\n        _arguments \\\n", command.name);
   int place = 0;
   for (const Expected& argument : argument_facts(command))
-    text += fmt::format("        '{}:argument:{}' \\\n", ++place, zsh_values(argument));
+    text += fmt::format("        '{}:argument:{}' \\\n", argument.many ? "*" : std::to_string(++place),
+                        zsh_values(argument));
   std::string options;
   for (const OptionFacts& option : option_facts(command))
     options += (options.empty() ? "" : " \\\n") + zsh_option(option);

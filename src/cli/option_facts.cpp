@@ -30,13 +30,15 @@ std::vector<std::string> names_of(const Registry& registry) {
 
 Expected expected_of(const std::string& value) {
   static const std::map<std::string, std::vector<std::string>> files = {
-      {"PROBLEM", {"yaml", "yml"}}, {"PLAN", {"json"}}, {"POSES", {"csv", "json"}},
-      {"BLOCKS", {"npy", "csv"}},   {"FILE", {"*"}},    {"FILE|DIR", {"*"}},
+      {"PROBLEM", {"yaml", "yml"}},   {"PLAN", {"json"}}, {"POSES", {"csv", "json"}},
+      {"BLOCKS", {"npy", "csv"}},     {"FILE", {"*"}},    {"FILE|DIR", {"*"}},
+      {"[PLAN...]", {"json", "csv"}},
   };
   Expected expected;
   if (const auto found = files.find(value); found != files.end()) expected.suffixes = found->second;
   else expected.words = literal_words(value);
   expected.folder = value.find("DIR") != std::string::npos;
+  expected.many = value.ends_with("...]");
   return expected;
 }
 

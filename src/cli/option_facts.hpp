@@ -12,6 +12,7 @@ struct Expected {
   std::vector<std::string> words;     ///< these words
   std::vector<std::string> suffixes;  ///< files that end so ("yaml"); "*": any file
   bool folder = false;                ///< a folder
+  bool many = false;                  ///< any number of them, the last argument
 };
 
 /// One option as manual page and completion need it.

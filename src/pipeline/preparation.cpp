@@ -83,7 +83,8 @@ void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
 }
 
-Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor) {
+Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor,
+                    Unidentifiable unidentifiable) {
   Preparation prepared;
   prepared.cell = make_cell(problem);
   for (const DesignSpec::Weighted& wanted : settings.variants) {
@@ -107,7 +108,14 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   sampling.threads = settings.planner.threads;
   prepared.configurations =
       common(prepared.variants, sample_configurations(*prepared.first().workspace, sampling, monitor));
-  for (PreparedVariant& variant : prepared.variants) resolve(prepared, variant, problem, settings);
+  for (PreparedVariant& variant : prepared.variants) {
+    try {
+      resolve(prepared, variant, problem, settings);
+    } catch (const CannotDo& error) {
+      if (unidentifiable == Unidentifiable::refuse) throw;
+      variant.why_not = error.what();
+    }
+  }
 
   prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
   prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
@@ -148,11 +156,30 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
   };
 }
 
+namespace {
+
+SearchPart search_part(const PreparedVariant& variant, const Configurations& configurations, int threads) {
+  return {build_blocks(*variant.model, variant.columns().selected, configurations, threads),
+          variant.columns().nuisance,
+          variant.weight,
+          variant.scale,
+          variant.test_points,
+          variant.prior};
+}
+
+}  // namespace
+
+std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Configurations& configurations,
+                                     int threads) {
+  std::vector<SearchPart> parts;
+  parts.push_back(search_part(variant, configurations, threads));
+  return parts;
+}
+
 std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
   for (const PreparedVariant& variant : prepared.variants)
-    parts.push_back({build_blocks(*variant.model, variant.columns().selected, configurations, threads),
-                     variant.columns().nuisance, variant.weight, variant.scale, variant.test_points, variant.prior});
+    parts.push_back(search_part(variant, configurations, threads));
   return parts;
 }
 

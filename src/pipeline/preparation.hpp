@@ -36,6 +36,7 @@ struct PreparedVariant {
   Eigen::VectorXd scale;  ///< unit of every column, by the scaling asked for
   std::vector<TestPoint> test_points;
   Eigen::MatrixXd prior;  ///< raw information known before (tolerances, poses measured already); empty: none
+  std::string why_not{};  ///< why its parameters cannot be identified; empty: they can
 
   const VariantColumns& columns() const { return resolved.columns; }
 };
@@ -53,9 +54,14 @@ struct Preparation {
   PreparedVariant& first() { return variants.front(); }
   const PreparedVariant& first() const { return variants.front(); }
 };
-Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor);
+/// What to do with a variant whose parameters cannot be identified: throw CannotDo, or keep it with the reason.
+enum class Unidentifiable { refuse, keep };
+Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor,
+                    Unidentifiable unidentifiable = Unidentifiable::refuse);
 
-/// Raw blocks of the configurations for every variant, with what each search needs beside them.
+/// Raw blocks of the configurations for one variant alone, with what a search needs beside them.
+std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Configurations& configurations, int threads);
+/// The same for every variant.
 std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads);
 
 /// The workspace of the problem for searches beyond the candidates; `prepared` must outlive what it makes.

@@ -77,6 +77,18 @@ class Outputs(unittest.TestCase):
     def test_observation(self):
         self.check("observation", self.run_program("observe", EXAMPLES / "telescope/problem.yaml", "--candidates", 300, "--json"))
 
+    def test_comparison(self):
+        text = (EXAMPLES / "telescope/problem.yaml").read_text()
+        both = "  both: {parameters: [kappa, K_11, K_22, K_33, K_44, K_55, K_66]}\n"
+        (self.folder / "both.yaml").write_text(text.replace("  # To see what", both + "  # To see what"))
+        words = ["--variant", "rigid,matrix,both", "--candidates", 200]
+        comparison = self.run_program("compare", "both.yaml", *words, "--restarts", 1, "--poses", 16, "--json")
+        self.assertEqual(len(comparison["scores"]), 2 * 3)
+        self.assertTrue(comparison["variants"][2]["why_not"])
+        self.check("comparison", comparison)
+        self.run_program("plan", "smallest.yaml", "--poses", 8, "--json")
+        self.check("comparison", self.run_program("compare", "smallest.yaml", "plan.json", "poses.csv", "--truth", "all", "--json"))
+
     def test_plan_route_and_stations_of_a_cell(self):
         cell = self.folder / "cell.yaml"
         text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "comparison_report.hpp"
+#include "packages.hpp"
+#include "planners/registry.hpp"
+#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/version.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
+
+namespace posewright::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+po::options_description options() {
+  po::options_description options("Options");
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  options.add_options()                                                                                     //
+      ("variant", po::value<Words>()->value_name("V")->composing(), "these variants, or a list A,B (all)")  //
+      ("truth", text("V"), "what this variant does to the others: every parameter, tolerances too")         //
+      ("poses", text("N"), "poses of each plan that is searched (design: poses)")                           //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                     //
+      ("candidates", text("n"), "feasible configurations to compare with (as plan)")                        //
+      ("restarts", text("k"), "starts of a search (as plan)")                                               //
+      ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
+  options.add(package_options());
+  return options;
+}
+
+/// Names of --variant, given several times or with commas.
+std::vector<std::string> variants_of(const po::variables_map& values) {
+  std::vector<std::string> names;
+  if (values.count("variant") == 0) return names;
+  for (const std::string& word : values["variant"].as<Words>())
+    for (std::size_t begin = 0; begin <= word.size();) {
+      const std::size_t end = std::min(word.find(',', begin), word.size());
+      if (end == begin) throw InputError({}, "--variant " + word + " has an empty name", "names of variants");
+      names.push_back(word.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  return names;
+}
+
+CompareOptions options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
+  CompareOptions compare;
+  compare.variants = variants_of(values);
+  compare.truth = text_of(values, "truth");
+  if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
+  const std::string from = text_of(values, "from");
+  if (!from.empty()) find_readable_format(from);
+  for (std::size_t i = 1; i < positional.size(); ++i)
+    compare.plans.push_back({positional[i], poses_in_file(positional[i], from)});
+  for (const char* option : {"poses", "method", "restarts"})
+    if (!compare.plans.empty() && values.count(option) > 0)
+      throw InputError({}, std::string("--") + option + " is for plans that are searched",
+                       "leave it out, or the plans");
+  if (compare.plans.empty() && !from.empty())
+    throw InputError({}, "--from is for plans that are given", "name them after the problem");
+  compare.plan.poses = whole_number(values, "poses", 1, 1000000);
+  compare.plan.method = text_of(values, "method");
+  compare.plan.candidates = whole_number(values, "candidates", 1, 10000000);
+  compare.plan.restarts = whole_number(values, "restarts", 1, 1000000);
+  compare.plan.seed = common.seed;
+  compare.plan.threads = common.threads;
+  return compare;
+}
+
+int run(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  const CompareOptions compare = options_of(values, positional, common);
+  const Problem problem = problem_with_packages(positional.front(), values);
+  const Comparison result =
+      watched(common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }).result;
+  print_notes(result.notes);
+  if (!common.json) {
+    print_report(comparison_text(result, !compare.truth.empty()));
+    return done;
+  }
+  Json json = {{"schema", "posewright/comparison/1"},
+               {"version", version},
+               {"seed", common.seed},
+               {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}}};
+  json.update(comparison_json(result));
+  fmt::print("{}\n", json.dump(1));
+  return done;
+}
+
+}  // namespace
+
+Command compare_command() {
+  return {"compare",
+          "PROBLEM [PLAN...]",
+          "Variants against plans: efficiency, σ, accuracy, what one variant's effects do to another.",
+          options,
+          "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix",
+          run};
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,96 @@
+#include "compared_plans.hpp"
+
+#include <algorithm>
+
+#include "posewright/criterion/registry.hpp"
+#include "posewright/support/error.hpp"
+#include "study_space.hpp"
+
+namespace posewright {
+
+Settings comparison_settings(const Problem& problem, const CompareOptions& options) {
+  PlanOptions plan = options.plan;
+  if (plan.method.empty()) plan.method = "exchange";
+  // Each variant is planned for alone.
+  if (plan.criterion.empty() && find_criterion(problem.design.criterion.value) != nullptr &&
+      find_criterion(problem.design.criterion.value)->several_variants)
+    plan.criterion = "o1";
+  const bool given = !options.plans.empty();
+  if (given) plan.poses = 1;  // lists bring their own numbers
+  else if (!plan.poses && problem.design.smallest)
+    throw InputError(problem.at(problem.design.line), "poses: auto says not how many poses to compare with",
+                     "--poses N, or plans");
+  Settings settings = settings_of(problem, plan);
+  if (given) settings.poses = 0;
+  std::vector<std::string> names = options.variants;
+  if (names.empty())
+    for (const VariantSpec& variant : problem.variants) names.push_back(variant.name);
+  if (!options.truth.empty() && std::find(names.begin(), names.end(), options.truth) == names.end())
+    names.push_back(options.truth);
+  settings.variants.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + long(i), names[i]) != names.begin() + long(i))
+      throw InputError({}, "variant '" + names[i] + "' is named twice", "each once");
+    settings.variants.push_back({{find_variant(problem, names[i]).name, 0}, 1.0});
+  }
+  return settings;
+}
+
+SearchRequest request_for(const Preparation& prepared, const PreparedVariant& variant, const Settings& settings,
+                          int poses) {
+  SearchRequest request;
+  request.criterion = settings.criterion;
+  request.method = settings.method;
+  request.poses = poses;
+  request.repeats = settings.repeats;
+  request.reserve = settings.reserve;
+  request.planner = settings.planner;
+  if (prepared.has_minimum_distance) request.spacing = &prepared.minimum_distance;
+  request.make_space = [&prepared, &variant](const Eigen::MatrixXd& R) {
+    return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns().selected}},
+                                    prepared.configurations, prepared.measured, prepared.spacing, R);
+  };
+  return request;
+}
+
+PlansToCompare searched_plans(const Preparation& prepared, const Settings& settings, const Monitor& monitor) {
+  PlansToCompare result;
+  const Configurations& candidates = prepared.configurations;
+  for (const PreparedVariant& variant : prepared.variants) {
+    if (!variant.why_not.empty()) continue;
+    const std::string& name = variant.spec->name;
+    const SearchResult found =
+        search(search_parts(variant, candidates, settings.planner.threads),
+               request_for(prepared, variant, settings, settings.poses), NamedMonitor(monitor, name));
+    Configurations poses;
+    poses.dimension = candidates.dimension;
+    for (const int i : found.design.members)
+      append(poses, std::size_t(i) < candidates.count()
+                        ? candidates[std::size_t(i)]
+                        : std::span<const double>(found.design.added[std::size_t(i) - candidates.count()]));
+    result.plans.push_back({"best for " + name, name, int(poses.count())});
+    result.poses.push_back(std::move(poses));
+  }
+  return result;
+}
+
+PlansToCompare given_plans(const Preparation& prepared, const std::vector<CompareOptions::List>& lists) {
+  PlansToCompare result;
+  for (const CompareOptions::List& list : lists) {
+    const PoseList read = list.poses(prepared.first().workspace->coordinates());
+    Configurations poses;
+    poses.dimension = prepared.configurations.dimension;
+    for (std::size_t i = 0; i < read.configurations.size(); ++i) {
+      // What the problem names as measured counts once.
+      if (prepared.measured.count() > 0 && !read.measured.empty() && read.measured[i]) continue;
+      append(poses, read.configurations[i]);
+    }
+    if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
+    result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
+    result.plans.push_back({list.name, "", int(poses.count())});
+    result.poses.push_back(std::move(poses));
+  }
+  return result;
+}
+
+}  // namespace posewright

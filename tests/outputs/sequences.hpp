@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -88,6 +89,17 @@ inline Path path_of(const PoseSequence& sequence) {
     if (motion.to > 0) path.measured.push_back(path.points.size() - 1);
   }
   return path;
+}
+
+inline std::vector<std::vector<double>> values_of(const PoseSequence& sequence) {
+  std::vector<std::vector<double>> rows;
+  for (const SequencePose& pose : sequence.poses) rows.push_back(pose.values);
+  return rows;
+}
+
+/// What the format makes of the sequence.
+inline std::string text_in(const std::string& format, const PoseSequence& sequence) {
+  return find_pose_format(format).write(sequence, {}).files.at(0).bytes;
 }
 
 }  // namespace posewright

@@ -3,6 +3,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { about, check } from './checks.mjs';
 import { open } from './browser.mjs';
+import { overflow } from './reading_checks.mjs';
 
 const slot = /(<script type="application\/json" id="report-data">)([\s\S]*?)(<\/script>)/;
 
@@ -52,6 +53,13 @@ export async function checkAltered(browser, c) {
       (await page.locator('h1').innerText()).includes('<img'),
     'names are text, never markup',
   );
+  await page.close();
+
+  page = await altered(browser, c, 'long path', (data) => {
+    data.plan.problem.file = `/${'a_folder_with_a_long_name/'.repeat(8)}problem.yaml`;
+  });
+  await page.setViewportSize({ width: 400, height: 900 });
+  check((await overflow(page)) === 0, 'a long path wraps at 400 px', await overflow(page));
   await page.close();
 
   page = await altered(browser, c, 'little data', (data) => {

@@ -63,9 +63,5 @@ export async function checkRepeat(page, { plan, folder }, program) {
 }
 
 /** @param {any} page */
-export const overflow = async (page) => {
-  const now = () => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  // Plots fit themselves to their frames once they are there.
-  for (let tries = 0; tries < 50 && (await now()) > 0; ++tries) await page.waitForTimeout(200);
-  return now();
-};
+export const overflow = (page) =>
+  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

@@ -155,13 +155,38 @@ bool ClosedChain::sensor_rows(std::span<const double> q, std::span<const double>
   do_platform(q, s.freedoms);
   loops(q, s.actuators, own, s.own, s.loops);
   if (!solve_response(s)) return false;
-  const auto count = Eigen::Index(sensors_.size());
-  s.sensors.parameter.setZero(count, Eigen::Index(selected.size()));
-  s.sensors.platform.setZero(count, 6);
-  s.sensors.actuator.setZero(count, Eigen::Index(actuators_.size()));
-  do_sensors(q, s.actuators, own, s.own, s.sensors);
+  read_sensors(q, s.actuators, own, s.own, s.sensors);
   rows = s.sensors.parameter + s.sensors.platform * s.response * s.loops.parameter;
   reading_rows = s.sensors.actuator + s.sensors.platform * s.response * s.loops.actuator;
+  return true;
+}
+
+void ClosedChain::read_sensors(std::span<const double> q, std::span<const double> actuators,
+                               std::span<const double> own, std::span<const int> selected, Loops& out) const {
+  const auto count = Eigen::Index(sensors_.size());
+  out.value.setZero(count);
+  out.parameter.setZero(count, Eigen::Index(selected.size()));
+  out.platform.setZero(count, 6);
+  out.actuator.setZero(count, Eigen::Index(actuators_.size()));
+  do_sensors(q, actuators, own, selected, out);
+}
+
+bool ClosedChain::sensor_values(std::span<const double> q, std::span<const double> correction,
+                                Eigen::VectorXd& values) const {
+  Scratch& s = scratch_of_this_thread();
+  const auto own = own_part(correction);
+  s.actuators.resize(actuators_.size());
+  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
+  read_sensors(q, s.actuators, own, {}, s.sensors);
+  values = s.sensors.value;
+  return true;
+}
+
+bool ClosedChain::configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                   std::span<const double> correction, std::span<double> q) const {
+  const auto found = forward_kinematics(actuators, start, correction);
+  if (!found) return false;
+  std::copy(found->begin(), found->end(), q.begin());
   return true;
 }
 

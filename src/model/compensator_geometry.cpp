@@ -41,21 +41,37 @@ CompensatorGeometry::CompensatorGeometry(const CompensatorGeometrySpec& spec, co
   append_displacement(parameters_, "base", Eigen::Isometry3d::Identity(), 10e-3, angle_tolerance);
   for (int i = 0; i < int(parameters_.size()); ++i) geometric_.push_back({i, i >= base ? 0 : i == offset ? 2 : 1});
   coordinates_ = {{"q2", "rad", spec.lower, spec.upper}};
+  for (const char* pin : {"P0", "P1"})
+    for (const char* axis : {".x", ".y", ".z"}) readings_.push_back({std::string(pin) + axis, "m"});
   rows_ = 6;
+}
+
+CompensatorGeometry::Pins CompensatorGeometry::pins(std::span<const double> q,
+                                                    std::span<const double> correction) const {
+  const auto corrected = [&](double nominal, std::size_t i) {
+    return nominal + (correction.empty() ? 0.0 : correction[i]);
+  };
+  Pins pins;
+  pins.L = corrected(spec_.L, length);
+  const double angle = q[0] + corrected(0.0, offset);
+  pins.along = {std::sin(angle), std::cos(angle), 0};
+  pins.across = {std::cos(angle), -std::sin(angle), 0};
+  pins.base = displace(pins.frame, correction.empty() ? nullptr : correction.data() + base);
+  pins.P0 = pins.frame.R * Eigen::Vector3d(-corrected(spec_.ax, pin_x), -corrected(spec_.ay, pin_y), 0) + pins.frame.p;
+  pins.P1 = pins.frame.R * (pins.L * pins.along) + pins.frame.p;
+  return pins;
+}
+
+bool CompensatorGeometry::do_read(std::span<const double> q, std::span<const double> correction,
+                                  Eigen::VectorXd& y) const {
+  const Pins at = pins(q, correction);
+  y << at.P0, at.P1;
+  return true;
 }
 
 bool CompensatorGeometry::do_linearise(std::span<const double> q, std::span<const double> correction,
                                        std::span<const int> selected, Linearisation& out) const {
-  const auto corrected = [&](double nominal, std::size_t i) {
-    return nominal + (correction.empty() ? 0.0 : correction[i]);
-  };
-  const double L = corrected(spec_.L, length), angle = q[0] + corrected(0.0, offset);
-  Frame<double> frame;
-  const DisplacementAxes axes = displace(frame, correction.empty() ? nullptr : correction.data() + base);
-  const Eigen::Vector3d along(std::sin(angle), std::cos(angle), 0), across(std::cos(angle), -std::sin(angle), 0);
-  const Eigen::Vector3d P0 =
-      frame.R * Eigen::Vector3d(-corrected(spec_.ax, pin_x), -corrected(spec_.ay, pin_y), 0) + frame.p;
-  const Eigen::Vector3d P1 = frame.R * (L * along) + frame.p;
+  const auto [frame, axes, along, across, P0, P1, L] = pins(q, correction);
   out.G.setZero(rows_, Eigen::Index(selected.size()));
   for (std::size_t c = 0; c < selected.size(); ++c) {
     auto column = out.G.col(Eigen::Index(c));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "displacement.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
 
@@ -16,9 +17,19 @@ class CompensatorGeometry : public IdentificationModel {
   CompensatorGeometry(const CompensatorGeometrySpec& spec, const MeasurementSpec& measurement);
 
  private:
+  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
   Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+
+  /// The axis' frame, where the pins are in M, and the crank's direction in the frame.
+  struct Pins {
+    Frame<double> frame;
+    DisplacementAxes base;
+    Eigen::Vector3d along, across, P0, P1;
+    double L;
+  };
+  Pins pins(std::span<const double> q, std::span<const double> correction) const;
 
   CompensatorGeometrySpec spec_;
   PointNoise noise_;

@@ -45,6 +45,7 @@ DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const Measur
   append(coordinates_, tip_->coordinates(), "", true);
   append(actuators_, tip_->actuators(), "", false);
   append(actuators_, tip_->actuators(), ".second", false);
+  for (const TargetSpec& t : spec_.targets) readings_.push_back({t.name + ".distance", "m"});
   rows_ = int(spec_.targets.size());
   unmeasurable_reason_ = "distance out of range";
   if (!actuators_.empty()) unmeasurable_reason_ += " or " + near_singularity();
@@ -104,6 +105,29 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
             along[i].dot(ends[i].reading_twists.col(j)) * tip_->reading_noise()[std::size_t(j)];
   }
   out.covariance.noalias() += out.rows * out.rows.transpose();
+  return true;
+}
+
+bool DistancePairModel::do_read(std::span<const double> q, std::span<const double> correction,
+                                Eigen::VectorXd& y) const {
+  static thread_local End ends[2];
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!end(at_end(q, i), correction, {}, ends[i])) return false;
+  for (int t = 0; t < rows_; ++t)
+    y[t] = (target(ends[1].X, correction, std::size_t(t)) - target(ends[0].X, correction, std::size_t(t))).norm();
+  return true;
+}
+
+bool DistancePairModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                            std::span<const double> correction, std::span<double> q) const {
+  std::copy(start.begin(), start.end(), q.begin());
+  const auto tip = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
+  const std::size_t each = actuators.size() / 2;
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::vector<double> own = at_end(start, i);
+    if (!tip_->configuration_at(actuators.subspan(i * each, each), at_end(start, i), tip, own)) return false;
+    std::copy_n(own.begin(), moving_, q.begin() + std::ptrdiff_t(i * moving_));
+  }
   return true;
 }
 

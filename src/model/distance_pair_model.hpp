@@ -19,6 +19,9 @@ class DistancePairModel : public IdentificationModel {
  private:
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
+  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
+  bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                           std::span<const double> correction, std::span<double> q) const override;
   bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
   bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
                           std::span<double> values) const override;

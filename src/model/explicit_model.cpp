@@ -42,6 +42,7 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
                              !measurement_->motion({anywhere, {}, 0}, i - tip_parameters_, nullptr));
   unmeasurable_reason_ = measurement_->unseen_reason();
   if (!actuators_.empty()) unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + near_singularity();
+  readings_ = measurement_->readings();
   rows_ = measurement_->rows();
   rows_per_target_ = measurement_->rows_per_target();
   reading_noise_ =
@@ -95,6 +96,32 @@ bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const doub
     if (is_own_column_[std::size_t(selected[c])] != 0)
       measurement_->own_column(sighting, selected[c] - tip_parameters_, out.G.col(Eigen::Index(c)));
   return true;
+}
+
+bool ExplicitModel::do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const {
+  const Parts p = parts(q, correction);
+  static thread_local Twists none;
+  Eigen::Isometry3d X;
+  if (!tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr)) return false;
+  measurement_->read({X, p.own_correction, p.station}, y);
+  return true;
+}
+
+void ExplicitModel::do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                                  Eigen::VectorXd& out) const {
+  measurement_->difference(measured, predicted, out);
+}
+
+void ExplicitModel::do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change,
+                               Eigen::VectorXd& out) const {
+  measurement_->shifted(predicted, change, out);
+}
+
+bool ExplicitModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                        std::span<const double> correction, std::span<double> q) const {
+  std::copy(start.begin(), start.end(), q.begin());
+  const Parts p = parts(start, correction);
+  return tip_->configuration_at(actuators, p.q, p.tip_correction, q.first(p.q.size()));
 }
 
 int ExplicitModel::do_block_rows(std::span<const int> selected) const {

@@ -107,6 +107,10 @@ void FiveBar::do_sensors(std::span<const double> q, std::span<const double> rho,
     const Leg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
     // The distal link's direction turns by n·δ/reach when its ends move by δ apart.
     const Eigen::Vector2d n = Eigen::Vector2d(-leg.e.y(), leg.e.x()) / leg.reach;
+    // Distal against proximal link, less the sensor's own zero.
+    out.value[i] =
+        std::remainder(std::atan2(leg.e.y(), leg.e.x()) - std::atan2(leg.along.y(), leg.along.x()) - part(own, i, 5),
+                       2 * std::numbers::pi);
     const double swing = -leg.proximal * n.dot(leg.across) - 1.0;
     const std::array<double, per_leg> columns = {-n.x(), -n.y(), -n.dot(leg.along), 0.0, swing, -1.0};
     for (std::size_t c = 0; c < selected.size(); ++c)

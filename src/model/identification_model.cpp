@@ -1,5 +1,6 @@
 #include "posewright/model/identification_model.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace posewright {
@@ -60,6 +61,76 @@ bool IdentificationModel::linearise_factored(std::span<const double> q, std::spa
   require_size(q.size(), coordinates_.size(), "configuration");
   if (!do_linearise_factored(q, total(correction, out.correction), selected, out)) return false;
   hide(q, out);
+  return true;
+}
+
+/// Where the robot stands with the (total) correction, its actuators as they are at q with nominal parameters.
+bool IdentificationModel::settle(std::span<const double> q, std::span<const double> correction,
+                                 std::vector<double>& scratch, std::span<const double>& settled) const {
+  settled = q;
+  if (actuators_.empty() || correction.empty()) return true;
+  static thread_local std::vector<double> actuators;
+  actuators.resize(actuators_.size());
+  scratch.resize(q.size());
+  settled = scratch;
+  return do_actuator_values(q, shift_, actuators) && do_configuration_at(actuators, q, correction, scratch);
+}
+
+bool IdentificationModel::predict(std::span<const double> q, std::span<const double> correction,
+                                  Eigen::VectorXd& y) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  // A model inside another one has neither actuators nor nominal values of its own, so it leaves these alone.
+  static thread_local std::vector<double> sum, scratch;
+  const auto whole = total(correction, sum);
+  std::span<const double> settled;
+  y.resize(Eigen::Index(readings_.size()));
+  return settle(q, whole, scratch, settled) && do_read(settled, whole, y);
+}
+
+bool IdentificationModel::predict_and_linearise(std::span<const double> q, std::span<const double> correction,
+                                                std::span<const int> selected, Linearisation& out,
+                                                Eigen::VectorXd& y) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  const auto whole = total(correction, out.correction);
+  std::span<const double> settled;
+  y.resize(Eigen::Index(readings_.size()));
+  if (!settle(q, whole, out.settled, settled) || !do_read(settled, whole, y) ||
+      !do_linearise(settled, whole, selected, out))
+    return false;
+  hide(q, out);
+  return true;
+}
+
+void IdentificationModel::difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                                     Eigen::VectorXd& out) const {
+  do_difference(measured, predicted, out);
+}
+
+void IdentificationModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change,
+                                  Eigen::VectorXd& out) const {
+  do_shifted(predicted, change, out);
+}
+
+void IdentificationModel::do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change,
+                                     Eigen::VectorXd& out) const {
+  out = predicted + change;
+}
+
+bool IdentificationModel::configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                           std::span<double> q) const {
+  require_size(start.size(), coordinates_.size(), "configuration");
+  require_size(actuators.size(), actuators_.size(), "actuators");
+  return do_configuration_at(actuators, start, shift_, q);
+}
+
+void IdentificationModel::do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                                        Eigen::VectorXd& out) const {
+  out = measured - predicted;
+}
+
+bool IdentificationModel::do_configuration_at(std::span<const double>, std::span<const double> start,
+                                              std::span<const double>, std::span<double> q) const {
+  std::copy(start.begin(), start.end(), q.begin());
   return true;
 }
 

@@ -1,6 +1,8 @@
 #include "joint_sensor_model.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/support/error.hpp"
@@ -28,6 +30,7 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
                        "the noise of the joint sensors has the wrong unit for '" + all[std::size_t(i)].name + "'",
                        "allowed: " + allowed_units({own}));
   }
+  for (const int i : sensors_) readings_.push_back({all[std::size_t(i)].name, all[std::size_t(i)].unit});
   variance_ = spec.sigma * spec.sigma / problem.measurement.repeats;
   parameters_ = tip_->parameters();
   coordinates_ = tip_->coordinates();
@@ -54,6 +57,26 @@ bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const d
   out.covariance = out.rows * out.rows.transpose();
   out.covariance.diagonal().array() += variance_;
   return true;
+}
+
+bool JointSensorModel::do_read(std::span<const double> q, std::span<const double> correction,
+                               Eigen::VectorXd& y) const {
+  static thread_local Eigen::VectorXd all;
+  if (!tip_->sensor_values(q, correction, all)) return false;
+  for (Eigen::Index i = 0; i < rows_; ++i) y[i] = all[sensors_[std::size_t(i)]];
+  return true;
+}
+
+void JointSensorModel::do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                                     Eigen::VectorXd& out) const {
+  out = measured - predicted;
+  for (Eigen::Index i = 0; i < rows_; ++i)
+    if (readings_[std::size_t(i)].unit == "rad") out[i] = std::remainder(out[i], 2 * std::numbers::pi);
+}
+
+bool JointSensorModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                           std::span<const double> correction, std::span<double> q) const {
+  return tip_->configuration_at(actuators, start, correction, q);
 }
 
 bool JointSensorModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {

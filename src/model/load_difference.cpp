@@ -11,6 +11,7 @@ LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : in
   coordinates_ = inside_->coordinates();
   geometric_ = inside_->geometric_parameters();
   unmeasurable_reason_ = inside_->unmeasurable_reason();
+  readings_ = inside_->readings();
   rows_ = inside_->rows();
   rows_per_target_ = inside_->rows_per_target();
   const auto load = std::find_if(coordinates_.begin(), coordinates_.end(),
@@ -33,6 +34,16 @@ bool LoadDifference::do_linearise(std::span<const double> q, std::span<const dou
     return false;
   out.G -= unloaded.G;
   out.covariance += unloaded.covariance;
+  return true;
+}
+
+bool LoadDifference::do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const {
+  static thread_local Eigen::VectorXd loaded, unloaded;
+  static thread_local std::vector<double> same;
+  same.assign(q.begin(), q.end());
+  same[load_] = 0.0;
+  if (!inside_->predict(q, correction, loaded) || !inside_->predict(same, correction, unloaded)) return false;
+  inside_->difference(loaded, unloaded, y);
   return true;
 }
 

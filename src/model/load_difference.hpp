@@ -17,6 +17,7 @@ class LoadDifference : public IdentificationModel {
  private:
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
+  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
   bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
   Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
 

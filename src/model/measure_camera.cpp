@@ -80,6 +80,8 @@ CameraModel::CameraModel(const MeasurementSpec& spec)
       repeatability_(spec.repeatability) {
   for (int r = 0; r < spec_.rows; ++r)
     for (int c = 0; c < spec_.columns; ++c) points_.emplace_back(c * spec_.spacing, r * spec_.spacing, 0);
+  for (std::size_t i = 1; i <= points_.size(); ++i)
+    for (const char* axis : {".u", ".v"}) readings_.push_back({"point_" + std::to_string(i) + axis, "px"});
   rows_per_target_ = 2;
   rows_ = 2 * int(points_.size());
   replaces_tool_ = true;
@@ -116,6 +118,15 @@ CameraModel::Scene CameraModel::scene(const Sighting& sighting) const {
   for (std::size_t k = 0; k < lens_size; ++k)
     s.lens[k] = parameters_[poses + k].nominal + (correction.empty() ? 0.0 : correction[poses + k]);
   return s;
+}
+
+void CameraModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
+  const Scene s = scene(sighting);
+  const Eigen::Isometry3d X_CameraBoard = s.X_MeasureCamera.inverse() * s.X_MeasureBoard;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector3d p = X_CameraBoard * points_[i];
+    project(p.data(), s.lens.data(), y.data() + 2 * i);
+  }
 }
 
 void CameraModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

@@ -34,6 +34,8 @@ DistanceModel::DistanceModel(const MeasurementSpec& spec)
   for (const TargetSpec& target : spec_.targets) add("target." + target.name, target.position, 1);
   for (const TargetSpec& anchor : spec_.anchors) add("anchor." + anchor.name, anchor.position, 0);
   for (const TargetSpec& anchor : spec_.anchors)
+    for (const TargetSpec& target : spec_.targets) readings_.push_back({anchor.name + "-" + target.name, "m"});
+  for (const TargetSpec& anchor : spec_.anchors)
     parameters_.push_back({"anchor." + anchor.name + ".length", "m", 0.0, default_tolerance, Role::interest});
 }
 
@@ -48,6 +50,14 @@ DistanceModel::Span DistanceModel::span_of(const Sighting& sighting, std::size_t
   span.p = sighting.X_MeasureTip * p_TipTarget;
   span.between = span.p - anchor;
   return span;
+}
+
+void DistanceModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
+  const std::size_t targets = spec_.targets.size(), lengths = 3 * (targets + spec_.anchors.size());
+  for (std::size_t row = 0; row < std::size_t(rows_); ++row) {
+    const double too_long = sighting.correction.empty() ? 0.0 : sighting.correction[lengths + row / targets];
+    y[Eigen::Index(row)] = span_of(sighting, row).between.norm() + too_long;
+  }
 }
 
 void DistanceModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

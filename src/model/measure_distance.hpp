@@ -12,6 +12,7 @@ class DistanceModel : public MeasurementModel {
  public:
   explicit DistanceModel(const MeasurementSpec& spec);
 
+  void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const override;
   void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;

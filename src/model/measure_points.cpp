@@ -22,6 +22,8 @@ PointsModel::PointsModel(const MeasurementSpec& spec)
     for (int k = 0; k < 3; ++k)
       parameters_.push_back({"target." + target.name + "." + "xyz"[k], "m", target.position[k],
                              default_target_tolerance, Role::interest});
+  for (const TargetSpec& target : spec_.targets)
+    for (const int c : spec_.components) readings_.push_back({target.name + "." + "xyz"[c], "m"});
   const int targets = int(parameters_.size());
   places_.append(parameters_);
   for (int i = 0; i < targets; ++i) preferences_.push_back({i, 1});
@@ -38,6 +40,16 @@ Eigen::Vector3d PointsModel::target(const Sighting& sighting, std::size_t index)
   if (!sighting.correction.empty())
     p_TipTarget += Eigen::Map<const Eigen::Vector3d>(sighting.correction.data() + 3 * index);
   return sighting.X_MeasureTip * p_TipTarget;
+}
+
+void PointsModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
+  const Eigen::Isometry3d X_StationMeasure =
+      places_.pose(sighting.station, station_part(sighting.correction)).inverse();
+  Eigen::Index row = 0;
+  for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
+    const Eigen::Vector3d p = X_StationMeasure * target(sighting, t);
+    for (const int c : spec_.components) y[row++] = p[c];
+  }
 }
 
 void PointsModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

@@ -13,6 +13,7 @@ class PointsModel : public MeasurementModel {
  public:
   explicit PointsModel(const MeasurementSpec& spec);
 
+  void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const override;
   void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
   bool motion(const Sighting& sighting, int index, Twist* twist) const override;

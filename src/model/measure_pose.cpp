@@ -1,9 +1,24 @@
 #include "measure_pose.hpp"
 
+#include <algorithm>
+
+#include "displacement.hpp"
 #include "measure_points.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
+}
 
 /// The points of a photogrammetric pose, measured once.
 std::unique_ptr<MeasurementModel> points_of(const PoseMeasurement& pose) {
@@ -24,6 +39,32 @@ PoseModel::PoseModel(const MeasurementSpec& spec)
       repeats_(spec.repeats),
       repeatability_(spec.repeatability) {
   rows_ = int(spec_.components.size());
+  for (const int c : spec_.components)
+    readings_.push_back({std::string("pose.") + displacement_names[std::size_t(c)], c < 3 ? "m" : "rad"});
+  turns_ = int(std::count_if(spec_.components.begin(), spec_.components.end(), [](int c) { return c > 2; }));
+}
+
+void PoseModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
+  if (turns_ != 0 && turns_ != 3)
+    throw CannotDo("measurement: readings of rx, ry, rz mean something together only; measure all three or none");
+  const Eigen::Vector3d turn = rotation_vector(sighting.X_MeasureTip.linear());
+  for (Eigen::Index i = 0; i < rows_; ++i) {
+    const int c = spec_.components[std::size_t(i)];
+    y[i] = c < 3 ? sighting.X_MeasureTip.translation()[c] : turn[c - 3];
+  }
+}
+
+void PoseModel::difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                           Eigen::VectorXd& out) const {
+  out = measured - predicted;
+  // Components ascend, so the three of an orientation are the last.
+  if (turns_ == 3)
+    out.tail<3>() = rotation_vector(rotation_by(measured.tail<3>()) * rotation_by(predicted.tail<3>()).transpose());
+}
+
+void PoseModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const {
+  out = predicted + change;
+  if (turns_ == 3) out.tail<3>() = rotation_vector(rotation_by(change.tail<3>()) * rotation_by(predicted.tail<3>()));
 }
 
 void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

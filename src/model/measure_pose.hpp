@@ -8,12 +8,17 @@
 namespace posewright {
 
 /// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a
-/// spatial rotation vector in M): v + ω × p and ω of a twist. No parameters of its own. With photogrammetry the
+/// spatial rotation vector in M): v + ω × p and ω of a twist. Readings pose.{x,…,rz}: the position and the rotation
+/// vector of the tip's orientation in M. No parameters of its own. With photogrammetry the
 /// covariance is that of the rigid fit to the points.
 class PoseModel : public MeasurementModel {
  public:
   explicit PoseModel(const MeasurementSpec& spec);
 
+  void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const override;
+  void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                  Eigen::VectorXd& out) const override;
+  void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
   void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
@@ -22,6 +27,7 @@ class PoseModel : public MeasurementModel {
   PoseMeasurement spec_;
   std::unique_ptr<MeasurementModel> points_;  // of photogrammetry
   double repeats_, repeatability_;
+  int turns_ = 0;  // how many of rx, ry, rz are read
 };
 
 }  // namespace posewright

@@ -18,6 +18,16 @@ void MeasurementModel::own_column(const Sighting&, int, Eigen::Ref<Eigen::Vector
   throw std::logic_error("this instrument has no such parameter");
 }
 
+void MeasurementModel::difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                                  Eigen::VectorXd& out) const {
+  out = measured - predicted;
+}
+
+void MeasurementModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change,
+                               Eigen::VectorXd& out) const {
+  out = predicted + change;
+}
+
 bool MeasurementModel::sees(const Sighting&) const { return true; }
 
 Eigen::Matrix<double, 6, 6> fitted_pose_covariance(const MeasurementModel& measurement, const Eigen::Isometry3d& X) {

@@ -34,6 +34,7 @@ class Stage : public IdentificationModel {
     out.covariance = Eigen::MatrixXd::Constant(1, 1, 4.0);
     return true;
   }
+  bool do_read(std::span<const double>, std::span<const double>, Eigen::VectorXd&) const override { return false; }
   bool do_actuator_values(std::span<const double> q, std::span<const double>, std::span<double> values) const override {
     values[0] = q[0] + q[1];
     values[1] = q[2];

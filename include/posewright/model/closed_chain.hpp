@@ -30,6 +30,11 @@ class ClosedChain : public TipModel {
   bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                    Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const final;
 
+  bool sensor_values(std::span<const double> q, std::span<const double> correction,
+                     Eigen::VectorXd& values) const final;
+  bool configuration_at(std::span<const double> actuators, std::span<const double> start,
+                        std::span<const double> correction, std::span<double> q) const final;
+
   /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty where it
   /// does not converge in 50 steps or meets a singularity.
   /// @param correction  of all parameters, or empty for zero
@@ -73,9 +78,12 @@ class ClosedChain : public TipModel {
                         std::span<const int> selected, Loops& out) const = 0;
   /// Legs and rims in the base frame, nominal.
   virtual std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const = 0;
-  /// The same derivatives of what the redundant sensors read, for robots that have some.
+  /// What the redundant sensors read and the same derivatives of it, for robots that have some.
   virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                           std::span<const int> selected, Loops& out) const;
+
+  void read_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                    std::span<const int> selected, Loops& out) const;
 
   Eigen::Isometry3d X_MeasureBase_;
   int own_count_ = 0;

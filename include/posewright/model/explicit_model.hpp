@@ -24,6 +24,12 @@ class ExplicitModel : public IdentificationModel {
  private:
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
+  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
+  void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                     Eigen::VectorXd& out) const override;
+  void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
+  bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                           std::span<const double> correction, std::span<double> q) const override;
   int do_block_rows(std::span<const int> selected) const override;
   bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
                              std::span<const int> selected, Linearisation& out) const override;

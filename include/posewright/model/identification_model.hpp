@@ -34,6 +34,12 @@ struct Coordinate {
 /// A choice among named things as a coordinate: values 0, 1, … with these labels.
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels);
 
+/// One value that an instrument delivers at a configuration.
+struct Reading {
+  std::string name;  ///< "P1.x"
+  std::string unit;  ///< "m", "rad", "px"
+};
+
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
   Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
@@ -48,7 +54,7 @@ struct Linearisation {
   Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
   Eigen::MatrixXd rows, small;                              ///< scratch
   std::vector<char> seen;                                   ///< scratch: per target
-  std::vector<double> correction;                           ///< scratch
+  std::vector<double> correction, settled;                  ///< scratch
   Eigen::LLT<Eigen::MatrixXd> factor, small_factor;         ///< scratch of the whitening
   Eigen::HouseholderQR<Eigen::MatrixXd> compression;        ///< scratch of the whitening
 };
@@ -94,6 +100,27 @@ class IdentificationModel {
   bool linearise_factored(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                           Linearisation& out) const;
 
+  /// What a measurement of one configuration consists of, in the order of the rows.
+  const std::vector<Reading>& readings() const { return readings_; }
+  /// Readings h(ρ, ξ) with the parameters nominal + correction, while the actuators ρ stand as they do at q with
+  /// nominal ones: a parallel robot settles in another pose, a serial arm turns its joints as far as it reads.
+  /// @param y  resized to readings()
+  /// @return false where q is out of reach or a closed chain does not settle near q
+  /// Throws CannotDo for an instrument whose readings cannot be told (PoseModel with a part of the orientation).
+  bool predict(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const;
+  /// predict() and, where the robot then stands, linearise().
+  bool predict_and_linearise(std::span<const double> q, std::span<const double> correction,
+                             std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y) const;
+  /// Measured less predicted readings as the rows of linearise() count them: orientations by the rotation vector
+  /// between them, angles of joints within half a turn; NaN where the measured one is NaN.
+  /// @param out  size readings()
+  void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted, Eigen::VectorXd& out) const;
+  /// Readings whose difference() to the predicted ones is `change`.
+  void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
+  /// Where a robot with nominal parameters stands when its actuators have these values (size actuators()), searched
+  /// from `start`; a robot without actuators stays there. False where the closed chain does not close.
+  bool configuration_at(std::span<const double> actuators, std::span<const double> start, std::span<double> q) const;
+
   /// False where the instrument cannot see q; why, in words for the table of rejections.
   bool measurable(std::span<const double> q) const;
   /// Empty where every reachable configuration can be measured.
@@ -127,6 +154,7 @@ class IdentificationModel {
   std::vector<Coordinate> coordinates_;
   std::vector<Coordinate> actuators_;
   std::vector<Preference> geometric_;
+  std::vector<Reading> readings_;
   std::string unmeasurable_reason_;
   int rows_ = 0;
   int rows_per_target_ = 0;
@@ -134,6 +162,13 @@ class IdentificationModel {
  private:
   virtual bool do_linearise(std::span<const double> q, std::span<const double> correction,
                             std::span<const int> selected, Linearisation& out) const = 0;
+  /// Readings of the robot standing at q.
+  virtual bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const = 0;
+  virtual void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                             Eigen::VectorXd& out) const;
+  virtual void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
+  virtual bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                   std::span<const double> correction, std::span<double> q) const;
   virtual int do_block_rows(std::span<const int> selected) const;
   virtual bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
                                      std::span<const int> selected, Linearisation& out) const;
@@ -144,6 +179,8 @@ class IdentificationModel {
   virtual bool do_reading_twists(std::span<const double> q, std::span<const double> correction,
                                  Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
   void hide(std::span<const double> q, Linearisation& out) const;
+  bool settle(std::span<const double> q, std::span<const double> correction, std::vector<double>& scratch,
+              std::span<const double>& settled) const;
 
   std::span<const double> total(std::span<const double> correction, std::vector<double>& scratch) const;
 

@@ -33,6 +33,17 @@ class MeasurementModel {
   /// True where targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
   bool replaces_tool() const { return replaces_tool_; }
 
+  /// What it delivers, in the order of the rows.
+  const std::vector<Reading>& readings() const { return readings_; }
+  /// The readings of one measurement, without noise; `y` has size rows().
+  virtual void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const = 0;
+  /// Measured less predicted as the rows count it (IdentificationModel::difference).
+  virtual void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                          Eigen::VectorXd& out) const;
+
+  /// Its inverse (IdentificationModel::shifted).
+  virtual void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
+
   /// Measured values' derivative along each tip twist: rows × twists.cols().
   virtual void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                               Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
@@ -55,6 +66,7 @@ class MeasurementModel {
   std::vector<Parameter> parameters_;
   std::vector<IdentificationModel::Preference> preferences_;
   std::vector<std::string> stations_;
+  std::vector<Reading> readings_;
   std::string unseen_reason_;
   bool replaces_tool_ = false;
   int rows_ = 0;

@@ -51,6 +51,15 @@ class TipModel {
   virtual bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                            Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const;
 
+  /// What the redundant sensors read (rad or m). False and throws as sensor_rows().
+  virtual bool sensor_values(std::span<const double> q, std::span<const double> correction,
+                             Eigen::VectorXd& values) const;
+
+  /// Where the robot stands when its actuators have these values, near `start`; without actuators it stays there. False
+  /// where a closed chain does not close.
+  virtual bool configuration_at(std::span<const double> actuators, std::span<const double> start,
+                                std::span<const double> correction, std::span<double> q) const;
+
  protected:
   std::vector<Parameter> parameters_;
   std::vector<Coordinate> coordinates_;

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/variant.hpp"
+
+namespace posewright {
+
+/// One configuration and what the instrument read there.
+struct MeasuredPose {
+  int id = 0;             ///< of the user's list
+  std::vector<double> q;  ///< SI, in the order of the model's coordinates
+  Eigen::VectorXd y;      ///< size readings() of the model, SI; NaN: not read
+};
+
+/// What a residual counts: `ordinary` the same for all readings of a unit, `weighted` the instrument's covariance,
+/// `robust` that covariance and less where a target lies far off.
+enum class Weighting { ordinary, weighted, robust };
+
+struct FitOptions {
+  Weighting weighting = Weighting::weighted;
+  bool prior = false;          ///< count every tolerance as one more measurement of its parameter
+  int most_evaluations = 200;  ///< of the residuals in one run of Levenberg–Marquardt
+};
+
+/// Result of a calibration. Columns are those that were asked for; poses in the order given.
+struct Fit {
+  std::vector<double> correction;  ///< ξ − nominal of every parameter of the model; zero for those not estimated
+  Eigen::VectorXd change;          ///< the same of the columns alone
+  Eigen::MatrixXd covariance;      ///< of `change`, SI, with the noise that `scale_known` says
+  /// Whether the covariance is that of the stated noise; else the residuals told its size.
+  bool scale_known = true;
+  double chi_square = 0.0;  ///< sum of squares of the whitened residuals (weighted where robust) and of prior terms
+  int readings = 0;         ///< how many were read
+  int freedom = 0;          ///< readings − columns, plus the prior's rows
+  double scale = 0.0;       ///< √(chi_square/freedom); robust: of the central part
+  std::vector<Eigen::VectorXd> residuals;  ///< per pose: measured less predicted, SI; NaN where not read
+  std::vector<Eigen::VectorXd> whitened;   ///< per pose: unit variance if model and noise are right; NaN where not read
+  std::vector<std::vector<double>> weights;  ///< robust: per pose and target (or per pose) from 0 to 1; else empty
+  int evaluations = 0;
+  bool converged = false;
+};
+
+/// Nonlinear least squares by Levenberg–Marquardt (Moré 1978, as in MINPACK) on parameters in units of tolerance and
+/// residuals whitened with their covariance at the solution.
+///
+/// robust: iteratively reweighted, Huber's ψ (c = 1.345) until the weights settle, then Tukey's biweight (c = 4.685),
+/// on the norm of each target's whitened residual, in units of their median; covariance by Huber (Robust Statistics
+/// 1981, eq. 7.6.6).
+/// @param columns  what is estimated; independent over these poses (see undetermined())
+/// Throws CannotDo where a pose is out of reach at the nominal parameters, where the readings are fewer than the
+/// columns, or where the columns are dependent at the solution.
+Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+        const FitOptions& options);
+
+/// Residuals of given parameters at other poses: measured less predicted, SI, NaN where not read.
+/// Throws CannotDo where a pose is out of reach.
+std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, const std::vector<double>& correction,
+                                          const std::vector<MeasuredPose>& poses);
+
+/// Whitened blocks of the poses at the nominal parameters, rows of what was not read zero: what tells which columns the
+/// data can determine. Throws CannotDo where a pose is out of reach.
+BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
+                     const std::vector<MeasuredPose>& poses);
+
+}  // namespace posewright

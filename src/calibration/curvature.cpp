@@ -1,0 +1,39 @@
+#include "posewright/calibration/curvature.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "stacked_readings.hpp"
+
+namespace posewright {
+
+Curvature curvature(const IdentificationModel& model, const VariantColumns& columns,
+                    const std::vector<MeasuredPose>& poses, const Fit& result) {
+  StackedReadings stacked(model, columns, poses, false);
+  const Eigen::VectorXd x = result.change.cwiseQuotient(stacked.tolerances());
+  stacked.weigh(x, Weighting::weighted);
+  Eigen::VectorXd at, ahead, behind;
+  Eigen::MatrixXd J;
+  Curvature worst;
+  if (!stacked.residual(x, at) || !stacked.jacobian(x, J)) return worst;
+  // Axes of the region of the estimates, each one σ long as the covariance says.
+  const Eigen::MatrixXd covariance = stacked.tolerances().cwiseInverse().asDiagonal() * result.covariance *
+                                     stacked.tolerances().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const double length = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
+    const Eigen::VectorXd v = length * axes.eigenvectors().col(k);
+    double missed = std::numeric_limits<double>::infinity();
+    if (stacked.residual(x + v, ahead) && stacked.residual(x - v, behind))
+      missed = (ahead + behind - 2 * at).norm() / 2;
+    if (!(missed > worst.largest)) continue;
+    worst.largest = missed;
+    Eigen::Index column = 0;
+    v.cwiseQuotient(sigma).cwiseAbs().maxCoeff(&column);
+    worst.parameter = int(column);
+  }
+  return worst;
+}
+
+}  // namespace posewright

@@ -1,0 +1,178 @@
+#include "posewright/calibration/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/error.hpp"
+#include "robust_weights.hpp"
+#include "stacked_readings.hpp"
+
+namespace posewright {
+namespace {
+
+// Ends of Levenberg–Marquardt, relative: far below the noise, well above rounding.
+constexpr double tolerance = 1e-11;
+// Weights follow the solution: so many times they are taken anew. The covariance hardly changes with the parameters.
+constexpr int weight_rounds = 2;
+constexpr int most_reweightings = 50;
+constexpr double settled_weights = 1e-4;
+// Pivots of unit columns below this mean that double precision cannot tell a column from the others.
+constexpr double rank_tolerance = 1e-11;
+// What Levenberg–Marquardt sees of a step that no robot can take: it will try a shorter one.
+constexpr double out_of_reach = 1e12;
+
+/// The residuals as Eigen's port of MINPACK wants them.
+struct Functor {
+  using Scalar = double;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+  using InputType = Eigen::VectorXd;
+  using ValueType = Eigen::VectorXd;
+  using JacobianType = Eigen::MatrixXd;
+
+  StackedReadings& stacked;
+  int inputs() const { return stacked.columns(); }
+  int values() const { return stacked.rows(); }
+  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& f) const {
+    if (!stacked.residual(x, f)) f.setConstant(stacked.rows(), out_of_reach);
+    return 0;
+  }
+  /// Only asked for where the residual was found, unless the robot stands in a singularity there.
+  int df(const Eigen::VectorXd& x, Eigen::MatrixXd& J) const { return stacked.jacobian(x, J) ? 0 : -1; }
+};
+
+/// Minimises from x on; false where it stopped for another reason than having arrived.
+bool minimise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, int& evaluations) {
+  Functor functor{stacked};
+  Eigen::LevenbergMarquardt<Functor> solver(functor);
+  solver.parameters.ftol = solver.parameters.xtol = tolerance;
+  solver.parameters.maxfev = options.most_evaluations;
+  const auto status = solver.minimize(x);
+  evaluations += int(solver.nfev);
+  using namespace Eigen::LevenbergMarquardtSpace;
+  return status != TooManyFunctionEvaluation && status != UserAsked && status != ImproperInputParameters;
+}
+
+/// (JᵀJ)⁻¹ by QR, in the units of x.
+Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& J) {
+  const Eigen::Index m = J.cols();
+  const Eigen::VectorXd length = J.colwise().norm();
+  const char* const message = "the data do not determine all parameters at the solution";
+  if (!(length.minCoeff() > 0)) throw CannotDo(message);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J * length.cwiseInverse().asDiagonal());
+  if (!(qr.matrixQR().diagonal().cwiseAbs().minCoeff() > rank_tolerance)) throw CannotDo(message);
+  Eigen::MatrixXd half = Eigen::MatrixXd::Identity(m, m);
+  qr.matrixQR().topRows(m).triangularView<Eigen::Upper>().solveInPlace(half);
+  half = length.cwiseInverse().asDiagonal() * half;
+  return half * half.transpose();
+}
+
+/// Reweights until the weights stay as they are.
+bool settle_weights(StackedReadings& stacked, const FitOptions& options, RobustShape shape, Eigen::VectorXd& x,
+                    int& evaluations) {
+  Eigen::VectorXd before = Eigen::VectorXd::Ones(stacked.groups());
+  for (int round = 0; round < most_reweightings; ++round) {
+    const Eigen::VectorXd weights = robust_weights(stacked.group_squares(x), stacked.group_sizes(), shape);
+    if (round > 0 && (weights - before).cwiseAbs().maxCoeff() < settled_weights) return true;
+    stacked.set_group_weights(weights);
+    if (!minimise(stacked, options, x, evaluations)) return false;
+    before = weights;
+  }
+  return false;
+}
+
+void fill_statistics(StackedReadings& stacked, const FitOptions& options, const Eigen::VectorXd& x, Fit& result) {
+  Eigen::VectorXd f;
+  Eigen::MatrixXd J;
+  if (!stacked.residual(x, f) || !stacked.jacobian(x, J)) throw CannotDo("the solution is out of the robot's reach");
+  result.chi_square = f.squaredNorm();
+  result.readings = stacked.readings();
+  result.freedom = stacked.rows() - stacked.columns();
+  result.scale = result.freedom > 0 ? std::sqrt(result.chi_square / result.freedom) : 0.0;
+  double factor = 1.0;
+  if (options.weighting == Weighting::robust) {
+    stacked.set_group_weights({});
+    stacked.jacobian(x, J);
+    const RobustScale scale = robust_scale(stacked.group_squares(x), stacked.group_sizes(),
+                                           stacked.columns() - (options.prior ? stacked.columns() : 0));
+    result.scale = scale.central;
+    factor = scale.variance_factor;
+  } else if (options.weighting == Weighting::ordinary) {
+    factor = result.scale * result.scale;
+  }
+  result.scale_known = options.weighting == Weighting::weighted;
+  const auto tolerances = stacked.tolerances().asDiagonal();
+  result.covariance = factor * (tolerances * inverse_information(J) * tolerances);
+  stacked.spread(x, result.residuals, result.whitened);
+}
+
+}  // namespace
+
+Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+        const FitOptions& options) {
+  StackedReadings stacked(model, columns, poses, options.prior);
+  if (stacked.rows() < stacked.columns())
+    throw CannotDo(std::to_string(stacked.readings()) + " readings cannot tell " + std::to_string(stacked.columns()) +
+                   " parameters");
+  if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
+    throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weighted");
+  Fit result;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(stacked.columns());
+  for (int round = 0; round < weight_rounds; ++round) {
+    stacked.weigh(x, options.weighting);
+    result.converged = minimise(stacked, options, x, result.evaluations);
+  }
+  if (options.weighting == Weighting::robust) {
+    result.converged = settle_weights(stacked, options, RobustShape::huber, x, result.evaluations) && result.converged;
+    result.converged = settle_weights(stacked, options, RobustShape::tukey, x, result.evaluations) && result.converged;
+    const Eigen::VectorXd weights = robust_weights(stacked.group_squares(x), stacked.group_sizes(), RobustShape::tukey);
+    std::size_t row = 0;
+    for (const std::vector<int>& read : stacked.read()) {
+      result.weights.emplace_back();
+      for (std::size_t i = 0; i < read.size(); ++i, ++row)
+        if (i == 0 || stacked.group_of()[row] != stacked.group_of()[row - 1])
+          result.weights.back().push_back(weights[stacked.group_of()[row]]);
+    }
+  }
+  fill_statistics(stacked, options, x, result);
+  result.correction = stacked.correction_of(x);
+  result.change = x.cwiseProduct(stacked.tolerances());
+  return result;
+}
+
+std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, const std::vector<double>& correction,
+                                          const std::vector<MeasuredPose>& poses) {
+  std::vector<Eigen::VectorXd> residuals;
+  Eigen::VectorXd y, difference;
+  for (const MeasuredPose& pose : poses) {
+    if (!model.predict(pose.q, correction, y))
+      throw CannotDo("pose " + std::to_string(pose.id) + " is out of reach with the parameters at hand");
+    model.difference(pose.y, y, difference);
+    residuals.push_back(difference);
+  }
+  return residuals;
+}
+
+BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
+                     const std::vector<MeasuredPose>& poses) {
+  const int width = int(columns.selected.size());
+  BlockArray blocks(int(poses.size()), model.rows(), width);
+  Linearisation out;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (!model.linearise(poses[k].q, {}, columns.selected, out))
+      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach of the nominal robot");
+    std::vector<int> read;
+    for (int i = 0; i < int(poses[k].y.size()); ++i)
+      if (std::isfinite(poses[k].y[i])) read.push_back(i);
+    Eigen::MatrixXd rows = out.G(read, Eigen::all);
+    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(out.covariance(read, read)));
+    if (root.info() != Eigen::Success) throw CannotDo("measurement: the noise covariance is not positive definite");
+    root.matrixL().solveInPlace(rows);
+    blocks.all().middleRows(Eigen::Index(k) * model.rows(), model.rows()).setZero();
+    blocks.all().middleRows(Eigen::Index(k) * model.rows(), rows.rows()) = rows;
+  }
+  return blocks;
+}
+
+}  // namespace posewright

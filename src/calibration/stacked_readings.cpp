@@ -1,0 +1,152 @@
+#include "stacked_readings.hpp"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
+                                 const std::vector<MeasuredPose>& poses, bool prior)
+    : model_(model), columns_(columns), poses_(poses), prior_(prior), correction_(model.parameters().size(), 0.0) {
+  tolerances_.resize(Eigen::Index(columns.parameters.size()));
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    tolerances_[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  const int per_target = model.rows_per_target();
+  int group = -1;
+  for (const MeasuredPose& pose : poses) {
+    read_.emplace_back();
+    int target = -1;
+    for (int i = 0; i < int(pose.y.size()); ++i) {
+      if (!std::isfinite(pose.y[i])) continue;
+      read_.back().push_back(i);
+      const int own = per_target > 0 ? i / per_target : 0;
+      if (own != target) ++group;
+      target = own;
+      group_of_.push_back(group);
+    }
+    readings_ += int(read_.back().size());
+  }
+  root_.resize(poses.size());
+}
+
+void StackedReadings::refuse(std::size_t pose) const {
+  throw CannotDo(
+      "pose " + std::to_string(poses_[pose].id) +
+      " is out of reach with the parameters at hand: is it in the list's units, is the nominal robot right?");
+}
+
+const std::vector<double>& StackedReadings::correction_of(const Eigen::VectorXd& x) {
+  for (std::size_t j = 0; j < columns_.selected.size(); ++j)
+    correction_[std::size_t(columns_.selected[j])] = x[Eigen::Index(j)] * tolerances_[Eigen::Index(j)];
+  return correction_;
+}
+
+void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
+  correction_of(x);
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (!model_.predict_and_linearise(poses_[k].q, correction_, {}, linearisation_, y_)) refuse(k);
+    const std::vector<int>& read = read_[k];
+    const Eigen::MatrixXd covariance = linearisation_.covariance(read, read);
+    root_[k].compute(covariance);
+    if (root_[k].info() != Eigen::Success)
+      throw CannotDo("measurement: the noise covariance of pose " + std::to_string(poses_[k].id) +
+                     " is not positive definite");
+  }
+  if (weighting == Weighting::ordinary) use_one_variance_per_unit();
+}
+
+/// The mean over all readings of the unit; what they are worth to each other within it is one.
+void StackedReadings::use_one_variance_per_unit() {
+  std::map<std::string, std::pair<double, int>> sums;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    const Eigen::MatrixXd covariance = root_[k].reconstructedMatrix();
+    for (std::size_t i = 0; i < read_[k].size(); ++i) {
+      auto& [sum, count] = sums[model_.readings()[std::size_t(read_[k][i])].unit];
+      sum += covariance(Eigen::Index(i), Eigen::Index(i));
+      ++count;
+    }
+  }
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    Eigen::VectorXd variance(Eigen::Index(read_[k].size()));
+    for (std::size_t i = 0; i < read_[k].size(); ++i) {
+      const auto& [sum, count] = sums[model_.readings()[std::size_t(read_[k][i])].unit];
+      variance[Eigen::Index(i)] = sum / count;
+    }
+    root_[k].compute(Eigen::MatrixXd(variance.asDiagonal()));
+  }
+}
+
+double StackedReadings::root_weight(int row) const {
+  return group_weights_.size() == 0 ? 1.0 : std::sqrt(group_weights_[group_of_[std::size_t(row)]]);
+}
+
+bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
+  correction_of(x);
+  f.resize(rows());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (read_[k].empty()) continue;
+    if (!model_.predict(poses_[k].q, correction_, y_)) return false;
+    model_.difference(poses_[k].y, y_, difference_);
+    part_ = difference_(read_[k]);
+    root_[k].matrixL().solveInPlace(part_);
+    for (Eigen::Index i = 0; i < part_.size(); ++i, ++row) f[row] = part_[i] * root_weight(int(row));
+  }
+  if (prior_) f.tail(columns()) = -x;
+  return f.allFinite();
+}
+
+bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
+  correction_of(x);
+  J.resize(rows(), columns());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (read_[k].empty()) continue;
+    if (!model_.predict_and_linearise(poses_[k].q, correction_, columns_.selected, linearisation_, y_)) return false;
+    rows_ = linearisation_.G(read_[k], Eigen::all);
+    root_[k].matrixL().solveInPlace(rows_);
+    for (Eigen::Index i = 0; i < rows_.rows(); ++i, ++row)
+      J.row(row) = -root_weight(int(row)) * rows_.row(i).cwiseProduct(tolerances_.transpose());
+  }
+  if (prior_) {
+    J.bottomRows(columns()).setZero();
+    J.bottomRows(columns()).diagonal().setConstant(-1.0);
+  }
+  return true;
+}
+
+Eigen::VectorXd StackedReadings::group_sizes() const {
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(groups());
+  for (const int group : group_of_) sizes[group] += 1.0;
+  return sizes;
+}
+
+Eigen::VectorXd StackedReadings::group_squares(const Eigen::VectorXd& x) {
+  const Eigen::VectorXd kept = group_weights_;
+  group_weights_.resize(0);
+  Eigen::VectorXd f;
+  residual(x, f);
+  group_weights_ = kept;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(groups());
+  for (std::size_t row = 0; row < group_of_.size(); ++row)
+    squares[group_of_[row]] += f[Eigen::Index(row)] * f[Eigen::Index(row)];
+  return squares;
+}
+
+void StackedReadings::spread(const Eigen::VectorXd& x, std::vector<Eigen::VectorXd>& raw,
+                             std::vector<Eigen::VectorXd>& whitened) {
+  raw = residuals_of(model_, correction_of(x), poses_);
+  whitened = raw;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    part_ = raw[k](read_[k]);
+    root_[k].matrixL().solveInPlace(part_);
+    whitened[k].setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < read_[k].size(); ++i) whitened[k][read_[k][i]] = part_[Eigen::Index(i)];
+  }
+}
+
+}  // namespace posewright

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/calibration/fit.hpp"
+
+namespace posewright {
+
+/// All readings of a calibration as one vector of whitened residuals of the parameters x in units of tolerance.
+class StackedReadings {
+ public:
+  StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
+                  const std::vector<MeasuredPose>& poses, bool prior);
+
+  /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo where a pose is out
+  /// of reach there.
+  void weigh(const Eigen::VectorXd& x, Weighting weighting);
+  /// Weight of each group of rows; empty: 1.
+  void set_group_weights(const Eigen::VectorXd& weights) { group_weights_ = weights; }
+
+  int columns() const { return int(columns_.selected.size()); }
+  int rows() const { return readings_ + (prior_ ? columns() : 0); }
+  int readings() const { return readings_; }
+  int groups() const { return int(group_of_.empty() ? 0 : group_of_.back() + 1); }
+  /// Rows of every group.
+  Eigen::VectorXd group_sizes() const;
+  /// ‖whitened residual‖² of every group, without weights.
+  Eigen::VectorXd group_squares(const Eigen::VectorXd& x);
+
+  /// False where a pose is out of reach at x.
+  bool residual(const Eigen::VectorXd& x, Eigen::VectorXd& f);
+  /// ∂residual/∂x, rows() × columns(); false as residual().
+  bool jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J);
+
+  /// Corrections of all parameters of the model.
+  const std::vector<double>& correction_of(const Eigen::VectorXd& x);
+  const Eigen::VectorXd& tolerances() const { return tolerances_; }
+  /// Raw and whitened residuals as Fit has them; NaN where not read.
+  void spread(const Eigen::VectorXd& x, std::vector<Eigen::VectorXd>& raw, std::vector<Eigen::VectorXd>& whitened);
+  const std::vector<int>& group_of() const { return group_of_; }
+  const std::vector<std::vector<int>>& read() const { return read_; }
+
+ private:
+  [[noreturn]] void refuse(std::size_t pose) const;
+  void use_one_variance_per_unit();
+  double root_weight(int row) const;
+
+  const IdentificationModel& model_;
+  const VariantColumns& columns_;
+  const std::vector<MeasuredPose>& poses_;
+  bool prior_;
+  Eigen::VectorXd tolerances_;
+  std::vector<std::vector<int>> read_;             ///< per pose: which readings are there
+  std::vector<int> group_of_;                      ///< per row: its target (or pose)
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> root_;  ///< per pose: covariance of what was read
+  Eigen::VectorXd group_weights_;
+  int readings_ = 0;
+
+  std::vector<double> correction_;
+  Linearisation linearisation_;
+  Eigen::VectorXd y_, difference_, part_;
+  Eigen::MatrixXd rows_;
+};
+
+}  // namespace posewright

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::python {
@@ -34,7 +35,9 @@ std::optional<Repeats> repeats_of(const py::object& value) {
     const std::optional<int> number = optional_number(value, "repeats", most_poses);
     return number ? std::optional(Repeats{*number}) : std::nullopt;
   }
-  return Repeats{choice(value, "repeats", {"allow", "forbid"}) == "allow" ? Repeats::any_number : 1};
+  const std::string text = py::str(value);
+  if (const auto repeats = posewright::repeats_of(text)) return repeats;
+  throw InputError({}, fmt::format("repeats is '{}'", text), repeats_allowed);
 }
 
 std::uint64_t seed_of(const py::int_& value) {

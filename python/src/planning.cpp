@@ -6,6 +6,7 @@
 #include "posewright/pipeline/observe_problem.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/pipeline/route_problem.hpp"
+#include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::python {
@@ -27,7 +28,7 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
   options.restarts = optional_number(restarts, "restarts", most_restarts);
   options.repeats = repeats_of(repeats);
   if (const std::string text = choice(scaling, "scaling", {"tolerance", "norm", "none"}); !text.empty())
-    options.scaling = text == "norm" ? Scaling::norm : text == "none" ? Scaling::none : Scaling::tolerance;
+    options.scaling = scaling_of(text);
   if (const std::string text = choice(prior, "prior", {"none", "tolerance"}); !text.empty())
     options.prior = text == "tolerance";
   options.reserve = reserve;

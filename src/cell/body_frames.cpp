@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/model/pair_names.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/support/error.hpp"
@@ -18,7 +19,7 @@ class ChainFrames : public BodyFrames {
     X_FrameTip_ = chain_.X_LastTip;
     dimension_ = model.coordinates().size();
     places_.push_back(places_of("", model));
-    if (std::vector<std::size_t> second = places_of(".second", model); !second.empty()) places_.push_back(second);
+    if (std::vector<std::size_t> second = places_of(second_suffix, model); !second.empty()) places_.push_back(second);
     poses_ = int(places_.size());
   }
 
@@ -126,7 +127,7 @@ std::unique_ptr<BodyFrames> make_body_frames(const Problem& problem, const Ident
   if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot))
     return std::make_unique<ChainFrames>(read_urdf_chain(*arm, problem.at(arm->line)), model);
   for (const Coordinate& c : model.coordinates())
-    if (c.name.ends_with(".second"))
+    if (is_second(c.name))
       throw CannotDo("workspace: collision and sight of a parallel robot are not checked for pairs of configurations");
   return std::make_unique<PlatformFrames>(model);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/pair_names.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/support/error.hpp"
 
@@ -37,12 +38,6 @@ void check_body_stations(const Problem& problem, const Cell& cell) {
   };
   for (const BodySpec& body : problem.workspace.collision->obstacles) check(body);
   for (const BodySpec& body : problem.workspace.collision->tool) check(body);
-}
-
-/// A pair of configurations has every coordinate twice.
-std::string first_name(const std::string& name) {
-  constexpr std::string_view second = ".second";
-  return name.ends_with(second) ? name.substr(0, name.size() - second.size()) : name;
 }
 
 std::map<std::string, double> joint_margins(const Problem& problem, const IdentificationModel& model) {

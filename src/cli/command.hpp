@@ -51,6 +51,9 @@ struct CommonOptions {
 po::options_description common_options();
 CommonOptions common_values(const po::variables_map& values);
 
+/// An option with a value, called `name` in the help.
+inline po::typed_value<std::string>* text(const char* name) { return po::value<std::string>()->value_name(name); }
+
 /// The one positional argument, or an error that names it.
 std::string single(const Words& positional, const std::string& what);
 

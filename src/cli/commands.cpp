@@ -16,12 +16,12 @@ const std::vector<Command>& commands() {
 
 po::options_description common_options() {
   po::options_description options("Common options");
-  options.add_options()                                                                                //
-      ("seed", po::value<std::string>()->value_name("S"), "seed of everything random (0)")             //
-      ("threads", po::value<std::string>()->value_name("T"), "threads (all); never changes a result")  //
-      ("json", "result as JSON on stdout, nothing else there")                                         //
-      ("quiet", "no progress")                                                                         //
-      ("verbose", "progress also where stderr is no terminal")                                         //
+  options.add_options()                                                //
+      ("seed", text("S"), "seed of everything random (0)")             //
+      ("threads", text("T"), "threads (all); never changes a result")  //
+      ("json", "result as JSON on stdout, nothing else there")         //
+      ("quiet", "no progress")                                         //
+      ("verbose", "progress also where stderr is no terminal")         //
       ("help", "this text");
   return options;
 }

@@ -16,7 +16,6 @@ using Json = nlohmann::ordered_json;
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                                     //
       ("variant", po::value<Words>()->value_name("V")->composing(), "these variants, or a list A,B (all)")  //
       ("truth", text("V"), "what this variant does to the others: every parameter, tolerances too")         //

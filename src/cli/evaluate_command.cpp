@@ -16,7 +16,6 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                           //
       ("drop", text("k"), "which k poses to leave out")                                           //
       ("add", text("k"), "which k poses to measure more")                                         //

@@ -11,6 +11,7 @@
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/file.hpp"
 #include "session.hpp"
+#include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -22,7 +23,6 @@ constexpr const char* no_controller = "syntax checked, not run on a controller";
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                                   //
       ("to", text("FORMAT"), "format; list or none: the table of formats")                                //
       ("output,o", text("FILE|DIR"), "where to (a name of the format's own; - for stdout)")               //
@@ -221,9 +221,7 @@ int run(const po::variables_map& values, const Words& positional) {
   if (common.json) {
     fmt::print("{}", summary_json(format, sequence, files, exported.notes));
   } else {
-    std::string names;
-    for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
-    fmt::print("Written: {}\n", names);
+    fmt::print("{}", written_text(files));
   }
   return done;
 }

@@ -14,7 +14,6 @@ using Json = nlohmann::ordered_json;
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                        //
       ("variant", text("V"), "only this variant (all)")                        //
       ("candidates", text("n"), "feasible configurations in the pool (2000)")  //

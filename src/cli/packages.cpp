@@ -1,5 +1,6 @@
 #include "packages.hpp"
 
+#include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
 
 namespace posewright::cli {
@@ -35,6 +36,11 @@ Problem problem_with_packages(const std::filesystem::path& file, const po::varia
   Problem problem = read_problem(file);
   problem.packages = packages_of(values);
   return problem;
+}
+
+std::filesystem::path problem_file(const po::variables_map& values, const std::filesystem::path& plan) {
+  const std::filesystem::path given = text_of(values, "problem");
+  return given.empty() ? problem_of_plan(plan) : given;
 }
 
 }  // namespace posewright::cli

@@ -5,6 +5,7 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
+#include "posewright/problem/design_words.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -12,7 +13,6 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                              //
       ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")  //
       ("variant", text("V"), "model variant (design: variant, else the first)")                      //
@@ -45,7 +45,7 @@ int run(const po::variables_map& values, const Words& positional) {
   if (const std::string prior = choice_of(values, "prior", {"none", "tolerance"}); !prior.empty())
     plan_options.prior = prior == "tolerance";
   if (const std::string scaling = choice_of(values, "scaling", {"tolerance", "norm", "none"}); !scaling.empty())
-    plan_options.scaling = scaling == "norm" ? Scaling::norm : scaling == "none" ? Scaling::none : Scaling::tolerance;
+    plan_options.scaling = scaling_of(scaling);
   const std::filesystem::path augment = text_of(values, "augment");
   if (!augment.empty()) plan_options.measured = poses_in_file(augment);
   plan_options.reserve = values.count("reserve") > 0;

@@ -3,7 +3,6 @@
 #include "command.hpp"
 #include "packages.hpp"
 #include "posewright/pipeline/report_problem.hpp"
-#include "posewright/pipeline/route_problem.hpp"
 #include "posewright/support/file.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
@@ -13,7 +12,6 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                          //
       ("output,o", text("FILE"), "the page (report.html; - for none)")                           //
       ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")       //
@@ -32,8 +30,7 @@ int run(const po::variables_map& values, const Words& positional) {
   report_options.route = text_of(values, "route");
   report_options.sizes = report_options.candidates = values.count("brief") == 0;
   report_options.threads = common.threads;
-  const std::filesystem::path given = text_of(values, "problem");
-  const std::filesystem::path file = given.empty() ? problem_of_plan(plan) : given;
+  const std::filesystem::path file = problem_file(values, plan);
   const std::filesystem::path page = output_file(values, "output", "report.html");
   std::vector<std::filesystem::path> inputs = {plan, file};
   if (!report_options.route.empty()) inputs.push_back(report_options.route);

@@ -15,7 +15,6 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                      //
       ("from-home", "begin at home (workspace: motion: home, else zero)")                    //
       ("closed", "end where the route began")                                                //
@@ -45,10 +44,9 @@ int run(const po::variables_map& values, const Words& positional) {
   route_options.threads = common.threads;
   if (route_options.from_home && route_options.start)
     throw InputError({}, "--start stands beside --from-home", "one of both is allowed");
-  const std::filesystem::path given = text_of(values, "problem");
-  if (given.empty() && !from.empty())
+  if (!from.empty() && text_of(values, "problem").empty())
     throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
-  const std::filesystem::path file = given.empty() ? problem_of_plan(plan) : given;
+  const std::filesystem::path file = problem_file(values, plan);
   const Problem problem = problem_with_packages(file, values);
   const std::filesystem::path json = output_file(values, "output", "route.json");
   const std::filesystem::path csv = output_file(values, "poses-csv", "-");

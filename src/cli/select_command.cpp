@@ -9,7 +9,6 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                          //
       ("poses", text("N"), "number of blocks to choose (required)")                              //
       ("rows", text("r"), "rows of a block; needed for CSV and two-dimensional .npy")            //

@@ -17,7 +17,6 @@ using Json = nlohmann::ordered_json;
 
 po::options_description options() {
   po::options_description options("Options");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()                                                                     //
       ("choose", text("k"), "how many stations are used (workspace: stations: choose, 1)")  //
       ("full", text("n"), "how many of the best are planned in full (3)")                   //

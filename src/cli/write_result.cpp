@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "posewright/outputs/write_plan.hpp"
+#include "posewright/problem/design_words.hpp"
 #include "posewright/support/file.hpp"
 #include "terminal.hpp"
 
@@ -10,7 +11,6 @@ namespace posewright::cli {
 
 po::options_description output_options(bool poses) {
   po::options_description options("Output");
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add_options()("output,o", text("FILE"), "plan as JSON (plan.json; - for none)");
   if (poses) options.add_options()("poses-csv", text("FILE"), "poses as CSV (poses.csv; - for none)");
   options.add_options()                                         //
@@ -22,11 +22,8 @@ po::options_description output_options(bool poses) {
 std::optional<Repeats> repeats_of(const po::variables_map& values) {
   const std::string text = text_of(values, "repeats");
   if (text.empty()) return std::nullopt;
-  if (text == "allow") return Repeats{Repeats::any_number};
-  if (text == "forbid") return Repeats{1};
-  if (text.find_first_not_of("0123456789") == std::string::npos)
-    return Repeats{*whole_number(values, "repeats", 1, 1000000)};
-  throw InputError({}, "--repeats " + text, "allowed: allow, forbid, or how often a pose may be measured");
+  if (const auto repeats = posewright::repeats_of(text)) return repeats;
+  throw InputError({}, "--repeats " + text, repeats_allowed);
 }
 
 std::filesystem::path output_file(const po::variables_map& values, const std::string& option, const char* standard) {

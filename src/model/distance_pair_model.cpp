@@ -2,6 +2,7 @@
 
 #include "measure_distance.hpp"
 #include "posewright/model/closed_chain.hpp"
+#include "posewright/model/pair_names.hpp"
 
 namespace posewright {
 namespace {
@@ -41,10 +42,10 @@ DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const Measur
   };
   append(coordinates_, tip_->coordinates(), "", false);
   moving_ = coordinates_.size();
-  append(coordinates_, tip_->coordinates(), ".second", false);
+  append(coordinates_, tip_->coordinates(), second_suffix, false);
   append(coordinates_, tip_->coordinates(), "", true);
   append(actuators_, tip_->actuators(), "", false);
-  append(actuators_, tip_->actuators(), ".second", false);
+  append(actuators_, tip_->actuators(), second_suffix, false);
   for (const TargetSpec& t : spec_.targets) readings_.push_back({t.name + ".distance", "m"});
   rows_ = int(spec_.targets.size());
   unmeasurable_reason_ = "distance out of range";

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "posewright/model/pair_names.hpp"
+
 namespace posewright {
 namespace {
 
@@ -18,7 +20,7 @@ void throw_unknown_coordinate(const SourcePlace& place, const std::string& name,
                               const std::vector<Coordinate>& coordinates) {
   std::string names;
   for (const Coordinate& c : coordinates)
-    if (!c.choice() && !c.name.ends_with(".second")) names += (names.empty() ? "allowed: " : ", ") + c.name;
+    if (!c.choice() && !is_second(c.name)) names += (names.empty() ? "allowed: " : ", ") + c.name;
   throw InputError(place, "'" + name + "' is no coordinate of this robot", names);
 }
 

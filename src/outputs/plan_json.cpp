@@ -56,12 +56,10 @@ Json variants_json(const Plan& plan) {
 
 Json curve_json(const Plan& plan) {
   Json json = Json::array();
-  for (const CurvePoint& point : plan.curve)
-    json.push_back({{"poses", point.poses},
-                    {"log_det", point.log_det},
-                    {"rho0", point.rho0 ? Json(*point.rho0) : Json(nullptr)},
-                    {"largest_sigma_ratio", point.worst_sigma ? Json(*point.worst_sigma) : Json(nullptr)},
-                    {"enough", point.enough}});
+  for (const CurvePoint& point : plan.curve) {
+    json.push_back(curve_point_json(point));
+    json.back()["enough"] = point.enough;
+  }
   return json;
 }
 
@@ -104,6 +102,13 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
   const Eigen::Quaterniond q(X.linear());
   const Eigen::Vector3d p = X.translation();
   return {{"position", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+nlohmann::ordered_json curve_point_json(const CurvePoint& point) {
+  return {{"poses", point.poses},
+          {"log_det", point.log_det},
+          {"rho0", point.rho0 ? Json(*point.rho0) : Json(nullptr)},
+          {"largest_sigma_ratio", point.worst_sigma ? Json(*point.worst_sigma) : Json(nullptr)}};
 }
 
 namespace {

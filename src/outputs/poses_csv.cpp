@@ -1,20 +1,9 @@
 #include <fmt/format.h>
 
+#include "formats/text.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
 namespace posewright {
-namespace {
-
-/// A name as a CSV cell: quoted where it has a comma or a quote (RFC 4180).
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"") == std::string::npos) return name;
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
-  return text + "\"";
-}
-
-}  // namespace
-
 std::string poses_csv(const Plan& plan) {
   if (plan.poses.empty() || plan.poses.front().configuration.empty()) return {};
   std::string text = "pose";
@@ -30,7 +19,7 @@ std::string poses_csv(const Plan& plan) {
     for (const NamedValue& v : pose.configuration) text += fmt::format(",{}", v.value);
     for (const NamedValue& v : pose.actuators) text += fmt::format(",{}", v.value);
     for (const std::string& choice : {pose.load_case, pose.station})
-      if (!choice.empty()) text += "," + quoted(choice);
+      if (!choice.empty()) text += "," + formats::csv_cell(choice);
     text += "\n";
   }
   return text;

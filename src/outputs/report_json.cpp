@@ -3,6 +3,7 @@
 
 #include "posewright/outputs/report.hpp"
 #include "posewright/version.hpp"
+#include "sight_json.hpp"
 
 namespace posewright {
 namespace {
@@ -99,14 +100,6 @@ Json candidates_json(const ReportCandidates& candidates) {
   return {{"sensitivity", sensitivity}, {"bound", 1.0}, {"positions", positions}, {"chosen", candidates.chosen}};
 }
 
-Json curve_point_json(const std::optional<CurvePoint>& point) {
-  if (!point) return nullptr;
-  return {{"poses", point->poses},
-          {"log_det", point->log_det},
-          {"rho0", point->rho0 ? Json(*point->rho0) : Json(nullptr)},
-          {"largest_sigma_ratio", point->worst_sigma ? Json(*point->worst_sigma) : Json(nullptr)}};
-}
-
 Json bodies_json(const Report& report) {
   Json json = Json::array();
   for (const ReportBody& body : report.bodies)
@@ -145,7 +138,7 @@ std::string report_json(const Report& report) {
   json["curve"] = Json::array();
   for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
   json["prefix"] = Json::array();
-  for (const auto& point : report.prefix) json["prefix"].push_back(curve_point_json(point));
+  for (const auto& point : report.prefix) json["prefix"].push_back(point ? curve_point_json(*point) : Json(nullptr));
   return json.dump() + "\n";
 }
 

@@ -10,5 +10,6 @@ nlohmann::ordered_json sight_json(const TargetSight& sight);
 /// Of a parallel robot, by name.
 nlohmann::ordered_json actuators_json(const PlannedPose& pose);
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);
+nlohmann::ordered_json curve_point_json(const CurvePoint& point);
 
 }  // namespace posewright

@@ -38,14 +38,7 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
 
 SearchRequest request_for(const Preparation& prepared, const PreparedVariant& variant, const Settings& settings,
                           int poses) {
-  SearchRequest request;
-  request.criterion = settings.criterion;
-  request.method = settings.method;
-  request.poses = poses;
-  request.repeats = settings.repeats;
-  request.reserve = settings.reserve;
-  request.planner = settings.planner;
-  if (prepared.has_minimum_distance) request.spacing = &prepared.minimum_distance;
+  SearchRequest request = spaced_request(prepared, settings, poses);
   request.make_space = [&prepared, &variant](const Eigen::MatrixXd& R) {
     return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns().selected}},
                                     prepared.configurations, prepared.measured, prepared.spacing, R);

@@ -111,17 +111,6 @@ class ListEvaluation {
     return references;
   }
 
-  SearchRequest request(const std::string& criterion, int poses) const {
-    SearchRequest request;
-    request.criterion = criterion;
-    request.method = settings_.method;
-    request.poses = poses;
-    request.repeats = settings_.repeats;
-    request.reserve = settings_.reserve;
-    request.planner = settings_.planner;
-    return request;
-  }
-
   /// Over the candidates and the list itself, so that the bound holds for the list too.
   Bound bound_of(const std::string& criterion) {
     Configurations pool = prepared_.configurations;
@@ -131,8 +120,9 @@ class ListEvaluation {
       for (std::size_t j = 0; j < pool.count() && !known; ++j) known = std::equal(q.begin(), q.end(), pool[j].begin());
       if (!known) append(pool, q);
     }
-    return bound_only(search_parts(prepared_, pool, settings_.planner.threads), request(criterion, settings_.poses),
-                      monitor_);
+    SearchRequest wanted = search_request(settings_, settings_.poses);
+    wanted.criterion = criterion;
+    return bound_only(search_parts(prepared_, pool, settings_.planner.threads), wanted, monitor_);
   }
 
   Configurations without(const std::vector<int>& members) const {
@@ -178,7 +168,7 @@ class ListEvaluation {
   ListChange drop(int k, double phi, const std::vector<double>& references) {
     const int n = int(poses_.count());
     if (k >= n) throw CannotDo(fmt::format("{} of {} poses cannot be dropped: at least one must be left", k, n));
-    SearchRequest wanted = request(settings_.criterion, n - k);
+    SearchRequest wanted = search_request(settings_, n - k);
     double sets = 1.0;
     for (int i = 0; i < k; ++i) sets *= double(n - i) / (i + 1);
     wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
@@ -206,10 +196,9 @@ class ListEvaluation {
       const Eigen::MatrixXd known = blocks.all().transpose() * blocks.all();
       parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
     }
-    SearchRequest wanted = request(settings_.criterion, k);
+    SearchRequest wanted = spaced_request(prepared_, settings_, k);
     wanted.make_space = space_maker(prepared_);
     wanted.references = references;
-    if (prepared_.has_minimum_distance) wanted.spacing = &prepared_.minimum_distance;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
     Configurations longer = poses_, added;
     added.dimension = poses_.dimension;

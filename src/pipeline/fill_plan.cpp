@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/problem/design_words.hpp"
+
 namespace posewright {
 namespace {
 
@@ -36,11 +38,6 @@ void fill_parameters(Plan& plan, const PreparedVariant& variant, const Evaluatio
 }
 
 }  // namespace
-
-std::string scaling_text(Scaling scaling) {
-  if (scaling == Scaling::norm) return "norm";
-  return scaling == Scaling::none ? "none" : "tolerance";
-}
 
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q) {
   PlannedPose pose;

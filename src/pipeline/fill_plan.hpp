@@ -27,6 +27,4 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
 
 CellNotes cell_notes(const Cell& cell);
 
-std::string scaling_text(Scaling scaling);
-
 }  // namespace posewright

@@ -31,14 +31,7 @@ class Planning {
   const Settings& settings() const { return settings_; }
 
   Plan plan(int poses) {
-    SearchRequest request;
-    request.criterion = settings_.criterion;
-    request.method = settings_.method;
-    request.poses = poses;
-    request.repeats = settings_.repeats;
-    request.reserve = settings_.reserve;
-    request.planner = settings_.planner;
-    if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
+    SearchRequest request = spaced_request(prepared_, settings_, poses);
     request.make_space = space_maker(prepared_);
     const SearchResult found =
         search(search_parts(prepared_, prepared_.configurations, settings_.planner.threads), request, monitor_);

@@ -1,6 +1,7 @@
 #include "preparation.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "posewright/support/error.hpp"
 #include "study_space.hpp"
@@ -147,6 +148,23 @@ void keep_away_from_measured(Preparation& prepared, Repeats repeats) {
       prepared.configurations.dimension);
 }
 
+SearchRequest search_request(const Settings& settings, int poses) {
+  SearchRequest request;
+  request.criterion = settings.criterion;
+  request.method = settings.method;
+  request.poses = poses;
+  request.repeats = settings.repeats;
+  request.reserve = settings.reserve;
+  request.planner = settings.planner;
+  return request;
+}
+
+SearchRequest spaced_request(const Preparation& prepared, const Settings& settings, int poses) {
+  SearchRequest request = search_request(settings, poses);
+  if (prepared.has_minimum_distance) request.spacing = &prepared.minimum_distance;
+  return request;
+}
+
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared) {
   return [&prepared](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
@@ -158,13 +176,13 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
 
 namespace {
 
-SearchPart search_part(const PreparedVariant& variant, const Configurations& configurations, int threads) {
-  return {build_blocks(*variant.model, variant.columns().selected, configurations, threads),
-          variant.columns().nuisance,
-          variant.weight,
-          variant.scale,
-          variant.test_points,
-          variant.prior};
+BlockArray blocks_of(const PreparedVariant& variant, const Configurations& configurations, int threads) {
+  return build_blocks(*variant.model, variant.columns().selected, configurations, threads);
+}
+
+SearchPart search_part(const PreparedVariant& variant, BlockArray blocks) {
+  return {std::move(blocks), variant.columns().nuisance, variant.weight,
+          variant.scale,     variant.test_points,        variant.prior};
 }
 
 }  // namespace
@@ -172,15 +190,25 @@ SearchPart search_part(const PreparedVariant& variant, const Configurations& con
 std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Configurations& configurations,
                                      int threads) {
   std::vector<SearchPart> parts;
-  parts.push_back(search_part(variant, configurations, threads));
+  parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
   return parts;
 }
 
 std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
   for (const PreparedVariant& variant : prepared.variants)
-    parts.push_back(search_part(variant, configurations, threads));
+    parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
   return parts;
+}
+
+std::vector<SearchPart> copied_parts(const Preparation& prepared, const std::vector<SearchPart>& parts) {
+  std::vector<SearchPart> copy;
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    std::vector<int> all(parts[v].blocks.count());
+    std::iota(all.begin(), all.end(), 0);
+    copy.push_back(search_part(prepared.variants[v], parts[v].blocks.subset(all)));
+  }
+  return copy;
 }
 
 }  // namespace posewright

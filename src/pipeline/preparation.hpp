@@ -59,10 +59,17 @@ enum class Unidentifiable { refuse, keep };
 Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor,
                     Unidentifiable unidentifiable = Unidentifiable::refuse);
 
+/// What the settings ask of a search for so many poses, among blocks alone.
+SearchRequest search_request(const Settings& settings, int poses);
+/// The same at the minimum distance between candidates; `prepared` must outlive the request.
+SearchRequest spaced_request(const Preparation& prepared, const Settings& settings, int poses);
+
 /// Raw blocks of the configurations for one variant alone, with what a search needs beside them.
 std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Configurations& configurations, int threads);
 /// The same for every variant.
 std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads);
+/// A copy of what search_parts made for every variant: a search takes its parts.
+std::vector<SearchPart> copied_parts(const Preparation& prepared, const std::vector<SearchPart>& parts);
 
 /// The workspace of the problem for searches beyond the candidates; `prepared` must outlive what it makes.
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared);

@@ -4,21 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "fill_plan.hpp"
 #include "judgement.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "preparation.hpp"
 #include "read_poses.hpp"
 #include "report_scene.hpp"
+#include "written_plan.hpp"
 
 namespace posewright {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::uintmax_t size_limit = 200'000'000;
 // Other numbers of poses, as shares of the plan's own.
@@ -28,51 +25,44 @@ constexpr int curve_restarts = 1;
 // Relative difference of log det that rounding of written configurations cannot make.
 constexpr double same_log_det = 1e-6;
 
-/// What the plan was made with, as far as it says.
-PlanOptions options_of(const Json& plan, int poses) {
-  PlanOptions options;
-  options.poses = poses;
+/// As the plan was made, but with short searches that stay among the candidates.
+Settings report_settings(const Problem& problem, const WrittenPlan& plan, int threads) {
+  PlanOptions options = plan.options;
   options.method = "exchange";
-  const Json& criterion = plan.at("criterion");
-  options.criterion = criterion.at("name").get<std::string>();
-  if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
-  options.reserve = criterion.value("reserve", false);
-  options.prior = criterion.at("prior").get<std::string>() == "tolerance";
-  const std::string scaling = criterion.at("scaling").get<std::string>();
-  options.scaling = scaling == "norm" ? Scaling::norm : scaling == "none" ? Scaling::none : Scaling::tolerance;
-  options.candidates = int(plan.at("statistics").at("candidates_feasible").get<long>());
   options.restarts = curve_restarts;
-  options.seed = plan.at("seed").get<std::uint64_t>();
-  if (const Json& certificate = plan.at("certificate").at("candidates"); certificate.is_object()) {
-    const std::string repeats = certificate.at("repeats").get<std::string>();
-    if (repeats == "allow") options.repeats = Repeats{Repeats::any_number};
-    else options.repeats = Repeats{repeats == "forbid" ? 1 : std::stoi(repeats)};
-  }
-  return options;
+  options.threads = threads;
+  return settings_of(problem, options);
 }
 
 class Reporting {
  public:
   Reporting(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
             const Monitor& monitor)
-      : problem_(problem), file_(file), options_(options), monitor_(monitor) {
+      : problem_(problem),
+        options_(options),
+        monitor_(monitor),
+        plan_(read_written_plan(file)),
+        settings_(report_settings(problem, plan_, options.threads)) {
     // The time limit is for other numbers of poses: a shortened set of candidates would be shown as if it were whole.
     whole_.interrupted = monitor.interrupted;
     whole_.on_progress = monitor.on_progress;
-    report_.plan_json = read_file(file, size_limit);
     if (!options.route.empty()) report_.route_json = read_file(options.route, size_limit);
-    try {
-      plan_ = Json::parse(report_.plan_json);
-      if (plan_.value("schema", "") != "posewright/plan/1") throw_no_plan();
-      settle(plan_.at("poses"));
-    } catch (const Json::exception&) {
-      throw_no_plan();
-    } catch (const std::logic_error&) {  // a number that is none
-      throw_no_plan();
-    }
+    report_.plan_json = std::move(plan_.text);
+    // What was measured before is in the plan, wherever it came from.
+    settings_.measured = [this](const std::vector<Coordinate>& coordinates) {
+      list_ = read_poses_text(report_.plan_json, plan_.file.string(), coordinates);
+      PoseList before;
+      for (std::size_t i = 0; i < list_.configurations.size(); ++i)
+        if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
+      return before;
+    };
     prepared_ = prepare(problem, settings_, whole_);
     if (whole_.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
-    read_list();
+    all_.dimension = new_.dimension = prepared_.configurations.dimension;
+    for (std::size_t i = 0; i < list_.configurations.size(); ++i) {
+      append(all_, list_.configurations[i]);
+      if (!list_.measured[i]) append(new_, list_.configurations[i]);
+    }
   }
 
   Report make() {
@@ -82,10 +72,7 @@ class Reporting {
     note_changes(judgement);
     fill_information(judgement);
     std::vector<std::pair<int, std::vector<double>>> poses;
-    for (std::size_t i = 0; i < all_.count(); ++i) {
-      const auto q = all_[i];
-      poses.emplace_back(ids_[i], std::vector<double>(q.begin(), q.end()));
-    }
+    for (std::size_t i = 0; i < list_.ids.size(); ++i) poses.emplace_back(list_.ids[i], list_.configurations[i]);
     const auto& coordinates = prepared_.first().workspace->coordinates();
     fill_scene(report_, problem_, *prepared_.cell, poses, coordinates, options_.route);
     for (const Coordinate& c : prepared_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
@@ -96,41 +83,10 @@ class Reporting {
   }
 
  private:
-  [[noreturn]] void throw_no_plan() const {
-    throw InputError({file_.string(), 0}, "is no plan of a robot", "plan.json as posewright plan writes it");
-  }
-
-  void settle(const Json& poses) {
-    const auto fresh =
-        std::count_if(poses.begin(), poses.end(), [](const Json& p) { return !p.value("measured", false); });
-    if (fresh == 0 || plan_.at("variant").get<std::string>().empty()) throw_no_plan();
-    PlanOptions options = options_of(plan_, int(fresh));
-    options.threads = options_.threads;
-    settings_ = settings_of(problem_, options);
-    // What was measured before is in the plan, wherever it came from.
-    settings_.measured = [file = file_](const std::vector<Coordinate>& coordinates) {
-      const PoseList list = read_poses(file, coordinates);
-      PoseList before;
-      for (std::size_t i = 0; i < list.configurations.size(); ++i)
-        if (list.measured[i]) before.configurations.push_back(list.configurations[i]);
-      return before;
-    };
-  }
-
-  void read_list() {
-    const PoseList list = read_poses(file_, prepared_.first().workspace->coordinates());
-    all_.dimension = new_.dimension = prepared_.configurations.dimension;
-    for (std::size_t i = 0; i < list.configurations.size(); ++i) {
-      append(all_, list.configurations[i]);
-      ids_.push_back(list.ids[i]);
-      if (!list.measured[i]) append(new_, list.configurations[i]);
-    }
-  }
-
   void note_changes(const Judgement& judgement) {
-    const double stated = plan_.at("criterion").at("log_det").get<double>();
+    const double stated = plan_.log_det;
     const double found = judgement.evaluations.front().log_det;
-    if (plan_.at("problem").value("sha256", "") != problem_.sha256)
+    if (plan_.problem_sha256 != problem_.sha256)
       report_.notes.push_back(
           "The problem file has changed since the plan was made: the plan's own figures are those of the old file, "
           "everything that this page recomputes those of the new one.");
@@ -157,7 +113,7 @@ class Reporting {
     const BlockArray blocks = build_blocks(*variant.model, columns.selected, all_, options_.threads);
     for (std::size_t i = 0; i < blocks.count(); ++i) {
       const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
-      information.poses.emplace_back(ids_[i], scaled.transpose() * scaled);
+      information.poses.emplace_back(list_.ids[i], scaled.transpose() * scaled);
     }
     if (settings_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
     for (const TestPoint& point : variant.test_points) {
@@ -189,29 +145,23 @@ class Reporting {
     std::set<int> seen;
     for (const ReportKeyframe& keyframe : report_.keyframes) {
       if (!keyframe.pose || *keyframe.pose < 1 || !seen.insert(*keyframe.pose).second) continue;
-      const auto i = std::size_t(std::find(ids_.begin(), ids_.end(), *keyframe.pose) - ids_.begin());
-      if (plan_.at("poses").at(i).value("measured", false)) continue;
+      const auto i = std::size_t(std::find(list_.ids.begin(), list_.ids.end(), *keyframe.pose) - list_.ids.begin());
+      if (list_.measured[i]) continue;
       append(list, all_[i]);
       report_.prefix.push_back(point_of(list, int(list.count())));
     }
   }
 
-  SearchRequest request(int poses) const {
-    SearchRequest request;
-    request.criterion = settings_.criterion;
-    request.method = settings_.method;
-    request.poses = poses;
-    request.repeats = settings_.repeats;
-    request.reserve = settings_.reserve;
-    request.planner = settings_.planner;
-    if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
-    return request;
+  /// Made once for all searches.
+  std::vector<SearchPart> parts_of_candidates() {
+    if (parts_.empty()) parts_ = search_parts(prepared_, prepared_.configurations, options_.threads);
+    return copied_parts(prepared_, parts_);
   }
 
   void fill_candidates() {
     const Configurations& pool = prepared_.configurations;
     if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    Bound bound = bound_only(search_parts(prepared_, pool, options_.threads), request(settings_.poses), whole_);
+    Bound bound = bound_only(parts_of_candidates(), spaced_request(prepared_, settings_, settings_.poses), whole_);
     if (whole_.should_stop()) {
       report_.notes.emplace_back("Stopped early: what each candidate could tell is left out.");
       return;
@@ -233,7 +183,7 @@ class Reporting {
   void add_to_curve(int poses) {
     const Configurations& pool = prepared_.configurations;
     try {
-      const SearchResult found = search(search_parts(prepared_, pool, options_.threads), request(poses), whole_);
+      const SearchResult found = search(parts_of_candidates(), spaced_request(prepared_, settings_, poses), whole_);
       if (whole_.should_stop()) return;  // not the best plan of so many
       Configurations list;
       list.dimension = pool.dimension;
@@ -264,15 +214,15 @@ class Reporting {
   }
 
   const Problem& problem_;
-  const std::filesystem::path& file_;
   const ReportOptions& options_;
   const Monitor& monitor_;
-  Monitor whole_;  // without the time limit
-  Json plan_;
+  Monitor whole_;     // without the time limit
+  WrittenPlan plan_;  // its text is in the report
   Settings settings_;
   Preparation prepared_;
+  PoseList list_;  // the poses of the plan
   Configurations all_, new_;
-  std::vector<int> ids_;  // of all poses
+  std::vector<SearchPart> parts_;  // of the candidates
   Report report_;
 };
 

@@ -11,6 +11,7 @@
 #include "posewright/criterion/reserve.hpp"
 #include "posewright/planning/extended_bound.hpp"
 #include "posewright/planning/whiten.hpp"
+#include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -167,11 +168,6 @@ void require_known(const std::string& criterion, const std::string& method, cons
     throw InputError(criterion_place, "unknown criterion '" + criterion + "'", "available: " + criterion_names());
   if (make_planner(method) == nullptr)
     throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
-}
-
-std::string repeats_text(Repeats repeats) {
-  if (repeats.most == 1) return "forbid";
-  return repeats.most == Repeats::any_number ? "allow" : std::to_string(repeats.most);
 }
 
 Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {

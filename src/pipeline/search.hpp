@@ -68,7 +68,4 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
 /// Efficiencies of a plan whose Φ is `phi`; the last step so that they rest on the evaluation's number.
 void certify(Certificate& certificate, double phi, double degree);
 
-/// forbid, allow or the number.
-std::string repeats_text(Repeats repeats);
-
 }  // namespace posewright

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "posewright/problem/design_words.hpp"
 #include "sections.hpp"
 #include "text.hpp"
 
@@ -44,11 +45,9 @@ std::vector<DesignSpec::Weighted> read_several(const Value& value, const std::ve
 
 Repeats read_repeats(const Value& value) {
   const std::string text = value.text("forbid, allow or a number is expected");
-  if (text == "forbid") return {1};
-  if (text == "allow") return {Repeats::any_number};
-  if (text.find_first_not_of("0123456789") != std::string::npos)
-    value.fail("is " + in_quotes(text), "allowed: forbid, allow, or how often a pose may be measured");
-  return {value.integer(1, 1000000)};
+  const std::optional<Repeats> repeats = repeats_of(text);
+  if (!repeats) value.fail("is " + in_quotes(text), repeats_allowed);
+  return *repeats;
 }
 
 DesignSpec::MinimumDistance read_minimum_distance(const Value& value) {
@@ -92,10 +91,8 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
   if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses, folder);
   if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
   if (const Value* reserve = section.find("reserve")) design.reserve = reserve->flag();
-  if (const Value* scaling = section.find("scaling")) {
-    const std::string word = scaling->choice({"tolerance", "norm", "none"});
-    design.scaling = word == "norm" ? Scaling::norm : word == "none" ? Scaling::none : Scaling::tolerance;
-  }
+  if (const Value* scaling = section.find("scaling"))
+    design.scaling = *scaling_of(scaling->choice({"tolerance", "norm", "none"}));
   if (const Value* require = section.find("require")) design.require = read_requirement(*require);
 }
 

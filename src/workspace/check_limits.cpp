@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "checks.hpp"
+#include "posewright/model/pair_names.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -39,7 +40,7 @@ class CoupledCheck : public SingleCheck {
   double lower_, upper_;
 };
 
-/// Factors in the order of a configuration, for its first poses or (suffix ".second") its second ones. Empty where
+/// Factors in the order of a configuration, for its first poses or (second_suffix) its second ones. Empty where
 /// there are none of these.
 std::vector<double> factors_of(const CheckContext& context, const CoupledLimits& coupled, const std::string& suffix) {
   std::vector<double> factors(context.coordinates.size(), 0.0);
@@ -71,7 +72,7 @@ void add_coupled_checks(const CheckContext& context, Checks& checks) {
   for (const CoupledLimits& coupled : context.problem.workspace.coupled) {
     std::string reason = "coupled limits of";
     for (const auto& [name, factor] : coupled.factors) reason += " " + name.value;
-    for (const char* suffix : {"", ".second"})
+    for (const char* suffix : {"", second_suffix})
       if (std::vector<double> factors = factors_of(context, coupled, suffix); !factors.empty())
         checks.push_back(std::make_unique<CoupledCheck>(reason, std::move(factors), coupled.lower, coupled.upper));
   }

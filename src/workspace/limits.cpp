@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "posewright/model/pair_names.hpp"
 #include "posewright/problem/units.hpp"
 
 namespace posewright {
@@ -43,7 +44,7 @@ void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits
   bool found = false;
   for (Coordinate& c : coordinates) {
     // A pair of configurations has every coordinate twice; one line narrows both.
-    if (c.choice() || (c.name != limits.name.value && c.name != limits.name.value + ".second")) continue;
+    if (c.choice() || (c.name != limits.name.value && c.name != limits.name.value + second_suffix)) continue;
     found = true;
     narrow(c, limits, problem.at(limits.name.line));
   }

@@ -6,6 +6,7 @@
 #include "checks.hpp"
 #include "limits.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/pair_names.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/support/error.hpp"
 
@@ -74,7 +75,7 @@ class MotionSpace::Implementation {
         all(limits_in_force(model, problem, cell.get())) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].choice()) continue;
-      if (all[i].name.ends_with(".second"))
+      if (is_second(all[i].name))
         throw CannotDo("measurement: motions between pairs of configurations are not planned");
       all[i].values.clear();
       moving.push_back(i);

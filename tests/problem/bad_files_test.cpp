@@ -175,7 +175,7 @@ const BadFile rest[] = {
     {"RestartsOverflow", arm, "restarts: 7", "restarts: 99999999999", 37,
      "a whole number from 1 to 1000000 is expected"},
     {"RepeatsWord", arm, "repeats: allow", "repeats: yes", 38,
-     "design.repeats is 'yes'; allowed: forbid, allow, or how often"},
+     "design.repeats is 'yes'; allowed: allow, forbid, or how often"},
     {"LineBreakInName", arm, "criterion: o3", "criterion: \"o\\n3\"", 33, "is 'o\\x0a3'; control characters"},
     {"LineBreakInKey", arm, "criterion: o3", "\"o\\n3\": 1", 33, "is 'o\\x0a3'; control characters"},
 };

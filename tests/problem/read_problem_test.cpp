@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "example_files.hpp"
+#include "posewright/problem/design_words.hpp"
 #include "posewright/support/sha256.hpp"
 
 namespace posewright {
@@ -131,6 +132,19 @@ TEST(ReadProblem, DesignIsReadFieldByField) {
   EXPECT_EQ(design.candidates.value, 20000);
   EXPECT_EQ(design.restarts.value, 7);
   EXPECT_EQ(design.repeats, Repeats{Repeats::any_number});
+}
+
+TEST(DesignWords, AreReadBackAsTheyAreWritten) {
+  for (const Scaling scaling : {Scaling::tolerance, Scaling::norm, Scaling::none})
+    EXPECT_EQ(scaling_of(scaling_text(scaling)), scaling);
+  for (const int most : {1, 2, 1000000, Repeats::any_number})
+    EXPECT_EQ(repeats_of(repeats_text({most})), Repeats{most});
+}
+
+TEST(DesignWords, OtherWordsAreNone) {
+  for (const char* word : {"", "Norm", "unit"}) EXPECT_EQ(scaling_of(word), std::nullopt) << word;
+  for (const char* word : {"", "Allow", "0", "-1", "+2", "2.5", "2 ", "1000001", "99999999999"})
+    EXPECT_EQ(repeats_of(word), std::nullopt) << word;
 }
 
 TEST(ReadProblem, SixPusIsReadFieldByField) {

@@ -21,11 +21,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
 }
 
 PoseTable read(const std::string& bytes, const std::string& file) {
-  PoseTable table;
-  for (const NumberRow& numbers : read_number_rows(bytes, file, ' ', false))
-    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
-  table.units.assign(table.rows.front().cells.size(), degrees_or_millimetres);
-  return table;
+  return number_table(bytes, file, ' ', false, degrees_or_millimetres);
 }
 
 }  // namespace

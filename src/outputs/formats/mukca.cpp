@@ -19,12 +19,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("hole_0.csv", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
-  PoseTable table;
-  for (const NumberRow& numbers : read_number_rows(bytes, file, ',', false))
-    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
-  return table;
-}
+PoseTable read(const std::string& bytes, const std::string& file) { return number_table(bytes, file, ',', false); }
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "posewright/outputs/pose_formats.hpp"
+
 /// Text tables of numbers.
 namespace posewright::formats {
 
@@ -18,6 +20,10 @@ struct NumberRow {
 /// Throws InputError with file and line.
 std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::string& file, char separator, bool header,
                                         std::size_t skip = 0);
+
+/// The same as a list whose columns have no names; `unit` is that of every column, empty: SI. Throws InputError.
+PoseTable number_table(const std::string& bytes, const std::string& file, char separator, bool header,
+                       const std::string& unit = "");
 
 /// A finite number, all of `text`; false otherwise.
 bool parse_number(std::string_view text, double& value);

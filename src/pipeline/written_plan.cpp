@@ -1,0 +1,61 @@
+#include "written_plan.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "posewright/problem/design_words.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uintmax_t size_limit = 200'000'000;
+
+[[noreturn]] void throw_no_plan(const std::filesystem::path& file) {
+  throw InputError({file.string(), 0}, "is no plan of a robot", "plan.json as posewright plan writes it");
+}
+
+PlanOptions options_of(const Json& plan) {
+  PlanOptions options;
+  const Json& poses = plan.at("poses");
+  options.poses =
+      int(std::count_if(poses.begin(), poses.end(), [](const Json& p) { return !p.value("measured", false); }));
+  const Json& criterion = plan.at("criterion");
+  options.criterion = criterion.at("name").get<std::string>();
+  if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
+  options.reserve = criterion.value("reserve", false);
+  options.prior = criterion.at("prior").get<std::string>() == "tolerance";
+  options.scaling = scaling_of(criterion.at("scaling").get<std::string>()).value();
+  options.candidates = int(plan.at("statistics").at("candidates_feasible").get<long>());
+  options.seed = plan.at("seed").get<std::uint64_t>();
+  if (const Json& certificate = plan.at("certificate").at("candidates"); certificate.is_object())
+    options.repeats = repeats_of(certificate.at("repeats").get<std::string>()).value();
+  return options;
+}
+
+}  // namespace
+
+WrittenPlan read_written_plan(const std::filesystem::path& file) {
+  WrittenPlan plan;
+  plan.file = file;
+  plan.text = read_file(file, size_limit);
+  try {
+    const Json json = Json::parse(plan.text);
+    if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())
+      throw_no_plan(file);
+    plan.options = options_of(json);
+    plan.log_det = json.at("criterion").at("log_det").get<double>();
+    plan.problem_sha256 = json.at("problem").value("sha256", "");
+  } catch (const Json::exception&) {
+    throw_no_plan(file);
+  } catch (const std::bad_optional_access&) {  // a word that is none
+    throw_no_plan(file);
+  }
+  if (*plan.options.poses == 0) throw_no_plan(file);
+  return plan;
+}
+
+}  // namespace posewright

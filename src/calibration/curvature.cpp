@@ -9,7 +9,7 @@ namespace posewright {
 
 Curvature curvature(const IdentificationModel& model, const VariantColumns& columns,
                     const std::vector<MeasuredPose>& poses, const Fit& result) {
-  StackedReadings stacked(model, columns, poses, false);
+  StackedReadings stacked(model, columns, poses, false, result.correction);
   const Eigen::VectorXd x = result.change.cwiseQuotient(stacked.tolerances());
   stacked.weigh(x, Weighting::weighted);
   Eigen::VectorXd at, ahead, behind;

@@ -111,14 +111,14 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, const 
 
 Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
         const FitOptions& options) {
-  StackedReadings stacked(model, columns, poses, options.prior);
+  StackedReadings stacked(model, columns, poses, options.prior, options.start);
   if (stacked.rows() < stacked.columns())
     throw CannotDo(std::to_string(stacked.readings()) + " readings cannot tell " + std::to_string(stacked.columns()) +
                    " parameters");
   if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
     throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weighted");
   Fit result;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(stacked.columns());
+  Eigen::VectorXd x = stacked.start();
   for (int round = 0; round < weight_rounds; ++round) {
     stacked.weigh(x, options.weighting);
     result.converged = minimise(stacked, options, x, result.evaluations);
@@ -155,13 +155,14 @@ std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, cons
 }
 
 BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
-                     const std::vector<MeasuredPose>& poses) {
+                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
   const int width = int(columns.selected.size());
   BlockArray blocks(int(poses.size()), model.rows(), width);
   Linearisation out;
+  Eigen::VectorXd y;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (!model.linearise(poses[k].q, {}, columns.selected, out))
-      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach of the nominal robot");
+    if (!model.predict_and_linearise(poses[k].q, correction, columns.selected, out, y))
+      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the parameters at hand");
     std::vector<int> read;
     for (int i = 0; i < int(poses[k].y.size()); ++i)
       if (std::isfinite(poses[k].y[i])) read.push_back(i);

@@ -10,8 +10,9 @@
 namespace posewright {
 
 StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
-                                 const std::vector<MeasuredPose>& poses, bool prior)
-    : model_(model), columns_(columns), poses_(poses), prior_(prior), correction_(model.parameters().size(), 0.0) {
+                                 const std::vector<MeasuredPose>& poses, bool prior, const std::vector<double>& start)
+    : model_(model), columns_(columns), poses_(poses), prior_(prior), correction_(start) {
+  correction_.resize(model.parameters().size(), 0.0);
   tolerances_.resize(Eigen::Index(columns.parameters.size()));
   for (std::size_t j = 0; j < columns.parameters.size(); ++j)
     tolerances_[Eigen::Index(j)] = columns.parameters[j].tolerance;
@@ -31,6 +32,13 @@ StackedReadings::StackedReadings(const IdentificationModel& model, const Variant
     readings_ += int(read_.back().size());
   }
   root_.resize(poses.size());
+}
+
+Eigen::VectorXd StackedReadings::start() const {
+  Eigen::VectorXd x(columns());
+  for (Eigen::Index j = 0; j < x.size(); ++j)
+    x[j] = correction_[std::size_t(columns_.selected[std::size_t(j)])] / tolerances_[j];
+  return x;
 }
 
 void StackedReadings::refuse(std::size_t pose) const {

@@ -10,7 +10,10 @@ namespace posewright {
 class StackedReadings {
  public:
   StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
-                  const std::vector<MeasuredPose>& poses, bool prior);
+                  const std::vector<MeasuredPose>& poses, bool prior, const std::vector<double>& start = {});
+
+  /// The columns of the corrections to start from, in units of tolerance.
+  Eigen::VectorXd start() const;
 
   /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo where a pose is out
   /// of reach there.

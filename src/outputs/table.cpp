@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace posewright {
@@ -10,6 +11,23 @@ namespace {
 
 std::size_t width(const std::string& text) {
   return std::size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
+}
+
+/// How a unit is shown: what SI is multiplied by, and what is written behind.
+struct Shown {
+  double factor;
+  std::string suffix;
+};
+
+Shown shown_unit(const std::string& unit) {
+  if (unit == "m") return {1e3, " mm"};
+  if (unit == "rad") return {180 / std::numbers::pi, " deg"};
+  if (unit == "rad/(N·m)") return {1e6, " µrad/(N·m)"};
+  if (unit == "m/N") return {1e6, " µm/N"};
+  if (unit == "N/m") return {1e-3, " N/mm"};
+  if (unit == "N·m/rad") return {1e-3, " kN·m/rad"};
+  if (unit == "1") return {1, ""};
+  return {1, " " + unit};
 }
 
 }  // namespace
@@ -38,14 +56,16 @@ std::string Table::text() const {
 }
 
 std::string shown_value(double value, const std::string& unit) {
-  if (unit == "m") return fmt::format("{:.4g} mm", value * 1e3);
-  if (unit == "rad") return fmt::format("{:.4g} deg", value * 180 / std::numbers::pi);
-  if (unit == "rad/(N·m)") return fmt::format("{:.4g} µrad/(N·m)", value * 1e6);
-  if (unit == "m/N") return fmt::format("{:.4g} µm/N", value * 1e6);
-  if (unit == "N/m") return fmt::format("{:.4g} N/mm", value * 1e-3);
-  if (unit == "N·m/rad") return fmt::format("{:.4g} kN·m/rad", value * 1e-3);
-  if (unit == "1") return fmt::format("{:.4g}", value);
-  return fmt::format("{:.4g} {}", value, unit);
+  const Shown shown = shown_unit(unit);
+  return fmt::format("{:.4g}{}", value * shown.factor, shown.suffix);
+}
+
+std::string shown_to(double value, double resolution, const std::string& unit) {
+  const Shown shown = shown_unit(unit);
+  const double step = std::abs(resolution * shown.factor);
+  if (!(step > 0) || !std::isfinite(step)) return shown_value(value, unit);
+  const int decimals = std::clamp(1 - int(std::floor(std::log10(step))), 0, 12);
+  return fmt::format("{:.{}f}{}", value * shown.factor, decimals, shown.suffix);
 }
 
 }  // namespace posewright

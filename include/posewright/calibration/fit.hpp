@@ -21,13 +21,15 @@ enum class Weighting { ordinary, weighted, robust };
 
 struct FitOptions {
   Weighting weighting = Weighting::weighted;
-  bool prior = false;          ///< count every tolerance as one more measurement of its parameter
+  bool prior = false;  ///< count every tolerance as one more measurement of its parameter
+  /// Corrections of all parameters to start from; those that are not estimated keep them. Empty: all zero.
+  std::vector<double> start{};
   int most_evaluations = 200;  ///< of the residuals in one run of Levenberg–Marquardt
 };
 
 /// Result of a calibration. Columns are those that were asked for; poses in the order given.
 struct Fit {
-  std::vector<double> correction;  ///< ξ − nominal of every parameter of the model; zero for those not estimated
+  std::vector<double> correction;  ///< ξ − nominal of every parameter of the model; as at the start if not estimated
   Eigen::VectorXd change;          ///< the same of the columns alone
   Eigen::MatrixXd covariance;      ///< of `change`, SI, with the noise that `scale_known` says
   /// Whether the covariance is that of the stated noise; else the residuals told its size.
@@ -60,9 +62,9 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
 std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, const std::vector<double>& correction,
                                           const std::vector<MeasuredPose>& poses);
 
-/// Whitened blocks of the poses at the nominal parameters, rows of what was not read zero: what tells which columns the
-/// data can determine. Throws CannotDo where a pose is out of reach.
+/// Whitened blocks of the poses at these corrections of all parameters (empty: zero), rows of what was not read zero:
+/// what tells which columns the data can determine. Throws CannotDo where a pose is out of reach.
 BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
-                     const std::vector<MeasuredPose>& poses);
+                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction = {});
 
 }  // namespace posewright

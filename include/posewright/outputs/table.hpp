@@ -21,4 +21,7 @@ class Table {
 /// "0.0123 mm", "0.0045 deg": a value in SI for people, by its SI unit ("m", "rad", "1").
 std::string shown_value(double value, const std::string& unit);
 
+/// The same with as many decimals as leave two digits of `resolution` (a σ, in SI).
+std::string shown_to(double value, double resolution, const std::string& unit);
+
 }  // namespace posewright

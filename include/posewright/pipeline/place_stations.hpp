@@ -19,9 +19,9 @@ struct StationRank {
   /// Of the best of as many parameters, where the criterion is a determinant: σ is so many times as large, on the
   /// geometric mean.
   std::optional<double> sigma_ratio;
-  double feasible_share = 0.0;   ///< of the configurations drawn
-  std::string main_rejection;    ///< why most of the others are not feasible
-  std::optional<double> rho0;    ///< predicted position error at the test poses, m
+  double feasible_share = 0.0;  ///< of the configurations drawn
+  std::string main_rejection;   ///< why most of the others are not feasible
+  std::optional<double> rho0;   ///< predicted position error at the test poses, m
 };
 
 struct StationOptions {

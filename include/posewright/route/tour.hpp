@@ -11,8 +11,8 @@ struct TourOptions {
   bool closed = false;       ///< back to where it began
   std::optional<int> start;  ///< first node; none: any (an open tour begins where that is cheapest)
   std::uint64_t seed = 0;
-  bool exact = true;         ///< whether few nodes are solved exactly
-  int kicks = 300;  ///< restarts of the local search from a disturbed tour, where it is not solved exactly
+  bool exact = true;  ///< whether few nodes are solved exactly
+  int kicks = 300;    ///< restarts of the local search from a disturbed tour, where it is not solved exactly
 };
 
 /// Nodes in the order of the cheapest tour found. Up to `exact_nodes` nodes it is the cheapest there is (dynamic

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "posewright/calibration/fit.hpp"
+
+namespace posewright {
+
+/// Of the columns those that say where things stand, not what the robot is: base.*, tool.*, target.*, station.*,
+/// anchor.*, camera.* and board.* displacements, and whatever the variant calls nuisance.
+VariantColumns placing_columns(const IdentificationModel& model, const VariantColumns& columns);
+
+/// Fits the placing columns alone. Nobody knows how an instrument's axes lie to a robot's base before the first fit:
+/// where the nominal base leaves residuals that no error of a robot explains, the 24 rotations of a cube are tried as
+/// its orientation and the best is kept.
+/// @return corrections of all parameters; zero where there are no such columns
+std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const FitOptions& options);
+
+}  // namespace posewright

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewright/calibration/fit.hpp"
+
+namespace posewright {
+
+/// Residuals of one kind over many poses, SI.
+struct ResidualSummary {
+  std::string kind;  ///< "m", "rad", "px": single readings of that unit; "distance": norm of a target's three
+  int count = 0;
+  double rms = 0.0, mean = 0.0, largest = 0.0;
+  int pose = 0;  ///< id where the largest is
+};
+
+/// One row for every unit of the readings, one for the distances of targets that are read in three coordinates.
+std::vector<ResidualSummary> summarise(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
+                                       const std::vector<Eigen::VectorXd>& residuals);
+
+/// A statistic, and how often chance alone gives one as far off or farther.
+struct TestResult {
+  double statistic = 0.0;
+  double probability = 1.0;
+  bool possible = false;  ///< false: too few readings, or the noise is not known
+};
+
+/// What the whitened residuals say of model and noise. Of the fit's poses in measuring order.
+struct ResidualTests {
+  TestResult chi_square;  ///< Σr² against `freedom`, both sides: are residuals as large as the stated noise?
+  TestResult serial;      ///< correlation of readings with those of the same kind one pose later (√n r1 is normal)
+  TestResult normality;   ///< Jarque & Bera 1987, χ² of 2
+  std::vector<int> histogram;  ///< counts in half-σ bins from −4.5 to 4.5 σ, the ends hold what is beyond too
+};
+
+ResidualTests test_residuals(const Fit& result);
+
+/// Chance that χ² of `freedom` is as large as this or larger.
+double chi_square_exceeded(double value, double freedom);
+
+/// How far ±1σ must be stretched to hold the truth with this probability: normal, or Student's t of `freedom` where the
+/// residuals told the noise.
+double interval_factor(double probability, bool scale_known, int freedom);
+
+}  // namespace posewright

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "posewright/calibration/fit.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Readings as a user's file has them, for one model.
+struct MeasuredData {
+  std::vector<MeasuredPose> poses;  ///< in the file's order; rows of one configuration averaged
+  std::vector<bool> held_back;      ///< per pose: for validation only (column `use`)
+  int rows = 0;                     ///< of the file
+  double repeats = 1.0;             ///< rows per pose, harmonic mean
+  std::vector<double> spread;       ///< standard deviation of each reading within a pose; empty without repeats
+  int spread_freedom = 0;           ///< rows less poses
+  std::vector<std::string> notes;   ///< what the user must know of how it was read
+};
+
+/// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every
+/// reading of the model (`P1.x [mm]`); an empty cell was not read. Columns `id` (or `pose`) and `use` (fit | validate)
+/// may be there; others are passed over. Rows in a row with one configuration are repeats and are averaged. Actuators
+/// may stand for the coordinates of a parallel robot. Orientations as rotation vectors (pose.rx, …) or unit quaternions
+/// (pose.qx, pose.qy, pose.qz, pose.qw); photogrammetric points of a pose (NAME.x, …) become the pose by rigid fit.
+/// Throws InputError with file and line.
+MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
+                                const IdentificationModel& model);
+
+/// The same format, SI, values to their last digit.
+std::string measured_data_csv(const IdentificationModel& model, const std::vector<MeasuredPose>& poses);
+
+}  // namespace posewright

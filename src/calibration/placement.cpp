@@ -1,0 +1,98 @@
+#include "posewright/calibration/placement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "posewright/blocks/identifiability.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::array<const char*, 7> placing = {"base.",   "tool.",   "target.", "station.",
+                                                "anchor.", "camera.", "board."};
+constexpr std::array<const char*, 3> turns = {"base.rx", "base.ry", "base.rz"};
+// Root mean square of whitened residuals that a robot before its calibration may leave: millimetres at micrometres.
+constexpr double plausible = 1000.0;
+// The placing fit is a start for another: a few steps show which orientation is right.
+constexpr int few_evaluations = 60;
+
+/// Least whitened cost of the placing columns from this start; infinite where nothing was found.
+double cost_from(const IdentificationModel& model, const VariantColumns& columns,
+                 const std::vector<MeasuredPose>& poses, FitOptions options, const std::vector<double>& start,
+                 std::vector<double>& found) {
+  options.start = start;
+  options.weighting = Weighting::weighted;
+  try {
+    const Fit result = fit(model, columns, poses, options);
+    found = result.correction;
+    return result.chi_square / result.readings;
+  } catch (const CannotDo&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+/// rx, ry, rz of the 24 rotations that take a cube to itself.
+std::vector<std::array<double, 3>> cube_rotations() {
+  constexpr double quarter = std::numbers::pi / 2;
+  std::vector<std::array<double, 3>> rotations;
+  for (int z = 0; z < 4; ++z) {
+    for (int x = 0; x < 4; ++x) rotations.push_back({x * quarter, 0, z * quarter});
+    // Near ±90° about y the other two are one; a degree less keeps them apart and is as good a start.
+    for (const double y : {-0.99 * quarter, 0.99 * quarter}) rotations.push_back({0, y, z * quarter});
+  }
+  return rotations;
+}
+
+}  // namespace
+
+VariantColumns placing_columns(const IdentificationModel& model, const VariantColumns& columns) {
+  std::vector<int> kept;
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j) {
+    const Parameter& p = model.parameters()[std::size_t(columns.selected[j])];
+    const bool places =
+        (p.unit == "m" || p.unit == "rad") &&
+        std::any_of(placing.begin(), placing.end(), [&](const char* prefix) { return p.name.starts_with(prefix); });
+    if (places || columns.parameters[j].role == Role::nuisance) kept.push_back(int(j));
+  }
+  return subset(columns, kept);
+}
+
+std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const FitOptions& options) {
+  VariantColumns place = placing_columns(model, columns);
+  if (!place.selected.empty() && !options.prior) {
+    IdentifiabilityOptions tiers;
+    tiers.tiers = place.tiers;
+    place = subset(place, identifiability(blocks_of(model, place, poses), place.parameters, tiers).kept);
+  }
+  std::vector<double> best(model.parameters().size(), 0.0);
+  if (place.selected.empty()) return best;
+  FitOptions quick = options;
+  quick.most_evaluations = few_evaluations;
+  std::vector<double> found;
+  double least = cost_from(model, place, poses, quick, best, found);
+  if (std::isfinite(least)) best = found;
+  std::array<std::size_t, 3> at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto turn = std::find_if(place.selected.begin(), place.selected.end(),
+                                   [&](int i) { return model.parameters()[std::size_t(i)].name == turns[k]; });
+    if (turn == place.selected.end()) return best;
+    at[k] = std::size_t(*turn);
+  }
+  if (least < plausible * plausible) return best;
+  for (const std::array<double, 3>& rotation : cube_rotations()) {
+    std::vector<double> start(model.parameters().size(), 0.0);
+    for (std::size_t k = 0; k < 3; ++k) start[at[k]] = rotation[k];
+    const double cost = cost_from(model, place, poses, quick, start, found);
+    if (!(cost < 0.999 * least)) continue;
+    least = cost;
+    best = found;
+  }
+  return best;
+}
+
+}  // namespace posewright

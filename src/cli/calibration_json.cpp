@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "calibration_report.hpp"
+
+namespace posewright::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN: what was not read is null.
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+  return list;
+}
+
+Json parameter_json(const CalibratedParameter& p) {
+  const auto estimate = [&](double value) { return p.estimated ? Json(value) : Json(nullptr); };
+  return {{"name", p.label.name},
+          {"unit", p.label.unit},
+          {"role", p.label.role == Role::nuisance ? "nuisance" : "interest"},
+          {"estimated", p.estimated},
+          {"nominal", p.label.nominal},
+          {"tolerance", p.label.tolerance},
+          {"value", p.value},
+          {"sigma", estimate(p.sigma)},
+          {"interval", p.estimated ? Json({p.lower, p.upper}) : Json(nullptr)},
+          {"tells_less_than_tolerance", p.weak},
+          {"why_not", p.why_not.empty() ? Json(nullptr) : Json(p.why_not)}};
+}
+
+Json test_json(const TestResult& test) {
+  if (!test.possible) return nullptr;
+  return {{"statistic", test.statistic}, {"probability", test.probability}};
+}
+
+Json residuals_json(const Calibration& c) {
+  Json sets = Json::array();
+  for (const ResidualSet& set : c.residuals)
+    for (const ResidualSummary& k : set.kinds)
+      sets.push_back({{"poses", set.poses},
+                      {"parameters", set.parameters},
+                      {"kind", k.kind},
+                      {"count", k.count},
+                      {"rms", k.rms},
+                      {"mean", k.mean},
+                      {"largest", k.largest},
+                      {"largest_at_pose", k.pose}});
+  return sets;
+}
+
+Json covariance_json(const Calibration& c) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < c.fit.covariance.rows(); ++i) {
+    const Eigen::VectorXd row = c.sigma_factor * c.sigma_factor * c.fit.covariance.row(i).transpose();
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+const char* word(Weighting weighting) {
+  return weighting == Weighting::ordinary ? "ols" : weighting == Weighting::weighted ? "wls" : "robust";
+}
+
+}  // namespace
+
+Json calibration_json(const Calibration& c) {
+  Json parameters = Json::array(), readings = Json::array(), poses = Json::array();
+  for (const CalibratedParameter& p : c.parameters) parameters.push_back(parameter_json(p));
+  for (const Reading& reading : c.readings) readings.push_back({{"name", reading.name}, {"unit", reading.unit}});
+  for (const PoseResidual& pose : c.pose_residuals)
+    poses.push_back({{"id", pose.id},
+                     {"held_back", pose.held_back},
+                     {"weight", pose.weight},
+                     {"residuals", numbers(pose.residuals)}});
+  return {{"variant", c.variant},
+          {"weights", word(c.weighting)},
+          {"prior", c.prior},
+          {"rows", c.rows},
+          {"poses_fitted", c.poses},
+          {"poses_held_back", c.held_back},
+          {"repeats", c.repeats},
+          {"converged", c.fit.converged},
+          {"parameters", parameters},
+          {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
+          {"sigma_factor", c.sigma_factor},
+          {"noise_scale", c.fit.scale},
+          {"chi_square", c.fit.chi_square},
+          {"freedom", c.fit.freedom},
+          {"tests",
+           {{"chi_square", test_json(c.tests.chi_square)},
+            {"lack_of_fit", test_json(c.lack_of_fit)},
+            {"serial_correlation", test_json(c.tests.serial)},
+            {"normality", test_json(c.tests.normality)}}},
+          {"curvature", std::isfinite(c.curvature.largest) ? Json(c.curvature.largest) : Json(nullptr)},
+          {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
+          {"residuals", residuals_json(c)},
+          {"readings", readings},
+          {"spread_within_pose", c.spread.empty() ? Json(nullptr) : numbers(c.spread)},
+          {"poses", poses},
+          {"notes", c.notes}};
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration_report.hpp"
+#include "posewright/outputs/table.hpp"
+
+namespace posewright::cli {
+namespace {
+
+using Align = Table::Align;
+
+// A test that chance fails this seldom is worth a sentence.
+constexpr double remarkable = 0.01;
+constexpr int bar_width = 40;
+
+std::string chance(double probability) {
+  return probability < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", probability);
+}
+
+const char* weighting_name(Weighting weighting) {
+  switch (weighting) {
+    case Weighting::ordinary:
+      return "ordinary least squares";
+    case Weighting::weighted:
+      return "least squares weighted by the instrument's noise";
+    default:
+      return "robust least squares";
+  }
+}
+
+std::string headline(const Calibration& c) {
+  std::string text = fmt::format("{}: {} poses fitted", c.variant, c.poses);
+  if (c.rows > c.poses + c.held_back) text += fmt::format(" (means of {:.3g} readings)", c.repeats);
+  if (c.held_back > 0) text += fmt::format(", {} held back", c.held_back);
+  const auto estimated =
+      std::count_if(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.estimated; });
+  text += fmt::format("; {} readings for {} parameters\n{}{}, {} evaluations{}\n", c.fit.readings, estimated,
+                      weighting_name(c.weighting), c.prior ? ", tolerances as prior knowledge" : "", c.fit.evaluations,
+                      c.fit.converged ? "" : ": NOT CONVERGED");
+  return text;
+}
+
+std::string parameters_text(const Calibration& c) {
+  Table table(
+      {"parameter", "nominal", "calibrated", "change", "σ", "95 % from", "to", ""},
+      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left});
+  for (const CalibratedParameter& p : c.parameters) {
+    if (!p.estimated) continue;
+    const std::string& unit = p.label.unit;
+    const auto shown = [&](double value) { return shown_to(value, p.sigma, unit); };
+    table.row({p.label.name, shown(p.label.nominal), shown(p.value), shown(p.value - p.label.nominal), shown(p.sigma),
+               shown(p.lower), shown(p.upper),
+               p.weak                           ? "the data tell less than its tolerance"
+               : p.label.role == Role::nuisance ? "nuisance"
+                                                : ""});
+  }
+  std::string text = table.text();
+  const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
+                                      [](const CalibratedParameter& p) { return !p.estimated; });
+  if (c.automatic && left_out > 0)
+    return text + fmt::format(
+                      "\n{} more parameters of the robot are combinations of these for these data and stay at nominal "
+                      "(--json lists them)\n",
+                      left_out);
+  bool first = true;
+  for (const CalibratedParameter& p : c.parameters) {
+    if (p.estimated) continue;
+    if (first) text += "\nNot estimated, left at nominal: these data cannot tell them from others\n";
+    first = false;
+    text += "  " + p.why_not + "\n";
+  }
+  return text;
+}
+
+std::string kind_name(const std::string& kind) {
+  if (kind == "distance") return "distance of a target";
+  return kind == "m" ? "lengths" : kind == "rad" ? "angles" : kind == "px" ? "pixels" : kind;
+}
+
+std::string residuals_text(const Calibration& c) {
+  Table table({"residuals", "poses", "parameters", "RMS", "largest", "at pose", "mean"},
+              {Align::left, Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
+  for (const ResidualSet& set : c.residuals)
+    for (const ResidualSummary& k : set.kinds) {
+      const std::string unit = k.kind == "distance" ? "m" : k.kind;
+      table.row({kind_name(k.kind), set.poses, set.parameters, shown_value(k.rms, unit), shown_value(k.largest, unit),
+                 std::to_string(k.pose), shown_value(k.mean, unit)});
+    }
+  std::string text = "\nResiduals, measured less predicted\n" + table.text();
+  if (std::any_of(c.residuals.begin(), c.residuals.end(),
+                  [](const ResidualSet& s) { return s.parameters == "placed"; }))
+    text += "  placed: only what says where things stand is estimated (base, tool, targets, nuisance)\n";
+  return text;
+}
+
+std::string histogram_text(const std::vector<int>& counts) {
+  const int most = std::max(1, *std::max_element(counts.begin(), counts.end()));
+  std::string text = "\nResiduals in units of their own size\n";
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double from = -4.5 + 0.5 * double(i);
+    const std::string label = i == 0                   ? fmt::format("   below {:+.1f}", from + 0.5)
+                              : i + 1 == counts.size() ? fmt::format("   above {:+.1f}", from)
+                                                       : fmt::format("{:+.1f} to {:+.1f}", from, from + 0.5);
+    std::string bar;
+    for (int k = 0; k < (counts[i] * bar_width + most - 1) / most; ++k) bar += "█";
+    text += fmt::format("  {:>13}  {:>6}  {}", label, counts[i], bar);
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string noise_text(const Calibration& c) {
+  std::string text = "\n";
+  if (c.tests.chi_square.possible) {
+    text +=
+        fmt::format("Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
+                    c.tests.chi_square.statistic, c.fit.freedom, chance(c.tests.chi_square.probability), c.fit.scale);
+    if (c.sigma_factor > 1)
+      text += fmt::format(
+          ".\n  The model or the stated noise is refused; σ and intervals above are stretched by {:.3g} to what the "
+          "residuals show.\n",
+          c.sigma_factor);
+    else if (c.tests.chi_square.probability < remarkable)
+      text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
+    else text += ": as they should be.\n";
+  } else {
+    text += fmt::format("The residuals tell the noise: {:.3g} times the stated one ({} degrees of freedom).\n",
+                        c.fit.scale, c.fit.freedom);
+  }
+  if (c.lack_of_fit.possible)
+    text +=
+        fmt::format("Lack of fit: F = {:.3g} (p {}) of residuals against the spread of readings within a pose{}.\n",
+                    c.lack_of_fit.statistic, chance(c.lack_of_fit.probability),
+                    c.lack_of_fit.probability < remarkable
+                        ? ": something stays at a pose that is no reading noise (robot repeatability, a missing effect)"
+                        : ": nothing but reading noise");
+  return text;
+}
+
+std::string whiteness_text(const Calibration& c) {
+  std::string text;
+  if (c.tests.serial.possible)
+    text += fmt::format("Correlation from pose to pose {:+.2f} (p {}){}.\n", c.tests.serial.statistic,
+                        chance(c.tests.serial.probability),
+                        c.tests.serial.probability < remarkable
+                            ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
+                            : "");
+  if (c.tests.normality.possible)
+    text += fmt::format(
+        "Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic, c.tests.normality.probability,
+        c.tests.normality.probability < remarkable ? ": not normal: gross errors? try --weights robust" : "");
+  if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
+    const auto at = std::size_t(c.curvature.parameter);
+    text += fmt::format(
+        "Not linear within its own uncertainty (curvature {:.2g} at one σ, most in {}): intervals are rough.\n",
+        c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
+  }
+  return text;
+}
+
+std::string outliers_text(const Calibration& c) {
+  std::string text;
+  if (c.weighting != Weighting::robust) return text;
+  for (const PoseResidual& pose : c.pose_residuals)
+    if (!pose.held_back && pose.weight < 0.5)
+      text += fmt::format("{}{} ({:.2f})", text.empty() ? "Poses with readings that lost weight: " : ", ", pose.id,
+                          pose.weight);
+  return text.empty() ? text : text + "\n";
+}
+
+}  // namespace
+
+std::string calibration_text(const Calibration& c) {
+  return headline(c) + "\n" + parameters_text(c) + residuals_text(c) + histogram_text(c.tests.histogram) +
+         noise_text(c) + whiteness_text(c) + outliers_text(c);
+}
+
+}  // namespace posewright::cli

@@ -1,0 +1,184 @@
+#include "measured_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "posewright/calibration/rigid_fit.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/support/error.hpp"
+#include "read_poses.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double not_read = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<const char*, 4> quaternion_names = {"pose.qx", "pose.qy", "pose.qz", "pose.qw"};
+// Printed quaternions have few digits; anything farther from one is something else.
+constexpr double unit_slack = 1e-3;
+
+/// Limits are for planning; what was measured was there.
+std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates) {
+  for (Coordinate& c : coordinates)
+    if (!c.choice()) {
+      c.lower = -std::numeric_limits<double>::max() / 4;
+      c.upper = -c.lower;
+    }
+  return coordinates;
+}
+
+}  // namespace
+
+MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,
+                                 const IdentificationModel& model)
+    : file_(file),
+      model_(model),
+      table_(read_csv_table(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
+  index_columns();
+  if (const auto* pose = std::get_if<PoseMeasurement>(&problem.measurement.instrument)) markers_ = pose->photogrammetry;
+  find_readings();
+  read_configurations(bytes);
+}
+
+void MeasuredColumns::index_columns() {
+  for (std::size_t i = 0; i < table_.names.size(); ++i) {
+    const std::string name = table_.names[i] == "pose" ? "id" : table_.names[i];
+    if (!name.empty() && !column_.emplace(name, i).second)
+      throw InputError(header(), "has column '" + name + "' twice", "each name once");
+  }
+}
+
+void MeasuredColumns::find_readings() {
+  int found = 0;
+  std::string names;
+  for (const Reading& reading : model_.readings()) {
+    found += has(reading.name) ? 1 : 0;
+    if (names.size() < 200) names += (names.empty() ? "" : ", ") + reading.name;
+  }
+  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
+  if (quaternions_ && has("pose.rx"))
+    throw InputError(header(), "has an orientation twice, pose.rx and pose.qx", "one of them");
+  const bool by_points =
+      !markers_.empty() && found == 0 && std::all_of(markers_.begin(), markers_.end(), [&](const TargetSpec& m) {
+        return has(m.name + ".x") && has(m.name + ".y") && has(m.name + ".z");
+      });
+  if (!by_points) markers_.clear();
+  if (found == 0 && !by_points) throw InputError(header(), "has no column of a reading", "names of readings: " + names);
+  if (found < int(model_.readings().size()) && !by_points && !quaternions_) {
+    std::string missing;
+    for (const Reading& reading : model_.readings())
+      if (!has(reading.name)) missing += (missing.empty() ? "" : ", ") + reading.name;
+    notes_.push_back("no column for " + missing + ": counted as not read");
+  }
+  if (by_points) notes_.push_back("poses are rigid fits to the photogrammetric points");
+}
+
+void MeasuredColumns::read_configurations(const std::string& bytes) {
+  const auto& actuators = model_.actuators();
+  const bool coordinates =
+      std::all_of(model_.coordinates().begin(), model_.coordinates().end(),
+                  [&](const Coordinate& c) { return has(c.name) || (c.choice() && c.labels.size() == 1); });
+  if (!coordinates && !actuators.empty() &&
+      std::all_of(actuators.begin(), actuators.end(), [&](const Coordinate& a) { return has(a.name); })) {
+    from_actuators();
+    return;
+  }
+  configurations_ = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv").configurations;
+}
+
+/// The nominal robot with these actuators: what the model takes for the configuration.
+void MeasuredColumns::from_actuators() {
+  std::vector<double> start;
+  for (const Coordinate& c : model_.coordinates())
+    start.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
+  std::vector<double> actuators, q(start.size());
+  for (int i = 0; i < rows(); ++i) {
+    actuators.clear();
+    for (const Coordinate& a : model_.actuators()) actuators.push_back(value(i, a.name, a.unit));
+    if (!model_.configuration_at(actuators, start, q))
+      throw InputError({file_, line(i)}, "no pose of the nominal robot has these actuators", "are their units right?");
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const Coordinate& c = model_.coordinates()[k];
+      if (!c.choice() || c.labels.size() < 2) continue;
+      const auto at = std::find(c.labels.begin(), c.labels.end(), text(i, c.name));
+      if (at == c.labels.end())
+        throw InputError({file_, line(i)}, "'" + text(i, c.name) + "' is no " + c.name,
+                         fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
+      q[k] = double(at - c.labels.begin());
+    }
+    configurations_.push_back(q);
+  }
+}
+
+std::string MeasuredColumns::text(int row, const std::string& column) const {
+  const auto at = column_.find(column);
+  if (at == column_.end()) return {};
+  return std::get<std::string>(table_.rows[std::size_t(row)].cells[at->second]);
+}
+
+double MeasuredColumns::value(int row, const std::string& column, const std::string& unit) const {
+  std::string cell = text(row, column);
+  if (cell.empty()) return not_read;
+  const std::string written = table_.units.empty() ? "" : table_.units[column_.at(column)];
+  if (!written.empty() && written != "px") cell += " " + written;
+  const Quantity quantity = unit == "m" ? Quantity::length : unit == "rad" ? Quantity::angle : Quantity::number;
+  try {
+    return parse_value(cell, quantity);
+  } catch (const InputError&) {
+    throw InputError({file_, line(row)}, fmt::format("'{}' of '{}' is no value", cell.substr(0, 40), column),
+                     unit == "px" ? "a number" : "a number; in the header, a unit: " + allowed_units({quantity}));
+  }
+}
+
+Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
+  Eigen::Vector4d q;
+  for (std::size_t k = 0; k < 4; ++k) q[Eigen::Index(k)] = value(row, quaternion_names[k], "1");
+  if (!q.allFinite()) return Eigen::Vector3d::Constant(not_read);
+  if (std::abs(q.norm() - 1) > unit_slack)
+    throw InputError({file_, line(row)}, fmt::format("the quaternion has length {:.6g}", q.norm()), "1 is expected");
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(q.normalized()));
+  return turn.angle() * turn.axis();
+}
+
+Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
+  std::vector<Eigen::Vector3d> body, measured;
+  for (const TargetSpec& marker : markers_) {
+    const Eigen::Vector3d p(value(row, marker.name + ".x", "m"), value(row, marker.name + ".y", "m"),
+                            value(row, marker.name + ".z", "m"));
+    if (!p.allFinite()) continue;
+    body.push_back(marker.position);
+    measured.push_back(p);
+  }
+  Eigen::VectorXd pose = Eigen::VectorXd::Constant(6, not_read);
+  // The covariance of a pose is that of all its points; one of fewer would be trusted too much.
+  if (body.size() < markers_.size()) return pose;
+  const RigidFit fit = rigid_fit(body, measured);
+  const Eigen::AngleAxisd turn(fit.X.linear());
+  pose << fit.X.translation(), turn.angle() * turn.axis();
+  return pose;
+}
+
+Eigen::VectorXd MeasuredColumns::readings(int row) const {
+  const auto count = Eigen::Index(model_.readings().size());
+  Eigen::VectorXd all(6);
+  if (!markers_.empty()) all = pose_of_points(row);
+  else if (quaternions_) all << Eigen::Vector3d::Constant(not_read), rotation_vector(row);
+  const bool whole = !markers_.empty();
+  static constexpr std::array<const char*, 6> pose_names = {"pose.x",  "pose.y",  "pose.z",
+                                                            "pose.rx", "pose.ry", "pose.rz"};
+  Eigen::VectorXd y(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Reading& reading = model_.readings()[std::size_t(i)];
+    const auto at = std::find(pose_names.begin(), pose_names.end(), reading.name) - pose_names.begin();
+    if (at < 6 && (whole || (quaternions_ && at > 2))) y[i] = all[at];
+    else y[i] = value(row, reading.name, reading.unit);
+  }
+  // A rotation vector is one reading of three numbers.
+  if (!whole && !quaternions_ && has("pose.rx") && count >= 3 && !y.tail<3>().allFinite())
+    y.tail<3>().setConstant(not_read);
+  return y;
+}
+
+}  // namespace posewright

@@ -1,0 +1,157 @@
+#include "posewright/pipeline/measured_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "measured_columns.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::uintmax_t size_limit = 1'000'000'000;
+
+/// One row of the file, in SI.
+struct Row {
+  int id = 0, line = 0;
+  bool held_back = false;
+  std::vector<double> q;
+  Eigen::VectorXd y;
+};
+
+/// Rows of one configuration that follow each other become one pose with their mean.
+class Averaging {
+ public:
+  Averaging(const IdentificationModel& model, MeasuredData& data) : model_(model), data_(data) {
+    squares_.setZero(Eigen::Index(model.readings().size()));
+    counts_ = squares_;
+  }
+
+  void add(Row row) {
+    if (!group_.empty() && (group_.front().q != row.q || group_.front().held_back != row.held_back)) close();
+    group_.push_back(std::move(row));
+  }
+
+  void finish() {
+    if (!group_.empty()) close();
+    data_.repeats = double(data_.poses.size()) / inverse_repeats_;
+    data_.spread_freedom = data_.rows - int(data_.poses.size());
+    if (data_.spread_freedom == 0) return;
+    for (Eigen::Index i = 0; i < squares_.size(); ++i)
+      data_.spread.push_back(counts_[i] > 0 ? std::sqrt(squares_[i] / counts_[i])
+                                            : std::numeric_limits<double>::quiet_NaN());
+  }
+
+ private:
+  void close() {
+    const Eigen::VectorXd& first = group_.front().y;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), number = sum, change, mean;
+    for (const Row& row : group_) {
+      model_.difference(row.y, first, change);
+      for (Eigen::Index i = 0; i < sum.size(); ++i)
+        if (std::isfinite(change[i])) {
+          sum[i] += change[i];
+          number[i] += 1;
+        }
+    }
+    model_.shifted(first, sum.cwiseQuotient(number), mean);
+    // Where the first row misses a reading there is nothing to be relative to: plain means.
+    for (Eigen::Index i = 0; i < sum.size(); ++i)
+      if (!std::isfinite(mean[i])) mean[i] = plain_mean(i);
+    for (const Row& row : group_) {
+      model_.difference(row.y, mean, change);
+      for (Eigen::Index i = 0; i < sum.size(); ++i)
+        if (std::isfinite(change[i])) squares_[i] += change[i] * change[i];
+    }
+    for (Eigen::Index i = 0; i < sum.size(); ++i) counts_[i] += std::max(number[i] - 1, 0.0);
+    MeasuredPose pose;
+    pose.id = group_.front().id;
+    pose.q = group_.front().q;
+    pose.y = mean;
+    data_.poses.push_back(std::move(pose));
+    data_.held_back.push_back(group_.front().held_back);
+    inverse_repeats_ += 1.0 / double(group_.size());
+    group_.clear();
+  }
+
+  double plain_mean(Eigen::Index i) const {
+    double sum = 0;
+    int number = 0;
+    for (const Row& row : group_)
+      if (std::isfinite(row.y[i])) {
+        sum += row.y[i];
+        ++number;
+      }
+    return number > 0 ? sum / number : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  const IdentificationModel& model_;
+  MeasuredData& data_;
+  std::vector<Row> group_;
+  Eigen::VectorXd squares_, counts_;
+  double inverse_repeats_ = 0.0;
+};
+
+int id_of(const std::string& cell, const SourcePlace& place) {
+  int id = 0;
+  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), id);
+  if (code != std::errc() || end != cell.data() + cell.size() || id < 1)
+    throw InputError(place, "id '" + cell.substr(0, 40) + "'", "a whole number above 0 is expected");
+  return id;
+}
+
+bool held_back(const std::string& cell, const SourcePlace& place) {
+  if (cell == "validate") return true;
+  if (cell != "fit") throw InputError(place, "use '" + cell.substr(0, 40) + "'", "allowed: fit, validate");
+  return false;
+}
+
+}  // namespace
+
+MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
+                                const IdentificationModel& model) {
+  const MeasuredColumns columns(read_file(file, size_limit), file.string(), problem, model);
+  MeasuredData data;
+  data.notes = columns.notes();
+  data.rows = columns.rows();
+  Averaging averaging(model, data);
+  for (int i = 0; i < columns.rows(); ++i) {
+    Row row;
+    row.line = columns.line(i);
+    const SourcePlace place{file.string(), row.line};
+    row.id = columns.text(i, "id").empty() ? int(data.poses.size()) + 1 : id_of(columns.text(i, "id"), place);
+    row.held_back = !columns.text(i, "use").empty() && held_back(columns.text(i, "use"), place);
+    row.q = columns.configuration(i);
+    row.y = columns.readings(i);
+    if (!row.y.array().isFinite().any()) throw InputError(place, "has no readings", "at least one cell is needed");
+    averaging.add(std::move(row));
+  }
+  averaging.finish();
+  return data;
+}
+
+std::string measured_data_csv(const IdentificationModel& model, const std::vector<MeasuredPose>& poses) {
+  std::string text = "id";
+  for (const Coordinate& c : model.coordinates())
+    text += c.choice() ? "," + c.name : fmt::format(",{} [{}]", c.name, c.unit);
+  for (const Reading& reading : model.readings())
+    text += reading.unit == "px" ? "," + reading.name : fmt::format(",{} [{}]", reading.name, reading.unit);
+  text += "\n";
+  for (const MeasuredPose& pose : poses) {
+    text += std::to_string(pose.id);
+    for (std::size_t i = 0; i < pose.q.size(); ++i) {
+      const Coordinate& c = model.coordinates()[i];
+      text += c.choice() ? "," + c.labels[std::size_t(pose.q[i])] : fmt::format(",{}", pose.q[i]);
+    }
+    for (const double value : pose.y) text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace posewright

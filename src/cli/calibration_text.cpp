@@ -150,7 +150,8 @@ std::string whiteness_text(const Calibration& c) {
                             : "");
   if (c.tests.normality.possible)
     text += fmt::format(
-        "Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic, c.tests.normality.probability,
+        "Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic,
+        chance(c.tests.normality.probability),
         c.tests.normality.probability < remarkable ? ": not normal: gross errors? try --weights robust" : "");
   if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
     const auto at = std::size_t(c.curvature.parameter);

@@ -106,7 +106,7 @@ void MeasuredColumns::from_actuators() {
       if (at == c.labels.end())
         throw InputError({file_, line(i)}, "'" + text(i, c.name) + "' is no " + c.name,
                          fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
-      q[k] = double(at - c.labels.begin());
+      q[k] = c.values[std::size_t(at - c.labels.begin())];
     }
     configurations_.push_back(q);
   }

@@ -49,6 +49,13 @@ class Averaging {
 
  private:
   void close() {
+    inverse_repeats_ += 1.0 / double(group_.size());
+    data_.poses.push_back({group_.front().id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()});
+    data_.held_back.push_back(group_.front().held_back);
+    group_.clear();
+  }
+
+  Eigen::VectorXd mean() {
     const Eigen::VectorXd& first = group_.front().y;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), number = sum, change, mean;
     for (const Row& row : group_) {
@@ -69,14 +76,7 @@ class Averaging {
         if (std::isfinite(change[i])) squares_[i] += change[i] * change[i];
     }
     for (Eigen::Index i = 0; i < sum.size(); ++i) counts_[i] += std::max(number[i] - 1, 0.0);
-    MeasuredPose pose;
-    pose.id = group_.front().id;
-    pose.q = group_.front().q;
-    pose.y = mean;
-    data_.poses.push_back(std::move(pose));
-    data_.held_back.push_back(group_.front().held_back);
-    inverse_repeats_ += 1.0 / double(group_.size());
-    group_.clear();
+    return mean;
   }
 
   double plain_mean(Eigen::Index i) const {
@@ -96,6 +96,10 @@ class Averaging {
   Eigen::VectorXd squares_, counts_;
   double inverse_repeats_ = 0.0;
 };
+
+const std::string& label_of(const Coordinate& c, double value) {
+  return c.labels[std::size_t(std::find(c.values.begin(), c.values.end(), value) - c.values.begin())];
+}
 
 int id_of(const std::string& cell, const SourcePlace& place) {
   int id = 0;
@@ -146,7 +150,7 @@ std::string measured_data_csv(const IdentificationModel& model, const std::vecto
     text += std::to_string(pose.id);
     for (std::size_t i = 0; i < pose.q.size(); ++i) {
       const Coordinate& c = model.coordinates()[i];
-      text += c.choice() ? "," + c.labels[std::size_t(pose.q[i])] : fmt::format(",{}", pose.q[i]);
+      text += c.choice() ? "," + label_of(c, pose.q[i]) : fmt::format(",{}", pose.q[i]);
     }
     for (const double value : pose.y) text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
     text += "\n";

@@ -1,5 +1,6 @@
 """What the program writes is what the schemas say: check_output_schemas.py PROGRAM."""
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -88,6 +89,21 @@ class Outputs(unittest.TestCase):
         self.check("comparison", comparison)
         self.run_program("plan", "smallest.yaml", "--poses", 8, "--json")
         self.check("comparison", self.run_program("compare", "smallest.yaml", "plan.json", "poses.csv", "--truth", "all", "--json"))
+
+    def test_calibration(self):
+        rows = ["id,q2 [deg],P0.x [mm],P0.y [mm],P0.z [mm],P1.x [mm],P1.y [mm],P1.z [mm],use"]
+        for k in range(30):
+            q = -140 + 5 * (k // 2)
+            noise = [0.1 * ((7 * k + 3 * i) % 11 - 5) / 3 for i in range(6)]
+            pins = [-686.4, -123.1, 0, 184.9 * math.sin(math.radians(q)), 184.9 * math.cos(math.radians(q)), 0]
+            cells = ["" if k == 4 and i == 5 else f"{p + n:.4f}" for i, (p, n) in enumerate(zip(pins, noise))]
+            rows.append(",".join([str(k // 2 + 1), str(q), *cells, "validate" if k > 23 else "fit"]))
+        (self.folder / "data.csv").write_text("\n".join(rows) + "\n")
+        for weights in ("ols", "wls", "robust"):
+            calibration = self.run_program("calibrate", EXAMPLES / "kr270/compensator_geometry.yaml", "data.csv", "--weights", weights, "--json")
+            self.assertEqual(calibration["poses_held_back"], 3)
+            self.assertAlmostEqual(calibration["parameters"][0]["value"], 0.1849, 3)
+            self.check("calibration", calibration)
 
     def test_plan_route_and_stations_of_a_cell(self):
         cell = self.folder / "cell.yaml"

@@ -48,7 +48,7 @@ struct Edit {
 /// Changes the origins of a URDF's joints.
 class OriginEditor {
  public:
-  explicit OriginEditor(const std::string& text) : text_(text), tags_(xml_tags(text)) {
+  OriginEditor(const std::string& text, const std::string& file) : text_(text), file_(file), tags_(xml_tags(text)) {
     // The scanner knows no entities; tinyxml2 tells the names of the same joints in the same order.
     tinyxml2::XMLDocument document;
     document.Parse(text.data(), text.size());
@@ -62,7 +62,11 @@ class OriginEditor {
 
   void set(const std::string& joint, const NewOrigin& origin) {
     if (!origin.xyz && !origin.rpy) return;
-    const std::size_t at = joint_.at(joint);
+    const auto found = joint_.find(joint);
+    if (found == joint_.end())
+      throw InputError({file_, 0}, "the text has no joint '" + joint + "' to correct",
+                       "names without malformed entities (&…;) are needed");
+    const std::size_t at = found->second;
     const auto tag = std::find_if(tags_.begin() + std::ptrdiff_t(at), tags_.end(), [&](const XmlTag& t) {
       return t.depth == 2 && t.parent == at && t.name == "origin";
     });
@@ -98,6 +102,7 @@ class OriginEditor {
   }
 
   const std::string& text_;
+  std::string file_;
   std::vector<XmlTag> tags_;
   std::map<std::string, std::size_t> joint_;
   std::vector<Edit> edits_;
@@ -128,7 +133,7 @@ CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place,
   const ChainDescription chain = read_urdf_chain(arm, place);
   const ChainCorrection correction = chain_correction(chain, convention, values);
   const UrdfDocument urdf(arm, place);
-  OriginEditor editor(urdf.text());
+  OriginEditor editor(urdf.text(), arm.urdf.string());
   std::size_t next = 0;
   for (const auto& joint : urdf.joints())
     if (joint->type != urdf::Joint::FIXED)

@@ -14,6 +14,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "tests/kit/jets.hpp"
+#include "tests/kit/mutate.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/urdf_text.hpp"
 
@@ -207,6 +208,37 @@ TEST(CorrectedUrdf, NamesWithItsValueWhatAUrdfCannotSay) {
   std::vector<std::string> more = common;
   more.insert(more.begin() + 1, "tool.z = 0.5 m: no fixed joint ends in link 'l5'");
   EXPECT_EQ(corrected_urdf(arm_of(urdf, "l5"), {}, Convention::frames, values).left_out, more);
+}
+
+TEST(CorrectedUrdf, OfADamagedFileThatIsStillReadHasTheCorrectedModelsTip) {
+  const TemporaryFolder folder;
+  int read = 0;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    Random random(21, i);
+    const SerialArmSpec arm = arm_of(folder.write("damaged.urdf", mutated(odd_urdf, random)), "tip");
+    ChainDescription chain;
+    try {
+      chain = read_urdf_chain(arm, {});
+    } catch (const InputError&) {
+      continue;
+    }
+    const SerialChain model(chain);
+    const std::vector<CalibratedValue> values = random_values(model, 0.1, "base\\..*|.*\\.gear|tool\\..*", i);
+    SerialArmSpec written = arm;
+    try {
+      written.urdf = folder.write("written.urdf", corrected_urdf(arm, {}, Convention::frames, values).text);
+    } catch (const InputError& error) {
+      ASSERT_NE(std::string(error.what()).find("malformed entities"), std::string::npos) << error.what();
+      continue;
+    }
+    const SerialChain again(read_urdf_chain(written, {}));
+    const std::vector<double> q = random_configuration(chain.coordinates, random);
+    const Eigen::Isometry3d expected = tip_of(model, q, values), found = tip_of(again, q, {});
+    const double scale = std::max(1.0, expected.translation().cwiseAbs().maxCoeff());
+    ASSERT_LT((expected.matrix() - found.matrix()).cwiseAbs().maxCoeff(), 1e-12 * scale) << read_file(arm.urdf);
+    ++read;
+  }
+  EXPECT_GT(read, 20);
 }
 
 TEST(CorrectedUrdf, HasNoDenavitHartenbergParametersWithMimicJoints) {

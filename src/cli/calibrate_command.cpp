@@ -2,8 +2,8 @@
 
 #include "calibration_report.hpp"
 #include "command.hpp"
-#include "packages.hpp"
 #include "posewright/version.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -22,7 +22,7 @@ po::options_description options() {
       ("prior", "count tolerances as measurements of their parameters (as the problem says)")  //
       ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
       ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it");
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -46,7 +46,7 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const CalibrateOptions calibrate = options_of(values, positional);
-  const Problem problem = problem_with_packages(positional.front(), values);
+  const Problem problem = given_problem(positional.front(), values);
   const Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
   print_notes(result.notes);
@@ -56,7 +56,7 @@ int run(const po::variables_map& values, const Words& positional) {
   }
   Json json = {{"schema", "posewright/calibration/1"},
                {"version", version},
-               {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}},
+               {"problem", problem_json(problem)},
                {"data", calibrate.data.string()}};
   json.update(calibration_json(result));
   fmt::print("{}\n", json.dump(1));

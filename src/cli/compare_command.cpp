@@ -2,10 +2,10 @@
 
 #include "command.hpp"
 #include "comparison_report.hpp"
-#include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/version.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -24,22 +24,8 @@ po::options_description options() {
       ("candidates", text("n"), "feasible configurations to compare with (as plan)")                        //
       ("restarts", text("k"), "starts of a search (as plan)")                                               //
       ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
-  options.add(package_options());
+  options.add(problem_options());
   return options;
-}
-
-/// Names of --variant, given several times or with commas.
-std::vector<std::string> variants_of(const po::variables_map& values) {
-  std::vector<std::string> names;
-  if (values.count("variant") == 0) return names;
-  for (const std::string& word : values["variant"].as<Words>())
-    for (std::size_t begin = 0; begin <= word.size();) {
-      const std::size_t end = std::min(word.find(',', begin), word.size());
-      if (end == begin) throw InputError({}, "--variant " + word + " has an empty name", "names of variants");
-      names.push_back(word.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  return names;
 }
 
 CompareOptions options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
@@ -69,7 +55,7 @@ CompareOptions options_of(const po::variables_map& values, const Words& position
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const CompareOptions compare = options_of(values, positional, common);
-  const Problem problem = problem_with_packages(positional.front(), values);
+  const Problem problem = given_problem(positional.front(), values);
   const Comparison result =
       watched(common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }).result;
   print_notes(result.notes);
@@ -80,7 +66,7 @@ int run(const po::variables_map& values, const Words& positional) {
   Json json = {{"schema", "posewright/comparison/1"},
                {"version", version},
                {"seed", common.seed},
-               {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}}};
+               {"problem", problem_json(problem)}};
   json.update(comparison_json(result));
   fmt::print("{}\n", json.dump(1));
   return done;

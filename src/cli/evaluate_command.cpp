@@ -2,7 +2,7 @@
 
 #include "command.hpp"
 #include "evaluation_report.hpp"
-#include "packages.hpp"
+#include "problem_source.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
@@ -26,7 +26,7 @@ po::options_description options() {
       ("restarts", text("k"), "starts of a search (10)")                                          //
       ("time-limit", text("S"), "stop searching after S seconds")                                 //
       ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -46,7 +46,7 @@ int run(const po::variables_map& values, const Words& positional) {
   evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
-  const Problem problem = problem_with_packages(positional[0], values);
+  const Problem problem = given_problem(positional[0], values);
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return evaluate_problem(problem, poses_in_file(positional[1], from), evaluate, monitor);
   });

@@ -2,8 +2,8 @@
 
 #include "command.hpp"
 #include "observation_report.hpp"
-#include "packages.hpp"
 #include "posewright/version.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -18,13 +18,13 @@ po::options_description options() {
       ("variant", text("V"), "only this variant (all)")                        //
       ("candidates", text("n"), "feasible configurations in the pool (2000)")  //
       ("poses", text("N"), "number of poses that σ is predicted for (design: poses)");
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
 int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const Problem problem = problem_with_packages(single(positional, "PROBLEM"), values);
+  const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   ObserveOptions observe;
   observe.variant = text_of(values, "variant");
   observe.candidates = whole_number(values, "candidates", 1, 1000000).value_or(observe.candidates);
@@ -39,7 +39,7 @@ int run(const po::variables_map& values, const Words& positional) {
     Json json = {{"schema", "posewright/observation/1"},
                  {"version", version},
                  {"seed", common.seed},
-                 {"problem", {{"file", problem.file.string()}, {"sha256", problem.sha256}}},
+                 {"problem", problem_json(problem)},
                  {"variants", Json::array()}};
     for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
     fmt::print("{}\n", json.dump(1));

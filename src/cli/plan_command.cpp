@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "packages.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "problem_source.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -26,7 +26,7 @@ po::options_description options() {
           "reserve", "maximise what is left when the pose that hurts most is lost")(
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
   options.add(output_options(true));
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -51,8 +51,8 @@ int run(const po::variables_map& values, const Words& positional) {
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
-  const Problem problem = problem_with_packages(file, values);
-  std::vector<std::filesystem::path> inputs{file};
+  const Problem problem = given_problem(file, values);
+  std::vector<std::filesystem::path> inputs = files_of(problem);
   if (!augment.empty()) inputs.push_back(augment);
   if (problem.design.measured) inputs.push_back(*problem.design.measured);
   if (problem.design.test_poses && !problem.design.test_poses->file.empty())

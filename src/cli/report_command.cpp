@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "packages.hpp"
 #include "posewright/pipeline/report_problem.hpp"
 #include "posewright/support/file.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -19,7 +19,7 @@ po::options_description options() {
       ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates")  //
       ("force", "replace files that posewright did not write")                                   //
       ("time-limit", text("S"), "begin no other number of poses after S seconds");
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -32,10 +32,11 @@ int run(const po::variables_map& values, const Words& positional) {
   report_options.threads = common.threads;
   const std::filesystem::path file = problem_file(values, plan);
   const std::filesystem::path page = output_file(values, "output", "report.html");
-  std::vector<std::filesystem::path> inputs = {plan, file};
+  const Problem problem = problem_for_plan(file, values, plan);
+  std::vector<std::filesystem::path> inputs = files_of(problem);
+  inputs.push_back(plan);
   if (!report_options.route.empty()) inputs.push_back(report_options.route);
   check_output_files(values, {page}, inputs);
-  const Problem problem = problem_with_packages(file, values);
   const auto [report, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return report_problem(problem, plan, report_options, monitor);
   });

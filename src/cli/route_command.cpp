@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "packages.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/pipeline/route_problem.hpp"
 #include "posewright/support/file.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -26,7 +26,7 @@ po::options_description options() {
       ("force", "replace files that posewright did not write")                               //
       ("time-limit", text("S"), "give up after S seconds")                                   //
       ("from", text("FORMAT"), ("format of PLAN where it is none: " + readable_format_names()).c_str());
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -47,10 +47,12 @@ int run(const po::variables_map& values, const Words& positional) {
   if (!from.empty() && text_of(values, "problem").empty())
     throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
   const std::filesystem::path file = problem_file(values, plan);
-  const Problem problem = problem_with_packages(file, values);
+  const Problem problem = problem_for_plan(file, values, plan);
   const std::filesystem::path json = output_file(values, "output", "route.json");
   const std::filesystem::path csv = output_file(values, "poses-csv", "-");
-  check_output_files(values, {json, csv}, {plan, file});
+  std::vector<std::filesystem::path> inputs = files_of(problem);
+  inputs.push_back(plan);
+  check_output_files(values, {json, csv}, inputs);
   const Route route = watched(common, time_limit(values), [&](const Monitor& monitor) {
                         return route_problem(problem, poses_in_file(plan, from), route_options, monitor);
                       }).result;

@@ -33,6 +33,7 @@ bool is_earlier_result(const fs::path& file) {
   in.read(head.data(), std::streamsize(head.size()));
   head.resize(std::size_t(in.gcount()));
   return head.starts_with("pose,") || head.starts_with("posewright,") ||
+         head.starts_with("posewright_parameters: 1\n") ||
          head.starts_with("<!doctype html><!-- posewright report -->") ||
          head.substr(0, 64).find("\"schema\": \"posewright/") != std::string::npos ||
          head.find(export_mark) != std::string::npos;

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
-#include "packages.hpp"
+#include "problem_source.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/pipeline/place_stations.hpp"
@@ -26,7 +26,7 @@ po::options_description options() {
           "candidates", text("n"), "feasible configurations of the full plans (10000)")  //
       ("restarts", text("k"), "starts of the search of the full plans (10)")             //
       ("time-limit", text("S"), "give up after S seconds");
-  options.add(package_options());
+  options.add(problem_options());
   return options;
 }
 
@@ -108,7 +108,7 @@ int run(const po::variables_map& values, const Words& positional) {
   stations.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   stations.plan.seed = common.seed;
   stations.plan.threads = common.threads;
-  const Problem problem = problem_with_packages(single(positional, "PROBLEM"), values);
+  const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   const std::vector<StationRank> ranks = watched(common, time_limit(values), [&](const Monitor& monitor) {
                                            return place_stations(problem, stations, monitor);
                                          }).result;

@@ -19,6 +19,7 @@ class UrdfDocument {
   /// Throws InputError for an unreadable or malformed file and for links that are not there or not on one branch.
   UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place);
 
+  const std::string& text() const { return text_; }
   const UrdfLines& lines() const { return lines_; }
   const urdf::ModelInterface& model() const { return *model_; }
   const std::string& base() const { return base_; }

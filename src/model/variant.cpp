@@ -2,75 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
+#include "parameter_names.hpp"
+#include "posewright/model/apply_parameters.hpp"
 namespace posewright {
 namespace {
-
-/// Shell-style pattern with * and ?.
-bool matches(std::string_view pattern, std::string_view name) {
-  std::size_t p = 0, n = 0, star = std::string_view::npos, mark = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p, ++n;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      mark = n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++mark;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
-/// All parameters of a model under the model's names and the user's.
-class Names {
- public:
-  Names(const IdentificationModel& model, const Problem& problem) : model_(model), problem_(problem) {
-    for (const Parameter& p : model.parameters()) shown_.push_back(p.name);
-    const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-    if (arm == nullptr) return;
-    // Names given to joint frames' parameters say nothing where a variant has another convention.
-    if (std::none_of(shown_.begin(), shown_.end(), [](const std::string& n) { return n.ends_with(".gear"); })) return;
-    for (const auto& [mine, theirs] : arm->parameter_names) {
-      const int index = index_of(theirs);
-      shown_[std::size_t(index)] = mine;
-    }
-  }
-
-  const std::string& shown(int index) const { return shown_[std::size_t(index)]; }
-
-  /// Indices matched by a pattern, in the model's order; throws where there are none.
-  std::vector<int> find(const Located<std::string>& pattern) const {
-    std::vector<int> found;
-    for (int i = 0; i < int(shown_.size()); ++i)
-      if (matches(pattern.value, shown(i)) || matches(pattern.value, model_.parameters()[std::size_t(i)].name))
-        found.push_back(i);
-    if (found.empty()) unknown(pattern);
-    return found;
-  }
-
- private:
-  int index_of(const Located<std::string>& name) const {
-    for (int i = 0; i < int(model_.parameters().size()); ++i)
-      if (model_.parameters()[std::size_t(i)].name == name.value) return i;
-    unknown(name);
-  }
-
-  [[noreturn]] void unknown(const Located<std::string>& pattern) const {
-    std::string allowed;
-    for (const std::string& name : shown_) allowed += (allowed.empty() ? "parameters: " : ", ") + name;
-    throw InputError(problem_.at(pattern.line), "'" + pattern.value + "' matches no parameter of this robot", allowed);
-  }
-
-  const IdentificationModel& model_;
-  const Problem& problem_;
-  std::vector<std::string> shown_;
-};
 
 bool fits(Quantity quantity, const std::string& unit) {
   switch (quantity) {
@@ -91,7 +27,7 @@ bool fits(Quantity quantity, const std::string& unit) {
 
 /// Calls use(index, value) for every parameter that a written value is meant for; later entries come later.
 template <class Use>
-void for_each_value(const Names& names, const Problem& problem, const std::vector<PatternValue>& values,
+void for_each_value(const ParameterNames& names, const Problem& problem, const std::vector<PatternValue>& values,
                     const std::vector<Parameter>& parameters, const char* what, const Use& use) {
   for (const PatternValue& value : values) {
     bool used = false;
@@ -112,7 +48,8 @@ void for_each_value(const Names& names, const Problem& problem, const std::vecto
 }
 
 /// Free parameters of interest in the order written, or all geometric ones for `auto`.
-std::vector<int> interest_candidates(const IdentificationModel& model, const Names& names, const VariantSpec& variant) {
+std::vector<int> interest_candidates(const IdentificationModel& model, const ParameterNames& names,
+                                     const VariantSpec& variant) {
   std::vector<int> order;
   const auto add = [&](int i) {
     if (std::find(order.begin(), order.end(), i) == order.end()) order.push_back(i);
@@ -127,14 +64,24 @@ std::vector<int> interest_candidates(const IdentificationModel& model, const Nam
 }  // namespace
 
 void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
-  if (variant.nominal.empty()) return;
-  const Names names(model, problem);
+  const std::vector<ParameterEntry> calibrated = calibrated_entries(problem, variant);
+  if (variant.nominal.empty() && calibrated.empty()) return;
+  const ParameterNames names(model, problem);
+  // The instrument of a part of the problem may have fewer parameters; apply_parameters has judged the names.
+  const auto take_calibrated = [&] {
+    for (const ParameterEntry& entry : calibrated)
+      if (const int i = names.index_of(entry.name.value); i >= 0) model.set_nominal(i, entry.value);
+  };
+  // What a variant says of itself stands, unless it is the one that was calibrated.
+  const bool own = problem.parameters && problem.parameters->variant.value == variant.name;
+  if (!own) take_calibrated();
   for_each_value(names, problem, variant.nominal, model.parameters(), "the nominal value",
                  [&](int i, double value) { model.set_nominal(i, value); });
+  if (own) take_calibrated();
 }
 
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
-  const Names names(model, problem);
+  const ParameterNames names(model, problem);
   std::vector<Parameter> all = model.parameters();
   for_each_value(names, problem, variant.tolerance, all, "the tolerance",
                  [&](int i, double value) { all[std::size_t(i)].tolerance = value; });

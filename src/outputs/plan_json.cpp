@@ -104,6 +104,14 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
   return {{"position", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
+nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
+                                    const ParametersFile& parameters) {
+  Json json = {{"file", file}, {"sha256", sha256}};
+  if (!parameters.file.empty())
+    json["parameters"] = {{"file", parameters.file}, {"sha256", parameters.sha256}, {"variant", parameters.variant}};
+  return json;
+}
+
 nlohmann::ordered_json curve_point_json(const CurvePoint& point) {
   return {{"poses", point.poses},
           {"log_det", point.log_det},
@@ -177,7 +185,7 @@ std::string plan_json(const Plan& plan) {
   Json json = {{"schema", "posewright/plan/1"},
                {"version", version},
                {"seed", plan.seed},
-               {"problem", {{"file", plan.problem_file}, {"sha256", plan.problem_sha256}}}};
+               {"problem", problem_json(plan.problem_file, plan.problem_sha256, plan.parameters_file)}};
   if (!plan.variant.empty()) json["variant"] = plan.variant;
   json["method"] = plan.method;
   json["interrupted"] = plan.interrupted;

@@ -24,6 +24,8 @@ std::string headline(const Plan& plan) {
   if (nuisance > 0) text += fmt::format(" and {} nuisance parameters", nuisance);
   if (plan.interrupted) text += " (search interrupted: best plan so far)";
   text += "\n";
+  if (!plan.parameters_file.file.empty())
+    text += fmt::format("At the calibrated parameters of {}.\n", plan.parameters_file.file);
   if (plan.prior)
     text += "Tolerances count as prior knowledge: σ and log det are those after the measurement with them.\n";
   return text;

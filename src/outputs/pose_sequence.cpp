@@ -72,8 +72,7 @@ class Reader {
   PoseSequence read() {
     const std::string schema = json_.value("schema", std::string("posewright/plan/1"));
     sequence_.is_route = schema == "posewright/route/1";
-    if (json_.contains("problem") && json_["problem"].is_object())
-      sequence_.problem_sha256 = json_["problem"].value("sha256", std::string());
+    if (json_.contains("problem") && json_["problem"].is_object()) read_problem(json_["problem"]);
     const bool list = schema == "posewright/poses/1";
     if (!sequence_.is_route && !list && schema != "posewright/plan/1" && schema != "posewright/evaluation/1")
       throw InputError(place_, "has schema " + formats::quoted(schema),
@@ -95,6 +94,14 @@ class Reader {
   }
 
  private:
+  void read_problem(const Json& json) {
+    sequence_.problem_sha256 = json.value("sha256", std::string());
+    if (!json.contains("parameters") || !json["parameters"].is_object()) return;
+    const Json& parameters = json["parameters"];
+    sequence_.parameters_file = {parameters.value("file", std::string()), parameters.value("sha256", std::string()),
+                                 parameters.value("variant", std::string())};
+  }
+
   void read_pose(const Json& json, const char* key) {
     SequencePose pose;
     pose.id = json.contains("id") ? id_of(json["id"]) : int(sequence_.poses.size()) + 1;

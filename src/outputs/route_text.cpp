@@ -99,7 +99,7 @@ std::string route_json(const Route& route) {
                {"version", version},
                {"seed", route.seed},
                {"plan", route.plan_file},
-               {"problem", {{"file", route.problem_file}, {"sha256", route.problem_sha256}}},
+               {"problem", problem_json(route.problem_file, route.problem_sha256, route.parameters_file)},
                {"problem_changed", route.problem_changed},
                {"closed", route.closed},
                {"from_home", route.from_home},

@@ -10,6 +10,9 @@ nlohmann::ordered_json sight_json(const TargetSight& sight);
 /// Of a parallel robot, by name.
 nlohmann::ordered_json actuators_json(const PlannedPose& pose);
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);
+/// Key `problem` of plans and routes.
+nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
+                                    const ParametersFile& parameters);
 nlohmann::ordered_json curve_point_json(const CurvePoint& point);
 
 }  // namespace posewright

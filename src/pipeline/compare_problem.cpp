@@ -26,7 +26,7 @@ class Comparing {
   Comparison compare() {
     describe_variants();
     take(options_.plans.empty() ? searched_plans(prepared_, settings_, monitor_)
-                                : given_plans(prepared_, options_.plans));
+                                : given_plans(problem_, prepared_, options_.plans));
     for (const Configurations& poses : poses_)
       for (std::size_t i = 0; i < poses.count(); ++i)
         if (!holds(pool_, poses[i])) append(pool_, poses[i]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "posewright/criterion/registry.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 #include "study_space.hpp"
 
@@ -67,7 +68,8 @@ PlansToCompare searched_plans(const Preparation& prepared, const Settings& setti
   return result;
 }
 
-PlansToCompare given_plans(const Preparation& prepared, const std::vector<CompareOptions::List>& lists) {
+PlansToCompare given_plans(const Problem& problem, const Preparation& prepared,
+                           const std::vector<CompareOptions::List>& lists) {
   PlansToCompare result;
   for (const CompareOptions::List& list : lists) {
     const PoseList read = list.poses(prepared.first().workspace->coordinates());
@@ -80,6 +82,7 @@ PlansToCompare given_plans(const Preparation& prepared, const std::vector<Compar
     }
     if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
     result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
+    note_parameters(read, problem, result.notes);
     result.plans.push_back({list.name, "", int(poses.count())});
     result.poses.push_back(std::move(poses));
   }

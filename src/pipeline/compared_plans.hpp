@@ -19,7 +19,8 @@ struct PlansToCompare {
 /// The best plan for each variant that can be identified.
 PlansToCompare searched_plans(const Preparation& prepared, const Settings& settings, const Monitor& monitor);
 /// Lists as they are. Throws InputError where one cannot be read.
-PlansToCompare given_plans(const Preparation& prepared, const std::vector<CompareOptions::List>& lists);
+PlansToCompare given_plans(const Problem& problem, const Preparation& prepared,
+                           const std::vector<CompareOptions::List>& lists);
 
 /// What is asked of a search or bound for one variant alone.
 SearchRequest request_for(const Preparation& prepared, const PreparedVariant& variant, const Settings& settings,

@@ -9,6 +9,7 @@
 #include "fill_plan.hpp"
 #include "judgement.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 #include "preparation.hpp"
 
@@ -28,6 +29,7 @@ class ListEvaluation {
     const std::vector<Coordinate>& coordinates = prepared_.first().workspace->coordinates();
     const PoseList list = poses(coordinates);
     notes_ = list.notes;
+    note_parameters(list, problem, notes_);
     poses_.dimension = int(coordinates.size());
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
@@ -46,6 +48,7 @@ class ListEvaluation {
     plan.seed = settings_.planner.seed;
     plan.problem_file = problem.file.string();
     plan.problem_sha256 = problem.sha256;
+    plan.parameters_file = parameters_of(problem);
     plan.method = "given";
     fill_judgement(plan, judgement, prepared_, settings_);
     const std::vector<double> references = score_all(result, judgement);

@@ -10,6 +10,7 @@
 #include "fill_plan.hpp"
 #include "judgement.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 #include "preparation.hpp"
 
@@ -150,6 +151,7 @@ class Planning {
     plan.seed = settings_.planner.seed;
     plan.problem_file = problem_.file.string();
     plan.problem_sha256 = problem_.sha256;
+    plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
     fill_judgement(plan, judgement, prepared_, settings_);
     const CriterionValue value = criterion_value(settings_.criterion, judgement, prepared_, found.references);

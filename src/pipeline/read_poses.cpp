@@ -42,6 +42,7 @@ class Mapping {
       : file_(file), coordinates_(coordinates), table_(table), column_(coordinates.size(), -1) {
     list_.name = file;
     list_.problem_sha256 = table.problem_sha256;
+    list_.parameters_file = table.parameters_file;
     if (table.names.empty()) map_by_order();
     else map_by_name();
   }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "judgement.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "preparation.hpp"
@@ -90,6 +91,8 @@ class Reporting {
       report_.notes.push_back(
           "The problem file has changed since the plan was made: the plan's own figures are those of the old file, "
           "everything that this page recomputes those of the new one.");
+    else if (std::string note = parameters_note("The plan", plan_.parameters_file, problem_); !note.empty())
+      report_.notes.push_back(note + ".");
     else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
       report_.notes.push_back(fmt::format(
           "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",

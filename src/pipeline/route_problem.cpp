@@ -7,6 +7,7 @@
 #include "fill_plan.hpp"
 #include "motions.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/route/tour.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
@@ -36,6 +37,7 @@ class Router {
         space_(problem, cell_) {
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
+    route_.parameters_file = parameters_of(problem);
     route_.seed = options.seed;
     route_.closed = options.closed;
     route_.from_home = options.from_home;
@@ -67,6 +69,7 @@ class Router {
     route_.plan_file = list.name;
     route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
     route_.notes = list.notes;
+    note_parameters(list, problem_, route_.notes);
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;

@@ -49,6 +49,11 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
     plan.options = options_of(json);
     plan.log_det = json.at("criterion").at("log_det").get<double>();
     plan.problem_sha256 = json.at("problem").value("sha256", "");
+    if (json["problem"].contains("parameters")) {
+      const Json& parameters = json["problem"]["parameters"];
+      plan.parameters_file = {parameters.at("file").get<std::string>(), parameters.at("sha256").get<std::string>(),
+                              parameters.at("variant").get<std::string>()};
+    }
   } catch (const Json::exception&) {
     throw_no_plan(file);
   } catch (const std::bad_optional_access&) {  // a word that is none

@@ -14,6 +14,7 @@ struct WrittenPlan {
   PlanOptions options;  ///< what it was made with, as far as it says; poses: those that are new
   double log_det = 0.0;
   std::string problem_sha256;
+  ParametersFile parameters_file;
 };
 
 /// Throws InputError where the file is no plan of a robot.

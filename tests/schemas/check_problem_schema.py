@@ -122,5 +122,24 @@ class ProblemSchema(unittest.TestCase):
         self.assertGreater(refused, 90)
 
 
+class ParametersSchema(unittest.TestCase):
+    def test_accepts_and_refuses_what_the_reader_does(self):
+        good, bad = sources.parameters_file()
+        self.assertEqual(errors("parameters.schema.json", plain_yaml.load(good)), [])
+        self.assertGreater(len(bad), 8)
+        for text, message in bad:
+            if "duplicate key" in message:  # beyond structure
+                continue
+            with self.subTest(message):
+                self.assertNotEqual(errors("parameters.schema.json", plain_yaml.load(text)), [])
+
+    def test_has_the_keys_of_the_reader(self):
+        reader = (sources.ROOT / "src/problem/calibrated_parameters.cpp").read_text()
+        asked = set(re.findall(r"\.(?:at|find)\(\"(\w+)\"\)", reader))
+        known = set().union(*(part["properties"] for part in objects(SCHEMAS["parameters.schema.json"])))
+        self.assertEqual(asked - known, set())
+        self.assertEqual(asked, {"posewright_parameters", "variant", "convention", "parameters", "value", "unit"})
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -13,7 +13,9 @@ def texts(cpp):
 
 
 def readers():
-    return {file.name: file.read_text() for file in sorted((ROOT / "src/problem").glob("*.cpp"))}
+    """Of the problem file; the parameters file is another one."""
+    return {file.name: file.read_text() for file in sorted((ROOT / "src/problem").glob("*.cpp"))
+            if file.name != "calibrated_parameters.cpp"}
 
 
 def allowed_keys():
@@ -61,6 +63,16 @@ def units():
 def good_files():
     text = (ROOT / "tests/problem/example_files.hpp").read_text()
     return dict(re.findall(r'inline const std::string (\w+) =\s*R"\((.*?)\)";', text, re.S))
+
+
+def parameters_file():
+    """The good parameters file of the tests and the changes that spoil it, with their messages."""
+    source = (ROOT / "tests/problem/calibrated_parameters_test.cpp").read_text()
+    good = re.search(r'const std::string good = R"\((.*?)\)";', source, re.S)[1]
+    literal = r'"((?:[^"\\]|\\.)*)"'
+    rows = re.findall(rf'\{{{literal},\s*{literal},\s*{literal}\}}', source)
+    unescaped = [[re.sub(r"\\(.)", lambda m: ESCAPES[m[1]], text) for text in row] for row in rows]
+    return good, [(good.replace(before, after, 1), message) for before, after, message in unescaped]
 
 
 def bad_files():

@@ -112,10 +112,17 @@ struct PlanStatistics {
   CellNotes cell{};
 };
 
+/// Calibrated parameters that something was computed at; empty: the nominal ones.
+struct ParametersFile {
+  std::string file, sha256;
+  std::string variant;  ///< that takes the values as its own
+};
+
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
   std::string problem_file, problem_sha256;
+  ParametersFile parameters_file{};
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1", method = "exchange", scaling = "tolerance";
   bool reserve = false;          ///< searched for what is left without the pose that hurts most

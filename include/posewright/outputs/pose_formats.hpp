@@ -71,6 +71,7 @@ struct PoseTable {
   std::vector<PoseRow> rows;
   int header = 0;                ///< line of the names; 0: not known
   std::string problem_sha256{};  ///< of the problem it was made for; empty: not known
+  ParametersFile parameters_file{};
 };
 
 /// One row a format.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "posewright/outputs/plan.hpp"
+
 namespace posewright {
 
 /// A target where the plan predicts it.
@@ -34,8 +36,9 @@ struct SequenceMotion {
 struct PoseSequence {
   std::string file;
   std::string problem_sha256;  ///< of the problem it was made for; empty: not known
-  bool is_route = false;       ///< motions are checked and in measuring order
-  bool is_platform = false;    ///< coordinates are a platform's, its actuators follow from them
+  ParametersFile parameters_file{};
+  bool is_route = false;     ///< motions are checked and in measuring order
+  bool is_platform = false;  ///< coordinates are a platform's, its actuators follow from them
   bool from_home = false, closed = false;
   double settle = 0.0;                    ///< s at each pose, of a route
   std::vector<std::string> names, units;  ///< "rad" or "m"

@@ -31,6 +31,7 @@ struct SkippedPose {
 /// The order of measurement and the motions between the poses.
 struct Route {
   std::string plan_file, problem_file, problem_sha256;
+  ParametersFile parameters_file{};
   bool problem_changed = false;  ///< the problem file is not the one the plan was made for
   std::uint64_t seed = 0;
   bool closed = false, from_home = false;

@@ -20,6 +20,7 @@ struct PoseList {
   std::vector<std::string> notes{};  ///< what the user must know of how the list was read
   std::string name{};                ///< of the list, for messages: its file
   std::string problem_sha256{};      ///< of the problem it was made for; empty: not known
+  ParametersFile parameters_file{};  ///< that it was made at
 };
 
 /// A list that is read once the coordinates of the problem are known, and judged by them: InputError for values that do

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/problem/calibrated_parameters.hpp"
 #include "posewright/problem/cell_specs.hpp"
 #include "posewright/problem/design_specs.hpp"
 #include "posewright/problem/measurement_specs.hpp"
@@ -66,6 +67,8 @@ struct Problem {
   DesignSpec design;
   /// Where meshes named package://NAME/… are: folders named so beside those of ROS_PACKAGE_PATH and around the URDF.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  /// Where calibration found the parameters; put here by apply_parameters (model/apply_parameters.hpp).
+  std::optional<CalibratedParameters> parameters;
 
   SourcePlace at(int line) const { return {file.string(), line}; }
 };

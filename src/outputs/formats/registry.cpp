@@ -78,6 +78,7 @@ PoseTable table_of(const PoseSequence& sequence) {
   PoseTable table;
   table.names = sequence.names;
   table.problem_sha256 = sequence.problem_sha256;
+  table.parameters_file = sequence.parameters_file;
   table.units.resize(table.names.size());
   const auto has = [&](std::string SequencePose::*label) {
     return std::any_of(sequence.poses.begin(), sequence.poses.end(),

@@ -1,0 +1,93 @@
+#include "problem_source.hpp"
+
+#include "posewright/model/apply_parameters.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
+#include "posewright/pipeline/route_problem.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "session.hpp"
+
+namespace posewright::cli {
+namespace {
+
+std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values) {
+  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  if (values.count("package") == 0) return packages;
+  for (const std::string& text : values["package"].as<Words>()) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos || equal == 0 || equal + 1 == text.size())
+      throw InputError({}, "--package " + text, "NAME=DIR is expected");
+    const std::filesystem::path folder = text.substr(equal + 1);
+    std::error_code code;
+    if (!std::filesystem::is_directory(folder, code))
+      throw InputError({}, "--package " + text + ": '" + folder.string() + "' is no folder",
+                       "an existing folder is expected");
+    packages.emplace_back(text.substr(0, equal), folder);
+  }
+  return packages;
+}
+
+void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
+  print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
+}
+
+}  // namespace
+
+po::options_description problem_options() {
+  po::options_description options("Problem");
+  options.add_options()("package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+                        "folder of package://NAME/ in the URDF (else ROS_PACKAGE_PATH, and around the URDF)")(
+      "parameters", po::value<std::string>()->value_name("FILE"),
+      "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
+  return options;
+}
+
+std::vector<std::string> variants_of(const po::variables_map& values) {
+  std::vector<std::string> names;
+  if (values.count("variant") == 0) return names;
+  const boost::any& given = values["variant"].value();
+  for (const std::string& word : given.type() == typeid(Words) ? boost::any_cast<const Words&>(given)
+                                                               : Words{boost::any_cast<const std::string&>(given)})
+    for (std::size_t begin = 0; begin <= word.size();) {
+      const std::size_t end = std::min(word.find(',', begin), word.size());
+      if (end == begin) throw InputError({}, "--variant " + word + " has an empty name", "names of variants");
+      names.push_back(word.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  return names;
+}
+
+Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {
+  Problem problem = read_problem(file);
+  problem.packages = packages_of(values);
+  if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
+  return problem;
+}
+
+std::filesystem::path problem_file(const po::variables_map& values, const std::filesystem::path& plan) {
+  const std::filesystem::path given = text_of(values, "problem");
+  return given.empty() ? problem_of_plan(plan) : given;
+}
+
+Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
+                         const std::filesystem::path& plan) {
+  Problem problem = given_problem(file, values);
+  if (problem.parameters) return problem;
+  if (const ParametersFile stated = parameters_of_plan(plan); !stated.file.empty())
+    apply(problem, stated.file, {stated.variant});
+  return problem;
+}
+
+std::vector<std::filesystem::path> files_of(const Problem& problem) {
+  std::vector<std::filesystem::path> files{problem.file};
+  if (problem.parameters) files.push_back(problem.parameters->file);
+  return files;
+}
+
+nlohmann::ordered_json problem_json(const Problem& problem) {
+  nlohmann::ordered_json json = {{"file", problem.file.string()}, {"sha256", problem.sha256}};
+  if (const ParametersFile stated = parameters_of(problem); !stated.file.empty())
+    json["parameters"] = {{"file", stated.file}, {"sha256", stated.sha256}, {"variant", stated.variant}};
+  return json;
+}
+
+}  // namespace posewright::cli

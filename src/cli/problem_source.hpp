@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright::cli {
+
+/// --package NAME=DIR and --parameters FILE, for every command that reads a problem file.
+po::options_description problem_options();
+/// Names of --variant, given once, several times or with commas; none where the command has no such option.
+/// Throws InputError for an empty name.
+std::vector<std::string> variants_of(const po::variables_map& values);
+/// The problem file with what these options say. Variants that keep their nominal values are told on stderr.
+/// Throws InputError as read_problem and apply_parameters, for a package without name or folder, and for a folder that
+/// is not there.
+Problem given_problem(const std::filesystem::path& file, const po::variables_map& values);
+
+/// The problem file of a plan: --problem, else the one that the plan names. Throws InputError where there is none.
+std::filesystem::path problem_file(const po::variables_map& values, const std::filesystem::path& plan);
+/// given_problem() of that file; without --parameters at the parameters that the plan states.
+Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
+                         const std::filesystem::path& plan);
+
+/// Files that nothing may be written over: the problem file and its parameters.
+std::vector<std::filesystem::path> files_of(const Problem& problem);
+/// Key `problem` of results.
+nlohmann::ordered_json problem_json(const Problem& problem);
+
+}  // namespace posewright::cli

@@ -1,0 +1,82 @@
+#include "posewright/model/apply_parameters.hpp"
+
+#include <algorithm>
+
+#include "parameter_names.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+
+namespace posewright {
+namespace {
+
+const VariantSpec* named(const Problem& problem, const std::string& name) {
+  const auto at = std::find_if(problem.variants.begin(), problem.variants.end(),
+                               [&](const VariantSpec& variant) { return variant.name == name; });
+  return at == problem.variants.end() ? nullptr : &*at;
+}
+
+/// The variant that stands for the calibrated one.
+const VariantSpec& target_of(const Problem& problem, const CalibratedParameters& parameters,
+                             const std::vector<std::string>& asked) {
+  const std::string& calibrated = parameters.variant.value;
+  if (!asked.empty() && std::find(asked.begin(), asked.end(), calibrated) == asked.end())
+    return find_variant(problem, asked.front());
+  if (const VariantSpec* variant = named(problem, calibrated)) return *variant;
+  std::string names;
+  for (const VariantSpec& variant : problem.variants) names += (names.empty() ? "" : ", ") + variant.name;
+  throw InputError(parameters.at(parameters.variant.line),
+                   "'" + calibrated + "' is no variant of " + problem.file.string(),
+                   "variants: " + names + "; --variant names one that takes the values");
+}
+
+void require_names(const Problem& problem, const VariantSpec& variant, const CalibratedParameters& parameters) {
+  const auto model = make_model(problem, variant);
+  const ParameterNames names(*model, problem);
+  for (const ParameterEntry& entry : parameters.values) {
+    const int i = names.index_of(entry.name.value);
+    if (i < 0)
+      throw InputError(parameters.at(entry.name.line),
+                       "'" + entry.name.value + "' is no parameter of variant '" + variant.name + "'", names.allowed());
+    const std::string& unit = model->parameters()[std::size_t(i)].unit;
+    if (!entry.unit.empty() && entry.unit != unit)
+      throw InputError(parameters.at(entry.name.line), "'" + entry.name.value + "' is in '" + entry.unit + "'",
+                       "allowed: " + unit + ", values are in SI");
+  }
+}
+
+}  // namespace
+
+std::string convention_name(VariantSpec::Convention convention) {
+  using Convention = VariantSpec::Convention;
+  return convention == Convention::frames ? "frames" : convention == Convention::dh ? "dh" : "mdh";
+}
+
+std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters parameters,
+                                          const std::vector<std::string>& asked) {
+  problem.parameters.reset();
+  const VariantSpec& target = target_of(problem, parameters, asked);
+  const VariantSpec* calibrated = named(problem, parameters.variant.value);
+  const std::string own = convention_name(target.convention);
+  if (parameters.convention.empty()) parameters.convention = calibrated ? convention_name(calibrated->convention) : own;
+  if (parameters.convention != own)
+    throw InputError(
+        parameters.at(parameters.variant.line),
+        "has parameters of the kind '" + parameters.convention + "', variant '" + target.name + "' is '" + own + "'",
+        "a variant with parameters of the same kind");
+  require_names(problem, target, parameters);
+  std::vector<std::string> notes;
+  for (const VariantSpec& variant : problem.variants)
+    if (convention_name(variant.convention) != own)
+      notes.push_back(parameters.file.string() + ": variant '" + variant.name +
+                      "' has parameters of another kind and keeps its nominal values");
+  parameters.variant.value = target.name;
+  problem.parameters = std::move(parameters);
+  return notes;
+}
+
+std::vector<ParameterEntry> calibrated_entries(const Problem& problem, const VariantSpec& variant) {
+  if (!problem.parameters || problem.parameters->convention != convention_name(variant.convention)) return {};
+  return problem.parameters->values;
+}
+
+}  // namespace posewright

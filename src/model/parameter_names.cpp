@@ -1,0 +1,66 @@
+#include "parameter_names.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace posewright {
+
+bool matches(std::string_view pattern, std::string_view name) {
+  std::size_t p = 0, n = 0, star = std::string_view::npos, mark = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p, ++n;
+    } else if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      mark = n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++mark;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+ParameterNames::ParameterNames(const IdentificationModel& model, const Problem& problem)
+    : model_(model), problem_(problem) {
+  for (const Parameter& p : model.parameters()) shown_.push_back(p.name);
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return;
+  // Names given to joint frames' parameters say nothing where a variant has another convention.
+  if (std::none_of(shown_.begin(), shown_.end(), [](const std::string& n) { return n.ends_with(".gear"); })) return;
+  for (const auto& [mine, theirs] : arm->parameter_names) {
+    const auto& all = model.parameters();
+    const auto at = std::find_if(all.begin(), all.end(), [&, &t = theirs](const auto& p) { return p.name == t.value; });
+    if (at == all.end())
+      throw InputError(problem.at(theirs.line), "'" + theirs.value + "' matches no parameter of this robot", allowed());
+    shown_[std::size_t(at - all.begin())] = mine;
+  }
+}
+
+std::vector<int> ParameterNames::find(const Located<std::string>& pattern) const {
+  std::vector<int> found;
+  for (int i = 0; i < int(shown_.size()); ++i)
+    if (matches(pattern.value, shown(i)) || matches(pattern.value, model_.parameters()[std::size_t(i)].name))
+      found.push_back(i);
+  if (found.empty())
+    throw InputError(problem_.at(pattern.line), "'" + pattern.value + "' matches no parameter of this robot",
+                     allowed());
+  return found;
+}
+
+int ParameterNames::index_of(const std::string& name) const {
+  for (int i = 0; i < int(shown_.size()); ++i)
+    if (shown(i) == name || model_.parameters()[std::size_t(i)].name == name) return i;
+  return -1;
+}
+
+std::string ParameterNames::allowed() const {
+  std::string text;
+  for (const std::string& name : shown_) text += (text.empty() ? "parameters: " : ", ") + name;
+  return text;
+}
+
+}  // namespace posewright

@@ -1,5 +1,6 @@
 #include "posewright/model/identification_model.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace posewright {
@@ -78,6 +79,13 @@ void IdentificationModel::hide(std::span<const double> q, Linearisation& out) co
       out.covariance(i, i) = 1.0;
     }
   }
+}
+
+int IdentificationModel::readings(std::span<const double> q) const {
+  if (visibility_ == nullptr || rows_per_target_ == 0) return rows_;
+  std::vector<char> seen(std::size_t(visibility_->targets()));
+  visibility_->visible(q, seen);
+  return rows_ - rows_per_target_ * int(std::count(seen.begin(), seen.end(), 0));
 }
 
 bool IdentificationModel::reading_twists(std::span<const double> q,

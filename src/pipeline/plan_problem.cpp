@@ -39,9 +39,10 @@ class Planning {
     request.reserve = settings_.reserve;
     request.planner = settings_.planner;
     if (prepared_.has_minimum_distance) request.spacing = &prepared_.minimum_distance;
-    request.make_space = space_maker(prepared_);
+    request.make_space = space_maker(prepared_, settings_.criterion);
     const SearchResult found =
-        search(search_parts(prepared_, prepared_.configurations, settings_.planner.threads), request, monitor_);
+        search(search_parts(prepared_, settings_.criterion, prepared_.configurations, settings_.planner.threads),
+               request, monitor_);
     return assemble(found);
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "discrepancy.hpp"
+#include "posewright/criterion/registry.hpp"
 #include "posewright/support/error.hpp"
 #include "study_space.hpp"
 #include "test_points.hpp"
@@ -120,6 +122,7 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
   prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
   keep_away_from_measured(prepared, settings.repeats);
+  if (!settings.truth.value.empty()) prepared.discrepancy = make_discrepancy(problem, prepared, settings);
   return prepared;
 }
 
@@ -147,11 +150,16 @@ void keep_away_from_measured(Preparation& prepared, Repeats repeats) {
       prepared.configurations.dimension);
 }
 
-std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared) {
-  return [&prepared](const Eigen::MatrixXd& R) {
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared,
+                                                                                         const std::string& criterion) {
+  return [&prepared, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const PreparedVariant& v : prepared.variants)
-      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
+      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected, {}});
+    if (with_effects) {
+      parts.front().selected = prepared.discrepancy->effects.columns.selected;
+      parts.front().mix = prepared.discrepancy->mix;
+    }
     return make_configuration_space(std::move(parts), prepared.configurations, prepared.measured, prepared.spacing, R);
   };
 }
@@ -164,7 +172,8 @@ SearchPart search_part(const PreparedVariant& variant, const Configurations& con
           variant.weight,
           variant.scale,
           variant.test_points,
-          variant.prior};
+          variant.prior,
+          {}};
 }
 
 }  // namespace
@@ -176,8 +185,13 @@ std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Confi
   return parts;
 }
 
-std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads) {
+std::vector<SearchPart> search_parts(const Preparation& prepared, const std::string& criterion,
+                                     const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
+  if (find_criterion(criterion)->needs_truth) {
+    parts.push_back(part_with_effects(prepared, configurations, threads));
+    return parts;
+  }
   for (const PreparedVariant& variant : prepared.variants)
     parts.push_back(search_part(variant, configurations, threads));
   return parts;

@@ -36,6 +36,8 @@ PlanOptions options_of(const Json& plan, int poses) {
   const Json& criterion = plan.at("criterion");
   options.criterion = criterion.at("name").get<std::string>();
   if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
+  if (const auto test = plan.find("discrimination"); test != plan.end() && test->is_object())
+    options.truth = test->at("truth").get<std::string>();
   options.reserve = criterion.value("reserve", false);
   options.prior = criterion.at("prior").get<std::string>() == "tolerance";
   const std::string scaling = criterion.at("scaling").get<std::string>();
@@ -211,7 +213,8 @@ class Reporting {
   void fill_candidates() {
     const Configurations& pool = prepared_.configurations;
     if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    Bound bound = bound_only(search_parts(prepared_, pool, options_.threads), request(settings_.poses), whole_);
+    Bound bound = bound_only(search_parts(prepared_, settings_.criterion, pool, options_.threads),
+                             request(settings_.poses), whole_);
     if (whole_.should_stop()) {
       report_.notes.emplace_back("Stopped early: what each candidate could tell is left out.");
       return;
@@ -233,7 +236,8 @@ class Reporting {
   void add_to_curve(int poses) {
     const Configurations& pool = prepared_.configurations;
     try {
-      const SearchResult found = search(search_parts(prepared_, pool, options_.threads), request(poses), whole_);
+      const SearchResult found =
+          search(search_parts(prepared_, settings_.criterion, pool, options_.threads), request(poses), whole_);
       if (whole_.should_stop()) return;  // not the best plan of so many
       Configurations list;
       list.dimension = pool.dimension;

@@ -58,7 +58,7 @@ class Discrepancies : public testing::Test {
   TemporaryFolder folder_;
 };
 
-std::vector<std::vector<double>> poses_of(const Plan& plan) {
+std::vector<std::vector<double>> configurations_of(const Plan& plan) {
   std::vector<std::vector<double>> list;
   for (const PlannedPose& pose : plan.poses) {
     list.emplace_back();
@@ -106,7 +106,7 @@ TEST_F(Discrepancies, TheEvaluationOfAPlanRepeatsItsFigures) {
     EvaluateOptions options;
     options.plan.criterion = criterion;
     options.plan.truth = "both";
-    const PoseListEvaluation again = evaluate_problem(p, poses_given(poses_of(made)), options, Monitor{});
+    const PoseListEvaluation again = evaluate_problem(p, poses_given(configurations_of(made)), options, Monitor{});
     EXPECT_NEAR(again.plan.criterion_value, made.criterion_value, 1e-9 * std::abs(made.criterion_value));
     EXPECT_NEAR(again.plan.discrimination->noncentrality(), made.discrimination->noncentrality(), 1e-9);
     const auto scored = [&](const std::string& name) {
@@ -125,7 +125,7 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
     compare.variants = {"plain", "both"};
     compare.truth = "both";
     compare.plan.candidates = 100;
-    compare.plans.push_back({"mine", poses_given(poses_of(made))});
+    compare.plans.push_back({"mine", poses_given(configurations_of(made))});
     const Comparison c = compare_problem(p, compare, Monitor{});
     ASSERT_EQ(c.aliases.size(), 1U);
     const VariantAlias& alias = c.aliases.front();
@@ -150,7 +150,7 @@ TEST_F(Discrepancies, BiasPlansErrLessThanPlansThatKnowOfNoiseAlone) {
     EvaluateOptions options;
     options.plan.criterion = "bias";
     options.plan.truth = "longer";
-    return evaluate_problem(p, poses_given(poses_of(plan(p, "test_pose", "longer"))), options, Monitor{})
+    return evaluate_problem(p, poses_given(configurations_of(plan(p, "test_pose", "longer"))), options, Monitor{})
         .plan.criterion_value;
   }());
 }
@@ -165,7 +165,7 @@ TEST_F(Discrepancies, MeasuredPosesAndPriorsCountInBothCriteria) {
       options.truth = "both";
       options.poses = 4;
       options.prior = prior;
-      options.measured = poses_given(poses_of(first));
+      options.measured = poses_given(configurations_of(first));
       const Plan more = plan_problem(p, options, Monitor{});
       EXPECT_EQ(more.discrimination->readings, 20 + (prior ? 3 : 0));
       // More readings of the same effects leave more of them unexplained.

@@ -1,4 +1,5 @@
 #include "comparison_report.hpp"
+#include "posewright/outputs/discrimination.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -56,6 +57,7 @@ Json alias_json(const VariantAlias& a) {
           {"why_not", text_or_null(a.why_not)},
           {"sources", sources},
           {"parameters", parameters},
+          {"discrimination", a.test ? discrimination_json(*a.test) : Json(nullptr)},
           {"rho0", value_or_null(a.rho0)},
           {"rho0_by_nominal", at_places(a.rho0_shift)},
           {"rho0_by_tolerance", at_places(a.rho0_spread)}};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparison_report.hpp"
+#include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright::cli {
@@ -138,6 +139,7 @@ std::string alias_in_full(const VariantAlias& a) {
   if (a.rho0)
     text += fmt::format("Error at the test poses: {} by noise, {} by the nominal values, {} by the tolerances\n",
                         shown_value(*a.rho0, "m"), shown_value(a.rho0_shift, "m"), shown_value(a.rho0_spread, "m"));
+  if (a.test) text += discrimination_text(*a.test, a.fitted);
   return text;
 }
 

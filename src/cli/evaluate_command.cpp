@@ -2,11 +2,11 @@
 
 #include "command.hpp"
 #include "evaluation_report.hpp"
-#include "problem_source.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -16,15 +16,16 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  options.add_options()                                                                           //
-      ("drop", text("k"), "which k poses to leave out")                                           //
-      ("add", text("k"), "which k poses to measure more")                                         //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                   //
-      ("criterion", text("NAME"), ("what counts: " + criterion_names() + " (o1)").c_str())        //
-      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
-      ("candidates", text("n"), "feasible configurations to compare with (10000)")                //
-      ("restarts", text("k"), "starts of a search (10)")                                          //
-      ("time-limit", text("S"), "stop searching after S seconds")                                 //
+  options.add_options()                                                                               //
+      ("drop", text("k"), "which k poses to leave out")                                               //
+      ("add", text("k"), "which k poses to measure more")                                             //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                       //
+      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
+      ("criterion", text("NAME"), ("what counts: " + criterion_names() + " (o1)").c_str())            //
+      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())      //
+      ("candidates", text("n"), "feasible configurations to compare with (10000)")                    //
+      ("restarts", text("k"), "starts of a search (10)")                                              //
+      ("time-limit", text("S"), "stop searching after S seconds")                                     //
       ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;
@@ -40,6 +41,7 @@ int run(const po::variables_map& values, const Words& positional) {
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
   evaluate.plan.variant = text_of(values, "variant");
+  evaluate.plan.truth = text_of(values, "truth");
   evaluate.plan.criterion = text_of(values, "criterion");
   evaluate.plan.method = text_of(values, "method");
   evaluate.plan.candidates = whole_number(values, "candidates", 1, 10000000);

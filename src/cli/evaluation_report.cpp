@@ -17,16 +17,17 @@ using Align = Table::Align;
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
 
 /// Criteria that are variances in m² are shown as what people know, their root in mm.
-std::string shown_score(const CriterionScore& score) {
-  if (score.name.starts_with("test_pose")) return shown_value(std::sqrt(-score.value), "m");
+std::string shown_score(const CriterionScore& score, bool at_test_poses) {
+  if (score.name.starts_with("test_pose") || (score.name == "bias" && at_test_poses))
+    return shown_value(std::sqrt(-score.value), "m");
   return fmt::format("{:.6g}", score.value);
 }
 
 std::string scores_text(const PoseListEvaluation& e) {
   Table table({"criterion", "value", "of the best of these candidates"}, {Align::left, Align::right, Align::right});
   for (const CriterionScore& score : e.scores)
-    table.row(
-        {score.name, shown_score(score), score.efficiency ? "at least " + percent(*score.efficiency) : "no bound"});
+    table.row({score.name, shown_score(score, e.plan.rho0.has_value()),
+               score.efficiency ? "at least " + percent(*score.efficiency) : "no bound"});
   return table.text();
 }
 

@@ -13,13 +13,14 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  options.add_options()                                                                              //
-      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")  //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                      //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())      //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                  //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                    //
-      ("restarts", text("k"), "starts of the search (10)")                                           //
+  options.add_options()                                                                               //
+      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")   //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                       //
+      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())       //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                   //
+      ("candidates", text("n"), "feasible configurations to choose from (10000)")                     //
+      ("restarts", text("k"), "starts of the search (10)")                                            //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
@@ -35,6 +36,7 @@ int run(const po::variables_map& values, const Words& positional) {
   const std::filesystem::path file = single(positional, "PROBLEM");
   PlanOptions plan_options;
   plan_options.variant = text_of(values, "variant");
+  plan_options.truth = text_of(values, "truth");
   plan_options.criterion = text_of(values, "criterion");
   plan_options.method = text_of(values, "method");
   plan_options.smallest = text_of(values, "poses") == "auto";

@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
-#include "problem_source.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/pipeline/place_stations.hpp"
+#include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 

@@ -1,6 +1,7 @@
 #include "posewright/criterion/registry.hpp"
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/discrepancy.hpp"
 #include "posewright/criterion/multi_variant.hpp"
 #include "posewright/criterion/spectral.hpp"
 #include "posewright/criterion/trace.hpp"
@@ -44,6 +45,10 @@ const std::vector<CriterionEntry>& criterion_registry() {
       {"compound", "weighted mean of the log-efficiencies of several variants", false, false, true,
        make_compound_criterion},
       {"maximin", "efficiency of the variant that the plan serves worst", false, false, true, make_maximin_criterion},
+      {"discriminate", "effects of the truth that the fitted variant cannot imitate (T-optimality)", false, false,
+       false, make_discriminate_criterion, true},
+      {"bias", "variance and squared bias by effects of the truth that are not fitted (minimal aliasing)", false, true,
+       false, make_bias_criterion, true},
   };
   return table;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "posewright/support/error.hpp"
+#include "product_curvature.hpp"
 #include "regular.hpp"
 
 namespace posewright {
@@ -36,22 +37,8 @@ class TraceExpansion : public Expansion {
 
   /// (2/φ) tr(X_i V X_j B) − d_i d_j with X = JᵀJ, B = V AᵀA V: the product is ⟨P_i, P_j⟩, P = (J L⁻ᵀ)ᵀ(J T √φ).
   void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
-    const BlockArray::RowMatrix Z = rows * inverse_, G = rows * factor;
-    const Eigen::Index m = Z.cols(), s = Z.rows() / r;
-    Eigen::VectorXd d(s);
-    for (Eigen::Index i = 0; i < s; ++i) d[i] = G.middleRows(i * r, r).squaredNorm();
-    if (r == 1) {
-      const Eigen::MatrixXd first = Z * Z.transpose(), second = G * G.transpose();
-      H = 2 * first.cwiseProduct(second);
-    } else {
-      BlockArray::RowMatrix products(s, m * m);
-      for (Eigen::Index i = 0; i < s; ++i)
-        BlockArray::Map(products.row(i).data(), m, m, Eigen::OuterStride<>(m)).noalias() =
-            Z.middleRows(i * r, r).transpose() * G.middleRows(i * r, r);
-      H.setZero(s, s);
-      H.selfadjointView<Eigen::Lower>().rankUpdate(products, 2.0);
-      H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
-    }
+    const BlockArray::RowMatrix G = rows * factor;
+    const Eigen::VectorXd d = product_curvature(rows * inverse_, G, r, H);
     H.noalias() -= d * d.transpose();
   }
 

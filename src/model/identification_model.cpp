@@ -153,6 +153,13 @@ void IdentificationModel::hide(std::span<const double> q, Linearisation& out) co
   }
 }
 
+int IdentificationModel::visible_rows(std::span<const double> q) const {
+  if (visibility_ == nullptr || rows_per_target_ == 0) return rows_;
+  std::vector<char> seen(std::size_t(visibility_->targets()));
+  visibility_->visible(q, seen);
+  return rows_ - rows_per_target_ * int(std::count(seen.begin(), seen.end(), 0));
+}
+
 bool IdentificationModel::reading_twists(std::span<const double> q,
                                          Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const {
   require_size(q.size(), coordinates_.size(), "configuration");

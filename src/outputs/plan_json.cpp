@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
@@ -191,6 +192,7 @@ std::string plan_json(const Plan& plan) {
   json["interrupted"] = plan.interrupted;
   json["criterion"] = criterion_json(plan);
   json["certificate"] = certificate_json(plan);
+  if (plan.discrimination) json["discrimination"] = discrimination_json(*plan.discrimination);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();

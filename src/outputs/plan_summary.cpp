@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
@@ -192,7 +193,8 @@ std::string candidates_text(const Plan& plan) {
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) + variants_text(plan) +
+  return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) +
+         (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
          stages_text(plan) +
          fmt::format("Search ({}): {} restarts, {} exchanges, {:.1f} s\n", plan.method, plan.statistics.restarts,

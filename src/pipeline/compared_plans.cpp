@@ -13,8 +13,8 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
   PlanOptions plan = options.plan;
   if (plan.method.empty()) plan.method = "exchange";
   // Each variant is planned for alone.
-  if (plan.criterion.empty() && find_criterion(problem.design.criterion.value) != nullptr &&
-      find_criterion(problem.design.criterion.value)->several_variants)
+  if (const CriterionEntry* entry = find_criterion(problem.design.criterion.value);
+      plan.criterion.empty() && entry != nullptr && (entry->several_variants || entry->needs_truth))
     plan.criterion = "o1";
   const bool given = !options.plans.empty();
   if (given) plan.poses = 1;  // lists bring their own numbers
@@ -23,6 +23,7 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
                      "--poses N, or plans");
   Settings settings = settings_of(problem, plan);
   if (given) settings.poses = 0;
+  settings.truth = {};
   std::vector<std::string> names = options.variants;
   if (names.empty())
     for (const VariantSpec& variant : problem.variants) names.push_back(variant.name);
@@ -41,7 +42,7 @@ SearchRequest request_for(const Preparation& prepared, const PreparedVariant& va
                           int poses) {
   SearchRequest request = spaced_request(prepared, settings, poses);
   request.make_space = [&prepared, &variant](const Eigen::MatrixXd& R) {
-    return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns().selected}},
+    return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns().selected, {}}},
                                     prepared.configurations, prepared.measured, prepared.spacing, R);
   };
   return request;

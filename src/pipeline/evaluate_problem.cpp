@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "discrepancy.hpp"
 #include "fill_plan.hpp"
 #include "judgement.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -92,6 +93,9 @@ class ListEvaluation {
     std::vector<double> references;
     for (const CriterionEntry& entry : criterion_registry()) {
       if (entry.several_variants != (prepared_.variants.size() > 1) && entry.name != settings_.criterion) continue;
+      if (entry.needs_truth && entry.name != settings_.criterion &&
+          (prepared_.discrepancy == nullptr || prepared_.discrepancy->group.columns == 0))
+        continue;
       if (entry.name.starts_with("test_pose") && prepared_.first().test_points.empty()) continue;
       const bool chosen = entry.name == settings_.criterion;
       const Bound bound = bound_of(entry.name);
@@ -125,7 +129,7 @@ class ListEvaluation {
     }
     SearchRequest wanted = search_request(settings_, settings_.poses);
     wanted.criterion = criterion;
-    return bound_only(search_parts(prepared_, pool, settings_.planner.threads), wanted, monitor_);
+    return bound_only(search_parts(prepared_, criterion, pool, settings_.planner.threads), wanted, monitor_);
   }
 
   Configurations without(const std::vector<int>& members) const {
@@ -177,7 +181,8 @@ class ListEvaluation {
     wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
     wanted.repeats = Repeats{1};
     wanted.references = references;
-    const SearchResult found = search(search_parts(prepared_, poses_, settings_.planner.threads), wanted, monitor_);
+    const SearchResult found =
+        search(search_parts(prepared_, settings_.criterion, poses_, settings_.planner.threads), wanted, monitor_);
     std::vector<int> dropped;
     for (int i = 0; i < n; ++i)
       if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
@@ -192,15 +197,14 @@ class ListEvaluation {
     // The list is what is there already; the last thing that is done, so the candidates may change.
     prepared_.measured.values.insert(prepared_.measured.values.end(), poses_.values.begin(), poses_.values.end());
     keep_away_from_measured(prepared_, settings_.repeats);
-    std::vector<SearchPart> parts = search_parts(prepared_, prepared_.configurations, threads);
+    std::vector<SearchPart> parts = search_parts(prepared_, settings_.criterion, prepared_.configurations, threads);
+    const std::vector<SearchPart> list = search_parts(prepared_, settings_.criterion, poses_, threads);
     for (std::size_t v = 0; v < parts.size(); ++v) {
-      const PreparedVariant& variant = prepared_.variants[v];
-      const BlockArray blocks = build_blocks(*variant.model, variant.columns().selected, poses_, threads);
-      const Eigen::MatrixXd known = blocks.all().transpose() * blocks.all();
+      const Eigen::MatrixXd known = list[v].blocks.all().transpose() * list[v].blocks.all();
       parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
     }
     SearchRequest wanted = spaced_request(prepared_, settings_, k);
-    wanted.make_space = space_maker(prepared_);
+    wanted.make_space = space_maker(prepared_, settings_.criterion);
     wanted.references = references;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
     Configurations longer = poses_, added;

@@ -3,9 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "discrepancy.hpp"
 #include "test_points.hpp"
 
 namespace posewright {
+namespace {
+
+void add_effects(Judgement& judgement, const Preparation& prepared, const Configurations& poses,
+                 const Settings& settings) {
+  const Discrepancy& known = *prepared.discrepancy;
+  const PreparedVariant& fitted = prepared.first();
+  const EffectFit fit = fit_effects(known.effects, fitted, poses, settings);
+  judgement.discrimination = discrimination_of(known.truth, known.effects, fit.unfitted, fitted, poses, settings.prior);
+  if (known.test_points.empty()) {
+    const Eigen::Index interest = fit.errors.rows() - fitted.columns().nuisance;
+    judgement.squared_bias =
+        (fitted.scale.tail(interest).cwiseInverse().asDiagonal() * fit.errors.bottomRows(interest)).squaredNorm();
+    return;
+  }
+  double sum = 0, total = 0;
+  for (const TestPoint& point : known.test_points) {
+    sum += point.weight * errors_at(point, known.effects, fit).squaredNorm();
+    total += point.weight;
+  }
+  judgement.squared_bias = sum / total;
+}
+
+}  // namespace
 
 Judgement judge(const Preparation& prepared, const Configurations& poses, const Settings& settings) {
   Configurations all = prepared.measured;
@@ -20,6 +44,7 @@ Judgement judge(const Preparation& prepared, const Configurations& poses, const 
   if (!first.test_points.empty())
     judgement.rho0 =
         predicted_error(first.test_points, judgement.evaluations.front().covariance, judgement.test_errors);
+  if (prepared.discrepancy != nullptr) add_effects(judgement, prepared, all, settings);
   return judgement;
 }
 
@@ -65,6 +90,18 @@ CriterionValue criterion_value(const std::string& criterion, const Judgement& ju
   if (criterion == "test_pose_max") {
     const double worst = *std::max_element(judgement.test_errors.begin(), judgement.test_errors.end());
     return of_variance(worst * worst);
+  }
+  if (criterion == "discriminate") {
+    const double lambda = judgement.discrimination->noncentrality();
+    return {std::log(lambda), lambda};
+  }
+  if (criterion == "bias") {
+    const PreparedVariant& first = prepared.first();
+    const double variance =
+        judgement.rho0
+            ? *judgement.rho0 * *judgement.rho0
+            : -criterion_value("a", judgement.evaluations.front(), first.columns().nuisance, first.scale).shown;
+    return of_variance(variance + judgement.squared_bias);
   }
   if (criterion == "compound" || criterion == "maximin") {
     const std::vector<double> efficiency = log_efficiencies(judgement, prepared, references);

@@ -11,9 +11,11 @@ namespace posewright {
 
 /// What a list of configurations is worth, from nothing but the list: the same for a plan and for a user's poses.
 struct Judgement {
-  std::vector<Evaluation> evaluations;  ///< of every variant; contributions in the order measured, then poses
-  std::optional<double> rho0;           ///< first variant, m
-  std::vector<double> test_errors;      ///< m
+  std::vector<Evaluation> evaluations;           ///< of every variant; contributions in the order measured, then poses
+  std::optional<double> rho0;                    ///< first variant, m
+  std::vector<double> test_errors;               ///< m
+  std::optional<Discrimination> discrimination;  ///< where a truth is named
+  double squared_bias = 0.0;                     ///< of what `bias` counts, by all effects
 };
 
 /// @param poses  come to those that are measured already

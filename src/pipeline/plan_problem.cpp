@@ -33,9 +33,10 @@ class Planning {
 
   Plan plan(int poses) {
     SearchRequest request = spaced_request(prepared_, settings_, poses);
-    request.make_space = space_maker(prepared_);
+    request.make_space = space_maker(prepared_, settings_.criterion);
     const SearchResult found =
-        search(search_parts(prepared_, prepared_.configurations, settings_.planner.threads), request, monitor_);
+        search(search_parts(prepared_, settings_.criterion, prepared_.configurations, settings_.planner.threads),
+               request, monitor_);
     return assemble(found);
   }
 

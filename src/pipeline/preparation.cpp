@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "discrepancy.hpp"
+#include "posewright/criterion/registry.hpp"
 #include "posewright/support/error.hpp"
 #include "study_space.hpp"
 #include "test_points.hpp"
@@ -121,6 +123,7 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
   prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
   keep_away_from_measured(prepared, settings.repeats);
+  if (!settings.truth.value.empty()) prepared.discrepancy = make_discrepancy(problem, prepared, settings);
   return prepared;
 }
 
@@ -165,11 +168,16 @@ SearchRequest spaced_request(const Preparation& prepared, const Settings& settin
   return request;
 }
 
-std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared) {
-  return [&prepared](const Eigen::MatrixXd& R) {
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared,
+                                                                                         const std::string& criterion) {
+  return [&prepared, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const PreparedVariant& v : prepared.variants)
-      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected});
+      parts.push_back({v.model.get(), v.workspace.get(), v.columns().selected, {}});
+    if (with_effects) {
+      parts.front().selected = prepared.discrepancy->effects.columns.selected;
+      parts.front().mix = prepared.discrepancy->mix;
+    }
     return make_configuration_space(std::move(parts), prepared.configurations, prepared.measured, prepared.spacing, R);
   };
 }
@@ -181,8 +189,13 @@ BlockArray blocks_of(const PreparedVariant& variant, const Configurations& confi
 }
 
 SearchPart search_part(const PreparedVariant& variant, BlockArray blocks) {
-  return {std::move(blocks), variant.columns().nuisance, variant.weight,
-          variant.scale,     variant.test_points,        variant.prior};
+  return {std::move(blocks),
+          variant.columns().nuisance,
+          variant.weight,
+          variant.scale,
+          variant.test_points,
+          variant.prior,
+          {}};
 }
 
 }  // namespace
@@ -194,21 +207,27 @@ std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Confi
   return parts;
 }
 
-std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads) {
+std::vector<SearchPart> search_parts(const Preparation& prepared, const std::string& criterion,
+                                     const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
+  if (find_criterion(criterion)->needs_truth) {
+    parts.push_back(part_with_effects(prepared, configurations, threads));
+    return parts;
+  }
   for (const PreparedVariant& variant : prepared.variants)
     parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
   return parts;
 }
 
-std::vector<SearchPart> copied_parts(const Preparation& prepared, const std::vector<SearchPart>& parts) {
-  std::vector<SearchPart> copy;
-  for (std::size_t v = 0; v < parts.size(); ++v) {
-    std::vector<int> all(parts[v].blocks.count());
+std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts) {
+  std::vector<SearchPart> copies;
+  for (const SearchPart& part : parts) {
+    std::vector<int> all(part.blocks.count());
     std::iota(all.begin(), all.end(), 0);
-    copy.push_back(search_part(prepared.variants[v], parts[v].blocks.subset(all)));
+    copies.push_back({part.blocks.subset(all), part.nuisance, part.weight, part.scale, part.test_points, part.prior,
+                      part.effects});
   }
-  return copy;
+  return copies;
 }
 
 }  // namespace posewright

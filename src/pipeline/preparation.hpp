@@ -20,6 +20,7 @@ struct Settings {
   Repeats repeats;
   Scaling scaling = Scaling::tolerance;
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
+  Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
   PoseSource measured;                         ///< empty: none
   PlannerOptions planner;
 };
@@ -41,6 +42,8 @@ struct PreparedVariant {
   const VariantColumns& columns() const { return resolved.columns; }
 };
 
+struct Discrepancy;
+
 /// A problem as planning needs it: variants, feasible configurations, poses that are there already.
 struct Preparation {
   std::shared_ptr<const Cell> cell;
@@ -50,6 +53,7 @@ struct Preparation {
   Spacing spacing;           ///< for configurations that are no candidates
   Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
   bool has_minimum_distance = false;
+  std::shared_ptr<const Discrepancy> discrepancy;  ///< of the first variant; null: no truth is named
 
   PreparedVariant& first() { return variants.front(); }
   const PreparedVariant& first() const { return variants.front(); }
@@ -66,13 +70,15 @@ SearchRequest spaced_request(const Preparation& prepared, const Settings& settin
 
 /// Raw blocks of the configurations for one variant alone, with what a search needs beside them.
 std::vector<SearchPart> search_parts(const PreparedVariant& variant, const Configurations& configurations, int threads);
-/// The same for every variant.
-std::vector<SearchPart> search_parts(const Preparation& prepared, const Configurations& configurations, int threads);
+/// The same for every variant, as the criterion sees them: with the effects of the truth where it asks for one.
+std::vector<SearchPart> search_parts(const Preparation& prepared, const std::string& criterion,
+                                     const Configurations& configurations, int threads);
 /// A copy of what search_parts made for every variant: a search takes its parts.
-std::vector<SearchPart> copied_parts(const Preparation& prepared, const std::vector<SearchPart>& parts);
+std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts);
 
 /// The workspace of the problem for searches beyond the candidates; `prepared` must outlive what it makes.
-std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared);
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared,
+                                                                                         const std::string& criterion);
 
 /// Takes away candidates that repeat a measured pose or are nearer to one than the minimum distance, where the policy
 /// forbids it; rebuilds what depends on the candidates. Throws CannotDo where none is left.

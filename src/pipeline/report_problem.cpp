@@ -157,8 +157,9 @@ class Reporting {
 
   /// Made once for all searches.
   std::vector<SearchPart> parts_of_candidates() {
-    if (parts_.empty()) parts_ = search_parts(prepared_, prepared_.configurations, options_.threads);
-    return copied_parts(prepared_, parts_);
+    if (parts_.empty())
+      parts_ = search_parts(prepared_, settings_.criterion, prepared_.configurations, options_.threads);
+    return copied_parts(parts_);
   }
 
   void fill_candidates() {

@@ -92,6 +92,7 @@ Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool se
   if (parts.front().prior.size() > 0) joined.prior = prior;
   joined.data.R = joined.R;
   joined.data.test_points = parts.front().test_points;
+  joined.data.effects = parts.front().effects;
   if (!several) joined.nuisance = joined.data.nuisance = parts.front().nuisance;
   joined.blocks = parts.size() == 1 ? std::move(parts.front().blocks) : side_by_side(parts);
   return joined;

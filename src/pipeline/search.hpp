@@ -20,6 +20,7 @@ struct SearchPart {
   Eigen::VectorXd scale{};  ///< unit of every column for criteria that depend on it
   std::vector<TestPoint> test_points{};
   Eigen::MatrixXd prior{};  ///< information that is there before, raw (m × m); empty: none
+  EffectGroup effects{};    ///< of the trailing columns, for criteria that need a truth
 };
 
 /// The part of planning that is the same for a robot's blocks and for a user's.

@@ -20,7 +20,8 @@ std::vector<Parameter> labels(const std::vector<std::string>& names, int nuisanc
 
 void require_block_criterion(const std::string& criterion) {
   require_known(criterion, "exchange", {}, {});
-  if (criterion.starts_with("test_pose") || find_criterion(criterion)->several_variants)
+  if (criterion.starts_with("test_pose") || find_criterion(criterion)->several_variants ||
+      find_criterion(criterion)->needs_truth)
     throw InputError({}, "criterion '" + criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
 }
 

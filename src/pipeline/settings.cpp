@@ -16,6 +16,23 @@ std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, const Plan
   return all;
 }
 
+Located<std::string> truth_of(const Problem& problem, const PlanOptions& options, const std::string& criterion) {
+  const DesignSpec& design = problem.design;
+  const Located<std::string> truth =
+      options.truth.empty() ? design.truth.value_or(Located<std::string>{}) : Located<std::string>{options.truth, 0};
+  const CriterionEntry& entry = *find_criterion(criterion);
+  const SourcePlace asked = options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{};
+  if (entry.needs_truth && truth.value.empty())
+    throw InputError(asked, "criterion '" + criterion + "' needs a variant that may be the case",
+                     "set design: truth or --truth");
+  if (!truth.value.empty()) find_variant(problem, truth.value);
+  if (entry.several_variants && !truth.value.empty())
+    throw InputError(truth.line > 0 ? problem.at(truth.line) : asked,
+                     "a truth is told from one variant that is fitted, criterion '" + criterion + "' is over several",
+                     "leave out the truth, or another criterion");
+  return truth;
+}
+
 }  // namespace
 
 Settings settings_of(const Problem& problem, const PlanOptions& options) {
@@ -41,6 +58,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.repeats = options.repeats.value_or(design.repeats);
   s.scaling = options.scaling.value_or(design.scaling);
   s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
+  s.truth = truth_of(problem, options, s.criterion);
   if (s.criterion.starts_with("test_pose") && !design.test_poses)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
   s.measured = options.measured;

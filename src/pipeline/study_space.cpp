@@ -22,6 +22,8 @@ class StudyProbe : public ConfigurationSpace::Probe {
       rows += part.model->block_rows(part.selected);
     }
     raw_ = BlockArray::RowMatrix::Zero(rows, R.cols());
+    for (const SpacePart& part : parts)
+      own_.emplace_back(part.model->block_rows(part.selected), part.mix.size() > 0 ? part.mix.rows() : 0);
   }
 
   bool feasible(std::span<const double> q) override {
@@ -36,10 +38,13 @@ class StudyProbe : public ConfigurationSpace::Probe {
     Eigen::Index column = 0;
     for (std::size_t v = 0; v < parts_.size(); ++v) {
       const SpacePart& part = parts_[v];
-      if (!whitened_block(*part.model, q, {}, part.selected, scratch_[v], &raw_(first_row_[v], column),
-                          int(raw_.cols())))
+      const bool mixed = part.mix.size() > 0;
+      double* out = mixed ? own_[v].data() : &raw_(first_row_[v], column);
+      if (!whitened_block(*part.model, q, {}, part.selected, scratch_[v], out,
+                          int(mixed ? own_[v].cols() : raw_.cols())))
         return false;
-      column += Eigen::Index(part.selected.size());
+      if (mixed) raw_.block(first_row_[v], column, own_[v].rows(), part.mix.cols()).noalias() = own_[v] * part.mix;
+      column += mixed ? part.mix.cols() : Eigen::Index(part.selected.size());
     }
     white_ = raw_;
     R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(white_);
@@ -55,6 +60,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
   const Eigen::MatrixXd& R_;
   std::vector<Linearisation> scratch_;
   std::vector<int> first_row_;
+  std::vector<BlockArray::RowMatrix> own_;  // of parts that are mixed
   BlockArray::RowMatrix raw_, white_;
 };
 

@@ -17,6 +17,7 @@ struct SpacePart {
   const IdentificationModel* model;
   const Workspace* workspace;
   std::vector<int> selected;
+  Eigen::MatrixXd mix;  ///< blocks are J(selected) · mix; empty: J(selected)
 };
 
 /// The problem's workspace as planners see it. Everything referred to must outlive it.

@@ -16,7 +16,4 @@ VariantAlias variant_alias(const Problem& problem, const PreparedVariant& fitted
 /// What `with` estimates and `without` does not, indices into the columns of `with`.
 std::vector<int> extra_columns(const PreparedVariant& with, const PreparedVariant& without);
 
-/// Whether the parameters mean the same in both.
-bool one_catalogue(const PreparedVariant& a, const PreparedVariant& b);
-
 }  // namespace posewright

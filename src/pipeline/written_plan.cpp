@@ -26,6 +26,8 @@ PlanOptions options_of(const Json& plan) {
   const Json& criterion = plan.at("criterion");
   options.criterion = criterion.at("name").get<std::string>();
   if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
+  if (const auto test = plan.find("discrimination"); test != plan.end() && test->is_object())
+    options.truth = test->at("truth").get<std::string>();
   options.reserve = criterion.value("reserve", false);
   options.prior = criterion.at("prior").get<std::string>() == "tolerance";
   options.scaling = scaling_of(criterion.at("scaling").get<std::string>()).value();

@@ -12,7 +12,7 @@ constexpr double rank_tolerance = 1e-11;
 
 }  // namespace
 
-Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known) {
+AliasFit fit_aliases(const BlockArray& blocks, int own, const Eigen::VectorXd& known) {
   const Eigen::Index m = own, more = blocks.columns() - m, rows = blocks.all().rows();
   if (m < 1 || more < 0 || (known.size() != 0 && known.size() != m))
     throw std::invalid_argument("alias_matrix: sizes do not fit");
@@ -28,7 +28,13 @@ Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::Vec
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fitted * length.cwiseInverse().asDiagonal());
   if (!(qr.matrixQR().diagonal().cwiseAbs().minCoeff() > rank_tolerance))
     throw CannotDo("alias: the poses do not determine what is fitted");
-  return length.cwiseInverse().asDiagonal() * qr.solve(left_out);
+  const Eigen::MatrixXd taken = length.cwiseInverse().asDiagonal() * qr.solve(left_out);
+  left_out.noalias() -= fitted * taken;
+  return {taken, left_out.colwise().squaredNorm()};
+}
+
+Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known) {
+  return fit_aliases(blocks, own, known).taken;
 }
 
 }  // namespace posewright

@@ -86,6 +86,10 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
     design.variant = variant->located_text();
     require_variant(*variant, design.variant->value, variants);
   }
+  if (const Value* truth = section.find("truth")) {
+    design.truth = truth->located_text();
+    require_variant(*truth, design.truth->value, variants);
+  }
   if (const Value* several = section.find("variants")) design.variants = read_several(*several, variants);
   if (const Value* criterion = section.find("criterion")) design.criterion = criterion->located_text();
   if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses, folder);
@@ -101,8 +105,8 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
 DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& variants,
                        const std::filesystem::path& folder) {
   const Section section(value);
-  section.allow({"variant", "variants", "criterion", "method", "poses", "require", "candidates", "restarts", "repeats",
-                 "minimum_distance", "scaling", "prior", "reserve", "measured", "test_poses"});
+  section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates", "restarts",
+                 "repeats", "minimum_distance", "scaling", "prior", "reserve", "measured", "test_poses"});
   DesignSpec design;
   design.line = value.line();
   read_aim(section, variants, folder, design);

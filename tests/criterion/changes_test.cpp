@@ -28,6 +28,8 @@ CriterionData data_of(int nuisance) {
     A.leftCols(nuisance).setZero();
     data.test_points.push_back({A, 1.0 + double(t)});
   }
+  data.effects = {2, random_blocks(1, 2, 3, 95).block(0), random_blocks(1, 3, m - 2, 94).block(0),
+                  random_blocks(1, 3, 3, 93).block(0)};
   data.variants = {{0, 4, nuisance, 1.0, 2.0}, {4, 4, 1, 3.0, 4.0}};
   return data;
 }

@@ -41,7 +41,10 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-/// Unequal units, three places where accuracy matters, two variants that share the columns.
+/// How many of the columns are those of effects, under criteria that need some.
+int effects_of(int columns) { return std::max(1, columns / 4); }
+
+/// Unequal units, three places where accuracy matters, two variants that share the columns, two effects of a truth.
 CriterionData kit_data(int columns, int nuisance) {
   CriterionData data{Eigen::MatrixXd::Identity(columns, columns), Eigen::VectorXd::LinSpaced(columns, 0.5, 2.0),
                      nuisance};
@@ -52,6 +55,9 @@ CriterionData kit_data(int columns, int nuisance) {
     data.test_points.push_back({A, 1.0 + double(t)});
   }
   const int half = std::max(columns / 2, nuisance + 1);
+  const int effects = effects_of(columns), fitted = columns - effects;
+  data.effects = {effects, random_blocks(1, effects, 2, 98).block(0), random_blocks(1, 3, fitted, 97).block(0),
+                  random_blocks(1, 3, 2, 96).block(0)};
   data.variants = {{0, half, nuisance, 1.0, 3.0}, {half, columns - half, 0, 2.0, 5.0}};
   return data;
 }
@@ -227,9 +233,10 @@ TEST_P(PlannerKit, ContradictoryTasksAreRefused) {
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, criterion.get(), 0, nullptr}, {}, Monitor{}), std::invalid_argument);
   EXPECT_THROW(planner->plan({{nullptr, 0, 1}, criterion.get(), 2, nullptr}, {}, Monitor{}), std::invalid_argument);
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, nullptr, 2, nullptr}, {}, Monitor{}), std::invalid_argument);
-  // Each of the two variants of the kit needs two parameters only.
-  const int too_few = GetParam().rows == 1 ? (find_criterion(GetParam().criterion)->several_variants ? 1 : 3) : 1;
-  if (GetParam().rows == 3 && find_criterion(GetParam().criterion)->several_variants) return;
+  // Each of the two variants of the kit needs two parameters only, a variant beside a truth's effects three.
+  const CriterionEntry& entry = *find_criterion(GetParam().criterion);
+  const int too_few = GetParam().rows == 1 ? (entry.several_variants ? 1 : entry.needs_truth ? 2 : 3) : 1;
+  if (GetParam().rows == 3 && (entry.several_variants || entry.needs_truth)) return;
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, criterion.get(), too_few, nullptr}, {}, Monitor{}), CannotDo);
 }
 

@@ -6,26 +6,13 @@
 #include <stdexcept>
 
 #include "posewright/support/error.hpp"
+#include "tests/kit/plackett_burman.hpp"
 #include "tests/kit/random_blocks.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr int runs = 12, factors = 6, pairs = factors * (factors - 1) / 2;
-
-/// Plackett & Burman (1946), 12 runs, first six columns: constant, six factors, their fifteen two-factor interactions.
-BlockArray plackett_burman() {
-  constexpr int generator[runs - 1] = {1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1};
-  BlockArray blocks(runs, 1, 1 + factors + pairs);
-  for (int i = 0; i < runs; ++i) {
-    double* x = blocks.row(std::size_t(i), 0);
-    x[0] = 1;
-    for (int j = 0; j < factors; ++j) x[1 + j] = i == runs - 1 ? -1 : generator[(runs - 1 - i + j) % (runs - 1)];
-    for (int j = 0, next = 1 + factors; j < factors; ++j)
-      for (int k = j + 1; k < factors; ++k) x[next++] = x[1 + j] * x[1 + k];
-  }
-  return blocks;
-}
+constexpr int runs = plackett_burman_runs, factors = plackett_burman_factors, pairs = factors * (factors - 1) / 2;
 
 TEST(Alias, PlackettBurmanSharesEachInteractionAmongTheFourOtherFactorsByAThird) {
   const BlockArray blocks = plackett_burman();

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/discrepancy.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/trace.hpp"
 #include "posewright/planning/whiten.hpp"
@@ -50,6 +51,71 @@ TEST(ApproximateDesign, SensitivitiesAverageToTheNumberOfParameters) {
   EXPECT_NEAR(mean, 12, 1e-9);
   EXPECT_NEAR(std::accumulate(design.weights.begin(), design.weights.end(), 0.0), 1, 1e-12);
   EXPECT_LE(*std::max_element(design.sensitivity.begin(), design.sensitivity.end()), 12 * (1 + 1e-9));
+}
+
+/// η₁ = 4.5 − 1.5 eˣ − 2 e⁻ˣ beside a quadratic, on n points of [−1, 1].
+BlockArray two_exponentials(int n) {
+  const BlockArray first = quadratic(n);
+  BlockArray blocks(std::size_t(n), 1, 4);
+  for (std::size_t i = 0; i < std::size_t(n); ++i) {
+    std::copy_n(first.row(i, 0), 3, blocks.row(i, 0));
+    const double x = first.row(i, 0)[1];
+    blocks.row(i, 0)[3] = 4.5 - 1.5 * std::exp(x) - 2 * std::exp(-x);
+  }
+  return blocks;
+}
+
+TEST(ApproximateDesign, TellsTwoExponentialsFromAQuadraticAsAtkinsonAndFedorovPublished) {
+  // Atkinson & Fedorov (1975), Biometrika 62(1): four points, T = 1.087e-3.
+  constexpr int n = 2001;
+  BlockArray blocks = two_exponentials(n);
+  const Eigen::MatrixXd R = whiten(blocks).R;
+  const DiscriminateFunction function(3, R.bottomRightCorner(1, 1));
+  const ApproximateDesign design = solve_approximate_design(blocks, function, {}, Monitor{});
+  EXPECT_LE(design.max_sensitivity_ratio, 1 + 1e-6);
+  EXPECT_NEAR(std::exp(design.value), 1.0867e-3, 5e-8);
+  EXPECT_NEAR(std::exp(design.bound), 1.0867e-3, 5e-8);
+  const double places[] = {-1, -0.669, 0.144, 0.957}, weights[] = {0.2525, 0.4277, 0.2475, 0.0723};
+  for (int k = 0; k < 4; ++k) {
+    // Optima between grid points share their weight among neighbours.
+    double weight = 0, place = 0;
+    for (std::size_t i = 0; i < design.support.size(); ++i) {
+      const double x = -1 + 2.0 * design.support[i] / (n - 1);
+      if (std::abs(x - places[k]) > 0.02) continue;
+      weight += design.weights[i];
+      place += design.weights[i] * x;
+    }
+    EXPECT_NEAR(weight, weights[k], 1e-4) << k;
+    EXPECT_NEAR(place / weight, places[k], 1e-3) << k;
+  }
+}
+
+TEST(ApproximateDesign, NoPlanTellsMoreThanTheBoundOfDiscriminate) {
+  for (const int rows : {1, 3})
+    for (const int poses : {6, 9})
+      for (const bool known : {false, true}) {
+        constexpr int columns = 7, fitted = 4;
+        BlockArray blocks = random_blocks(60, rows, columns, 9);
+        whiten(blocks);
+        const DiscriminateFunction function(fitted, random_blocks(1, columns - fitted, 2, 5).block(0));
+        ApproximateDesignOptions options;
+        options.cap = 1.0 / poses;
+        if (known) options.prior = 0.1 * Eigen::MatrixXd::Identity(columns, columns);
+        const ApproximateDesign design = solve_approximate_design(blocks, function, options, Monitor{});
+        EXPECT_LE(design.max_sensitivity_ratio, 1 + 1e-6) << rows << " " << poses << " " << known;
+        Random random(8, 0);
+        for (int trial = 0; trial < 500; ++trial) {
+          std::vector<int> order(60);
+          std::iota(order.begin(), order.end(), 0);
+          Eigen::MatrixXd M = known ? Eigen::MatrixXd(poses * options.prior) : Eigen::MatrixXd::Zero(columns, columns);
+          for (int i = 0; i < poses; ++i) {
+            std::swap(order[std::size_t(i)], order[std::size_t(i + random.index(60 - i))]);
+            const auto block = blocks.block(std::size_t(order[std::size_t(i)]));
+            M += block.transpose() * block;
+          }
+          EXPECT_LE(function.value(M), design.bound_for(poses));
+        }
+      }
 }
 
 struct Case {

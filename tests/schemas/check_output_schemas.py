@@ -53,6 +53,13 @@ class Outputs(unittest.TestCase):
                       ["kr270/compensator.yaml", "--candidates", 60, *QUICK, "--prior", "tolerance"]):
             self.check("plan", self.run_program("plan", EXAMPLES / words[0], *words[1:], "--json"))
 
+    def test_plans_against_a_truth(self):
+        telescope = [EXAMPLES / "telescope/problem.yaml", "--truth", "matrix", "--poses", 20, "--candidates", 200]
+        for criterion in ("discriminate", "bias", "o1"):
+            plan = self.run_program("plan", *telescope, "--criterion", criterion, *QUICK, "--json")
+            self.assertEqual(plan["discrimination"]["truth"], "matrix")
+            self.check("plan", plan)
+
     def test_plan_with_the_smallest_number_of_poses_and_one_for_several_variants(self):
         plan = self.run_program("plan", "smallest.yaml", "--json")
         self.assertTrue(plan["curve"])

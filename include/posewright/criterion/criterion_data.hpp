@@ -19,6 +19,16 @@ struct VariantGroup {
   double reference = 0.0;  ///< log det of its interest information that no plan of as many poses exceeds, whitened
 };
 
+/// What a variant that may be the case has and the fitted one lacks. The trailing columns of the blocks span what its
+/// effects do to the readings beyond what the fitted columns, all others, imitate over the candidates. Effects are
+/// independent of one another, each of size one.
+struct EffectGroup {
+  int columns = 0;      ///< trailing ones; 0: no effects are known
+  Eigen::MatrixXd mix;  ///< columns × effects, raw: effect e moves the readings by (trailing columns) mix.col(e)
+  Eigen::MatrixXd error_rows{};    ///< for `bias`: error that counts = error_rows · (error of the fitted), raw
+  Eigen::MatrixXd error_offset{};  ///< rows × effects: what each effect does there that is no trailing column's
+};
+
 /// What criteria need beyond the blocks. Blocks are whitened, J = J_raw R⁻¹, so M_raw = Rᵀ M R.
 struct CriterionData {
   Eigen::MatrixXd R;                     ///< m × m, upper triangular; see planning/whiten.hpp
@@ -26,6 +36,7 @@ struct CriterionData {
   int nuisance = 0;                      ///< leading nuisance columns
   std::vector<TestPoint> test_points{};  ///< for test_pose, test_pose_max
   std::vector<VariantGroup> variants{};  ///< for compound, maximin
+  EffectGroup effects{};                 ///< for discriminate, bias
 
   /// R · diag(scale): M in units of `scale` is Cᵀ M C.
   Eigen::MatrixXd to_scaled() const { return R * scale.asDiagonal(); }

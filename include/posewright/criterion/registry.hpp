@@ -18,6 +18,7 @@ struct CriterionEntry {
   bool several_variants;  ///< needs CriterionData::variants
   /// Throws CannotDo where the data lack what it needs.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
+  bool needs_truth = false;  ///< needs CriterionData::effects
 };
 
 const std::vector<CriterionEntry>& criterion_registry();

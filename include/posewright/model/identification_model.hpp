@@ -83,6 +83,8 @@ class IdentificationModel {
   const std::vector<Coordinate>& actuators() const { return actuators_; }
   /// Rows r of one configuration: what the instrument reads.
   int rows() const { return rows_; }
+  /// Those of them that are read at q: the rows of targets that can be seen.
+  int visible_rows(std::span<const double> q) const;
   /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
 

@@ -118,6 +118,25 @@ struct ParametersFile {
   std::string variant;  ///< that takes the values as its own
 };
 
+/// The test that tells the fitted variant from another one that is the case: the sum of squared residuals after the
+/// fit, noise known, against the chi-square distribution.
+struct Discrimination {
+  std::string truth;
+  /// Noncentrality λ: what fitting leaves of the effects, whitened. By nominal values it is known; by tolerances, one
+  /// off each, it is the expected value.
+  std::optional<double> by_nominal, by_tolerance;
+  int readings = 0, fitted = 0;         ///< what is read, parameters that are estimated (nuisance ones too)
+  double level = 0.05;                  ///< chance to reject the fitted variant where it is the case
+  double wanted = 0.9;                  ///< the power that repetitions are to reach
+  std::optional<double> power;          ///< chance to reject it where the truth is; none without a degree of freedom
+  std::optional<double> power_along;    ///< of the test along the effect, one degree of freedom; by nominal alone
+  std::optional<int> repetitions = {};  ///< of the whole measurement, for the wanted power; none: a million are too few
+  std::optional<int> repetitions_along = {};
+
+  double noncentrality() const { return by_nominal.value_or(0.0) + by_tolerance.value_or(0.0); }
+  int degrees_of_freedom() const { return readings - fitted; }
+};
+
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
@@ -135,9 +154,10 @@ struct Plan {
   ObservabilityIndices indices;
   double condition = 0.0;
   Certificate certificate;
-  std::vector<VariantResult> variants{};     ///< of a plan for several
-  std::vector<CurvePoint> curve{};           ///< of a plan of the smallest number of poses
-  std::vector<PlannedParameter> parameters;  ///< interest first, then nuisance, then dropped ones
+  std::optional<Discrimination> discrimination;  ///< where a truth is named
+  std::vector<VariantResult> variants{};         ///< of a plan for several
+  std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
+  std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones
   std::vector<PlannedPose> poses;
   PlanStatistics statistics;
   bool interrupted = false;  ///< the search was ended before it was done

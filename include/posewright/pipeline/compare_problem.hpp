@@ -74,6 +74,7 @@ struct VariantAlias {
   std::vector<AliasedParameter> parameters;
   std::optional<double> rho0;              ///< error at the test poses by noise alone, m
   double rho0_shift = 0, rho0_spread = 0;  ///< what aliases add to it, root mean square, m; where there is rho0
+  std::optional<Discrimination> test;      ///< whether the measurement would show it; none: the truth has no effect
 };
 
 /// Whether estimating more parameters pays, if the variant that has them is the truth.

@@ -14,6 +14,7 @@ namespace posewright {
 /// What a command line may say over the problem file's design block.
 struct PlanOptions {
   std::string variant, criterion, method;  ///< empty = as in the file
+  std::string truth;                       ///< the variant that may be the case; empty = as in the file
   std::optional<int> poses, candidates, restarts;
   bool smallest = false;  ///< the smallest number of poses that reaches design: require
   std::optional<Repeats> repeats;

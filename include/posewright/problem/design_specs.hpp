@@ -58,7 +58,8 @@ struct DesignSpec {
     Located<std::string> name;
     double weight = 1.0;
   };
-  std::vector<Weighted> variants;  ///< for criteria over several variants
+  std::vector<Weighted> variants;             ///< for criteria over several variants
+  std::optional<Located<std::string>> truth;  ///< the variant that may be the case while another one is fitted
   Located<std::string> criterion{"o1", 0};
   Located<std::string> method{"auto", 0};
   std::optional<Located<int>> poses;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+
+#include "posewright/criterion/criterion.hpp"
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/criterion/information_function.hpp"
+
+namespace posewright {
+
+/// Φ = ln T, T = tr(Zᵀ S Z): what the fitted columns (A, the leading ones) cannot imitate of the effects, S = M_ff −
+/// M_fa M_aa⁻¹ M_af the Schur complement of the trailing columns (f). T is the least sum of squared residuals that
+/// fitting leaves of one effect, the expected one for several that are independent. It is concave and of degree one in
+/// M, so degree() is 1. −∞ where the fitted columns are not determined or no residual is left. Atkinson & Fedorov
+/// (1975), Biometrika 62(1), for T-optimality.
+class DiscriminateFunction : public InformationFunction {
+ public:
+  /// @param fitted  number of leading columns
+  /// @param mix     trailing columns × effects, in the coordinates of M
+  DiscriminateFunction(int fitted, const Eigen::MatrixXd& mix);
+  double value(const Eigen::MatrixXd& information) const override;
+  Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;
+  bool concave() const override { return true; }
+  double degree() const override { return 1.0; }
+  std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override;
+
+ private:
+  int fitted_;
+  Eigen::MatrixXd half_;  // upper triangular, half_ half_ᵀ = mix mixᵀ
+};
+
+/// Φ = −ln φ, φ = tr(L M_aa⁻¹ Lᵀ) + ‖L M_aa⁻¹ M_af Z − b‖²: mean squared error by noise and by effects that are not
+/// fitted. Not concave: more information may weigh the effects worse. Jones & Nachtsheim (2011), Technometrics 53(1),
+/// for the minimal aliasing of a design.
+class BiasFunction : public InformationFunction {
+ public:
+  /// @param rows    L, what counts × fitted columns
+  /// @param mix     Z, trailing columns × effects
+  /// @param offset  b, what counts × effects
+  BiasFunction(const Eigen::MatrixXd& rows, Eigen::MatrixXd mix, const Eigen::MatrixXd& offset);
+  double value(const Eigen::MatrixXd& information) const override;
+  Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;
+  bool concave() const override { return false; }
+
+ private:
+  Eigen::MatrixXd rows_, mix_, offset_;
+};
+
+/// `discriminate`, `bias`. Throw CannotDo where no effects are known.
+std::unique_ptr<Criterion> make_discriminate_criterion(const CriterionData& data);
+std::unique_ptr<Criterion> make_bias_criterion(const CriterionData& data);
+
+}  // namespace posewright

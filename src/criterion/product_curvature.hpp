@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "posewright/blocks/block_array.hpp"
+
+namespace posewright {
+
+/// H_ij = 2 tr(X_i S_A X_j S) where every block's rows are given as Z = J L⁻ᵀ (S_A = L⁻ᵀL⁻¹) and G = J F (S = F Fᵀ):
+/// the product ⟨P_i, P_j⟩, P = ZᵀG. Returns d_i = tr(X_i S) = ‖G_i‖².
+/// @param r  rows of one block; H is resized
+inline Eigen::VectorXd product_curvature(const BlockArray::RowMatrix& Z, const BlockArray::RowMatrix& G, int r,
+                                         Eigen::MatrixXd& H) {
+  const Eigen::Index s = Z.rows() / r, size = Z.cols() * G.cols();
+  Eigen::VectorXd d(s);
+  for (Eigen::Index i = 0; i < s; ++i) d[i] = G.middleRows(i * r, r).squaredNorm();
+  if (r == 1) {
+    const Eigen::MatrixXd first = Z * Z.transpose(), second = G * G.transpose();
+    H = 2 * first.cwiseProduct(second);
+    return d;
+  }
+  BlockArray::RowMatrix products(s, size);
+  for (Eigen::Index i = 0; i < s; ++i)
+    BlockArray::Map(products.row(i).data(), Z.cols(), G.cols(), Eigen::OuterStride<>(G.cols())).noalias() =
+        Z.middleRows(i * r, r).transpose() * G.middleRows(i * r, r);
+  H.setZero(s, s);
+  H.selfadjointView<Eigen::Lower>().rankUpdate(products, 2.0);
+  H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+  return d;
+}
+
+}  // namespace posewright

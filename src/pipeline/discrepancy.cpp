@@ -1,0 +1,164 @@
+#include "discrepancy.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "posewright/support/error.hpp"
+#include "study.hpp"
+#include "test_points.hpp"
+
+namespace posewright {
+namespace {
+
+// A direction of which less than this share (of squared length, whitened) is left beside the fitted columns is
+// rounding.
+constexpr double imitated = 1e-12;
+
+SourcePlace place_of(const Problem& problem, const Settings& settings) {
+  return settings.truth.line > 0 ? problem.at(settings.truth.line) : SourcePlace{};
+}
+
+Effects checked_effects(const Problem& problem, const Preparation& prepared, const Settings& settings) {
+  const PreparedVariant& fitted = prepared.first();
+  const VariantSpec& truth = find_variant(problem, settings.truth.value);
+  const SourcePlace place = place_of(problem, settings);
+  if (truth.name == fitted.spec->name)
+    throw InputError(place, "the truth '" + truth.name + "' is the variant that is fitted", "another variant");
+  const Site site = make_site(problem, truth, prepared.cell);
+  if (!one_catalogue(*fitted.model, *site.model))
+    throw InputError(
+        place, "variants '" + fitted.spec->name + "' and '" + truth.name + "' do not share one catalogue of parameters",
+        "a truth in the same convention");
+  // Where the truth's own columns depend on one another matters to whoever fits it; nobody does here.
+  const VariantColumns columns =
+      resolve_columns({fitted.model.get(), &prepared.configurations}, problem, truth, true, settings.planner.threads)
+          .columns;
+  Effects effects = effects_of(fitted, *site.model, columns, settings.prior);
+  if (effects.count() == 0)
+    throw InputError(place,
+                     "truth '" + truth.name + "' has no effect that '" + fitted.spec->name + "' does not estimate",
+                     "a variant with other nominal values or more parameters");
+  return effects;
+}
+
+/// Information from before over all columns of the effects; empty: none.
+Eigen::MatrixXd known_before(const Preparation& prepared, const Effects& effects, bool prior, int threads) {
+  const auto all = Eigen::Index(effects.columns.selected.size());
+  if (!prior && prepared.measured.count() == 0) return {};
+  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(all, all);
+  if (prior)
+    for (Eigen::Index j = 0; j < effects.fitted; ++j)
+      known(j, j) = std::pow(effects.columns.parameters[std::size_t(j)].tolerance, -2);
+  if (prepared.measured.count() > 0) {
+    const BlockArray blocks =
+        build_blocks(*prepared.first().model, effects.columns.selected, prepared.measured, threads);
+    known += blocks.all().transpose() * blocks.all();
+  }
+  return known;
+}
+
+/// Candidates' rows, and as many more as what is known before is worth.
+Eigen::MatrixXd stacked(const Preparation& prepared, const Effects& effects, const Eigen::MatrixXd& known,
+                        int threads) {
+  const BlockArray blocks =
+      build_blocks(*prepared.first().model, effects.columns.selected, prepared.configurations, threads);
+  Eigen::MatrixXd rows(blocks.all().rows() + known.rows(), blocks.columns());
+  rows.topRows(blocks.all().rows()) = blocks.all();
+  if (known.size() == 0) return rows;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(known);
+  rows.bottomRows(known.rows()) =
+      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+  return rows;
+}
+
+/// The basis of what is left: fills mix and group.mix; returns β, what the fitted columns take up of every effect.
+Eigen::MatrixXd find_basis(Discrepancy& result, const Eigen::MatrixXd& rows) {
+  const Effects& effects = result.effects;
+  const Eigen::Index own = effects.fitted, all = effects.combinations.rows();
+  const Eigen::VectorXd length = rows.leftCols(own).colwise().norm().cwiseMax(1e-300);
+  const Eigen::MatrixXd fitted = rows.leftCols(own) * length.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd made = rows * effects.combinations;
+  const Eigen::MatrixXd beta =
+      length.cwiseInverse().asDiagonal() * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fitted).solve(made);
+  const Eigen::MatrixXd left = made - rows.leftCols(own) * beta;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(left.transpose() * left);
+  const double whole = made.colwise().squaredNorm().maxCoeff();
+  const Eigen::Index kept = (eigen.eigenvalues().array() > imitated * whole).count();
+  const Eigen::MatrixXd U = eigen.eigenvectors().rightCols(kept);
+  result.mix = Eigen::MatrixXd::Zero(all, own + kept);
+  result.mix.topLeftCorner(own, own).setIdentity();
+  result.mix.rightCols(kept) = effects.combinations * U;
+  result.mix.topRightCorner(own, kept) -= beta * U;
+  result.group.columns = int(kept);
+  result.group.mix = U.transpose();
+  return beta;
+}
+
+/// What counts for `bias`: the test poses, or the parameters of interest in units of the scale.
+void fill_errors(Discrepancy& result, const PreparedVariant& fitted, const Eigen::MatrixXd& beta) {
+  const Effects& effects = result.effects;
+  const Eigen::Index own = effects.fitted, nuisance = fitted.columns().nuisance;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(own - nuisance, effects.combinations.rows());
+  for (Eigen::Index j = nuisance; j < own; ++j) rows(j - nuisance, j) = 1 / fitted.scale[j];
+  if (!result.test_points.empty()) {
+    double total = 0.0;
+    for (const TestPoint& point : result.test_points) total += point.weight;
+    rows.resize(3 * Eigen::Index(result.test_points.size()), Eigen::NoChange);
+    for (std::size_t t = 0; t < result.test_points.size(); ++t)
+      rows.middleRows(3 * Eigen::Index(t), 3) =
+          std::sqrt(result.test_points[t].weight / total) * result.test_points[t].A;
+  }
+  result.group.error_rows = rows.leftCols(own);
+  result.group.error_offset = rows * effects.combinations - rows.leftCols(own) * beta;
+}
+
+void require_a_residual(const Preparation& prepared, const Discrepancy& found, const Settings& settings) {
+  const int rows = prepared.first().model->block_rows(found.effects.columns.selected), own = found.effects.fitted;
+  if (settings.criterion != "discriminate" || settings.poses == 0 || prepared.first().prior.size() > 0 ||
+      settings.poses * rows > own)
+    return;
+  throw CannotDo(fmt::format(
+      "{} poses give {} equations for {} parameters: nothing is left to tell '{}' from '{}' by; at least {} "
+      "poses are needed",
+      settings.poses, settings.poses * rows, own, prepared.first().spec->name, found.truth, own / rows + 1));
+}
+
+}  // namespace
+
+std::shared_ptr<const Discrepancy> make_discrepancy(const Problem& problem, const Preparation& prepared,
+                                                    const Settings& settings) {
+  const auto result = std::make_shared<Discrepancy>();
+  const PreparedVariant& fitted = prepared.first();
+  const int threads = settings.planner.threads;
+  result->truth = settings.truth.value;
+  result->effects = checked_effects(problem, prepared, settings);
+  require_a_residual(prepared, *result, settings);
+  result->test_points =
+      test_points_of(problem, *fitted.spec, *fitted.model, result->effects.columns, settings.planner.seed);
+  const Eigen::MatrixXd known = known_before(prepared, result->effects, settings.prior, threads);
+  const Eigen::MatrixXd beta = find_basis(*result, stacked(prepared, result->effects, known, threads));
+  fill_errors(*result, fitted, beta);
+  if (known.size() > 0) result->known = result->mix.transpose() * known * result->mix;
+  return result;
+}
+
+SearchPart part_with_effects(const Preparation& prepared, const Configurations& configurations, int threads) {
+  const PreparedVariant& fitted = prepared.first();
+  const Discrepancy& found = *prepared.discrepancy;
+  if (found.group.columns == 0)
+    throw CannotDo("'" + fitted.spec->name + "' imitates all that '" + found.truth +
+                   "' does, at every candidate: no poses tell them apart, and none makes the bias smaller");
+  const BlockArray raw = build_blocks(*fitted.model, found.effects.columns.selected, configurations, threads);
+  SearchPart part;
+  part.blocks = BlockArray(raw.count(), raw.rows(), int(found.mix.cols()));
+  part.blocks.all().noalias() = raw.all() * found.mix;
+  part.nuisance = fitted.columns().nuisance;
+  part.scale = Eigen::VectorXd::Ones(found.mix.cols());
+  part.scale.head(found.effects.fitted) = fitted.scale;
+  part.prior = found.known;
+  part.effects = found.group;
+  return part;
+}
+
+}  // namespace posewright

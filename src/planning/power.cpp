@@ -1,0 +1,60 @@
+#include "posewright/planning/power.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <cmath>
+#include <stdexcept>
+
+namespace posewright {
+namespace {
+
+constexpr int most_repetitions = 1'000'000;
+// So many standard deviations from its mean a noncentral chi-square is never seen; its series would take long.
+constexpr double certain = 40.0;
+
+}  // namespace
+
+double chi_square_power(double lambda, double degrees_of_freedom, double level) {
+  if (!(lambda >= 0) || !(degrees_of_freedom > 0) || !(level > 0 && level < 1))
+    throw std::invalid_argument("chi_square_power: numbers out of range");
+  const boost::math::chi_squared central(degrees_of_freedom);
+  const double threshold = boost::math::quantile(boost::math::complement(central, level));
+  if (lambda == 0) return level;
+  const double mean = degrees_of_freedom + lambda, deviation = std::sqrt(2 * (degrees_of_freedom + 2 * lambda));
+  if (threshold < mean - certain * deviation) return 1.0;
+  const boost::math::non_central_chi_squared shifted(degrees_of_freedom, lambda);
+  return boost::math::cdf(boost::math::complement(shifted, threshold));
+}
+
+namespace {
+
+/// Smallest k with enough(k), which stays true from there on.
+template <class Enough>
+std::optional<int> smallest(const Enough& enough) {
+  int high = 1;
+  while (!enough(high)) {
+    if (high >= most_repetitions) return std::nullopt;
+    high = high > most_repetitions / 2 ? most_repetitions : 2 * high;
+  }
+  int low = high / 2;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (enough(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+std::optional<int> repetitions_for_power(double lambda, int readings, int fitted, double level, double power) {
+  return smallest([&](int k) {
+    const double left = double(k) * readings - fitted;
+    return left > 0 && chi_square_power(k * lambda, left, level) >= power;
+  });
+}
+
+std::optional<int> repetitions_along_effect(double lambda, double level, double power) {
+  return smallest([&](int k) { return chi_square_power(k * lambda, 1, level) >= power; });
+}
+
+}  // namespace posewright

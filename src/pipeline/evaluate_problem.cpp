@@ -35,7 +35,7 @@ class ListEvaluation {
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
       if (prepared_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
-      require_feasible(list.configurations[i], i, list.name);
+      require_feasible(list.configurations[i], i, list);
       append(poses_, list.configurations[i]);
     }
     settings_.poses = int(poses_.count());
@@ -77,13 +77,13 @@ class ListEvaluation {
     return options;
   }
 
-  void require_feasible(const std::vector<double>& q, std::size_t i, const std::string& list) const {
+  void require_feasible(const std::vector<double>& q, std::size_t i, const PoseList& list) const {
     for (const PreparedVariant& variant : prepared_.variants)
       if (const int reason = variant.workspace->violation(q); reason >= 0)
         throw InputError(
-            {list, 0},
+            {list.name, 0},
             fmt::format("pose {} is not feasible: {}", i + 1, variant.workspace->reasons()[std::size_t(reason)]),
-            "poses within the workspace of the problem");
+            notes_.size() > list.notes.size() ? notes_.back() : "poses within the workspace of the problem");
   }
 
   double degree() const { return degree_ > 0 ? degree_ : 1.0; }

@@ -16,6 +16,7 @@
 #include "posewright/pipeline/report_problem.hpp"
 #include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/support/random.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -74,14 +75,18 @@ TEST(ParametersFile, HasWhatWasEstimatedOrIsNotNominalAndQuotesWhatYamlWouldMisr
   EXPECT_TRUE(parse_calibrated_parameters(parameters_yaml(problem, variant, {}), "cal.yaml").values.empty());
 }
 
-/// The five-bar with its links 5 mm longer.
+const char* const velocities = "workspace: {motion: {velocity: {leg_1.rho: 90 deg/s, leg_2.rho: 90 deg/s}}}\n";
+
+/// The five-bar with its links 0.1 mm shorter, so that its poses can be reached with nominal ones too.
 class PlannedAtParameters : public testing::Test {
  protected:
-  PlannedAtParameters() : nominal(read_problem(examples / "five_bar/problem.yaml")), calibrated(nominal) {
+  PlannedAtParameters()
+      : nominal(read_problem(folder.write("p.yaml", read_file(examples / "five_bar/problem.yaml") + velocities))),
+        calibrated(nominal) {
     const VariantSpec& variant = nominal.variants.front();
     std::vector<EstimatedValue> values;
     for (CalibratedValue v : calibrated_values(nominal, variant, *make_model(nominal), {})) {
-      if (v.name.ends_with(".distal")) v.value += 5e-3;
+      if (v.name.ends_with(".distal")) v.value -= 1e-4;
       values.push_back({v, {}});
     }
     file = folder.write("cal.yaml", parameters_yaml(nominal, variant, values));
@@ -139,7 +144,7 @@ TEST_F(PlannedAtParameters, RouteStatesThemAndNotesOthers) {
   EXPECT_EQ(json::parse(route_json(route))["problem"]["parameters"]["sha256"], calibrated.parameters->sha256);
   Problem changed = nominal;
   folder.write("cal.yaml", "posewright_parameters: 1\nvariant: " + nominal.variants.front().name +
-                               "\nparameters: {leg_1.distal: {value: 0.351}}\n");
+                               "\nparameters: {leg_1.distal: {value: 0.3501}}\n");
   apply_parameters(changed, read_calibrated_parameters(file), {});
   const Route other = route_problem(changed, plan_file, options, Monitor{});
   ASSERT_EQ(other.notes.size(), 1U);

@@ -69,6 +69,12 @@ class Outputs(unittest.TestCase):
         self.check("plan", plan)
         self.check("plan", self.run_program("plan", "smallest.yaml", "--poses", 8, "--criterion", "o3", "--json"))
 
+    def test_plan_at_calibrated_parameters(self):
+        (self.folder / "cal.yaml").write_text("posewright_parameters: 1\nvariant: all\nparameters: {leg_1.distal: {value: 0.355}}\n")
+        plan = self.run_program("plan", "smallest.yaml", "--poses", 8, "--parameters", "cal.yaml", "--json")
+        self.assertEqual(plan["problem"]["parameters"]["variant"], "all")
+        self.check("plan", plan)
+
     def test_selection_of_blocks(self):
         rows = ["%g,%g" % ((7 * i) % 11 - 5, (5 * i) % 13 - 6) for i in range(40)]
         (self.folder / "blocks.csv").write_text("\n".join(rows) + "\n")

@@ -1,0 +1,109 @@
+// Option --parameters as a user meets it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "posewright/support/file.hpp"
+#include "tests/kit/run_program.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// The five-bar with speeds, so that it has a route.
+std::string five_bar() {
+  return read_file(std::string(POSEWRIGHT_SOURCE_DIR) + "/examples/five_bar/problem.yaml") +
+         "workspace: {motion: {velocity: {leg_1.rho: 90 deg/s, leg_2.rho: 90 deg/s}}}\n";
+}
+const char* const calibrated =
+    "posewright_parameters: 1\nvariant: links_and_offsets\nparameters:\n  leg_1.distal: {value: 0.3499, unit: m}\n";
+
+std::vector<std::string> plan_words(const std::vector<std::string>& more) {
+  std::vector<std::string> words = {"plan", "p.yaml", "--candidates", "200", "--restarts", "1", "--method", "exchange"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(ParametersOption, PlanStatesThemAndRouteAndReportFindThem) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", five_bar());
+  folder.write("cal.yaml", calibrated);
+  const ProgramRun plan = run_program(folder.path(), plan_words({"--parameters", "cal.yaml"}));
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_THAT(plan.out, HasSubstr("At the calibrated parameters of cal.yaml."));
+  const json stated = json::parse(read_file(folder / "plan.json"))["problem"]["parameters"];
+  EXPECT_EQ(stated["file"], "cal.yaml");
+  EXPECT_EQ(stated["variant"], "links_and_offsets");
+
+  const ProgramRun report = run_program(folder.path(), {"report", "plan.json", "--brief"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.out, testing::Not(HasSubstr("plan was made")));
+  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json"});
+  ASSERT_EQ(route.exit_code, 0) << route.err;
+  EXPECT_EQ(json::parse(route.out)["problem"]["parameters"]["sha256"], stated["sha256"]);
+
+  const ProgramRun evaluation = run_program(folder.path(), {"evaluate", "p.yaml", "plan.json", "--candidates", "200"});
+  EXPECT_EQ(evaluation.exit_code, 0);
+  EXPECT_THAT(evaluation.err, HasSubstr("note: plan.json was made at the parameters of cal.yaml; everything here is at "
+                                        "nominal ones (--parameters cal.yaml)"));
+
+  std::filesystem::remove(folder / "cal.yaml");
+  const ProgramRun lost = run_program(folder.path(), {"route", "plan.json"});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.err, HasSubstr("its parameters file 'cal.yaml' is not there; name it with --parameters FILE"));
+}
+
+TEST(ParametersOption, PosesThatOnlyTheCalibratedRobotReachesAreRefusedWithTheReason) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", five_bar());
+  folder.write("cal.yaml",
+               "posewright_parameters: 1\nvariant: links_and_offsets\n"
+               "parameters: {leg_1.distal: {value: 0.36}, leg_2.distal: {value: 0.36}}\n");
+  ASSERT_EQ(run_program(folder.path(), plan_words({"--parameters", "cal.yaml"})).exit_code, 0);
+  const ProgramRun run = run_program(folder.path(), {"evaluate", "p.yaml", "plan.json", "--candidates", "200"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("is not feasible: out of reach; plan.json was made at the parameters of cal.yaml"));
+}
+
+TEST(ParametersOption, ObservationAndComparisonStateThem) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", five_bar());
+  folder.write("cal.yaml", calibrated);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"observe", "p.yaml", "--variant", "links_and_offsets", "--candidates", "200"},
+        std::vector<std::string>{"compare", "p.yaml", "--variant", "links_and_offsets", "--candidates", "200",
+                                 "--restarts", "1"}}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--parameters", "cal.yaml", "--json"});
+    const ProgramRun run = run_program(folder.path(), all);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(json::parse(run.out)["problem"]["parameters"]["file"], "cal.yaml");
+  }
+}
+
+TEST(ParametersOption, BadFilesAndOutputsOverItEndWithTwo) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", five_bar());
+  folder.write("cal.yaml", calibrated);
+  folder.write("bad.yaml",
+               "posewright_parameters: 1\nvariant: links_and_offsets\nparameters: {leg_9.distal: {value: 1}}\n");
+  const auto complaint = [&](const std::vector<std::string>& more) {
+    const ProgramRun run = run_program(folder.path(), plan_words(more));
+    EXPECT_EQ(run.exit_code, 2);
+    return run.err;
+  };
+  EXPECT_THAT(complaint({"--parameters", "bad.yaml"}),
+              HasSubstr("bad.yaml:3: 'leg_9.distal' is no parameter of variant 'links_and_offsets'; parameters: "));
+  EXPECT_THAT(complaint({"--parameters", "none.yaml"}), HasSubstr("none.yaml"));
+  EXPECT_THAT(complaint({"--parameters", "cal.yaml", "--force", "-o", "cal.yaml"}), HasSubstr("cal.yaml is an input"));
+  EXPECT_EQ(read_file(folder / "cal.yaml"), calibrated);
+}
+
+}  // namespace
+}  // namespace posewright

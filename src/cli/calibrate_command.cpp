@@ -2,10 +2,15 @@
 
 #include "calibration_report.hpp"
 #include "command.hpp"
+#include "dh_table_report.hpp"
+#include "posewright/model/corrected_urdf.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
+#include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -22,8 +27,58 @@ po::options_description options() {
       ("prior", "count tolerances as measurements of their parameters (as the problem says)")  //
       ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
       ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it");
+  options.add_options()                                                                                        //
+      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")  //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")            //
+      ("force", "replace files that posewright did not write");
   options.add(problem_options());
   return options;
+}
+
+/// What goes to the robot's users.
+struct Results {
+  std::filesystem::path parameters, urdf;  ///< empty: not asked for
+  std::string dh;
+
+  Results(const po::variables_map& values, const Problem& problem, const CalibrateOptions& calibrate)
+      : parameters(text_of(values, "output")),
+        urdf(text_of(values, "urdf")),
+        dh(choice_of(values, "dh", {"distal", "proximal"})) {
+    if ((!urdf.empty() || !dh.empty()) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
+      throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
+    std::vector<std::filesystem::path> inputs = files_of(problem);
+    inputs.push_back(calibrate.data);
+    if (!calibrate.validate.empty()) inputs.push_back(calibrate.validate);
+    if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) inputs.push_back(arm->urdf);
+    check_output_files(values, {parameters, urdf}, inputs);
+  }
+};
+
+std::vector<CalibratedValue> values_of(const Calibration& result) {
+  std::vector<CalibratedValue> values;
+  for (const EstimatedValue& estimated : result.values) values.push_back(estimated.value);
+  return values;
+}
+
+/// Writes the files; what a URDF cannot say goes to `notes`.
+void write(const Results& wanted, const Problem& problem, const Calibration& result, std::vector<std::string>& notes) {
+  const VariantSpec& variant = find_variant(problem, result.variant);
+  if (!wanted.urdf.empty()) {
+    const auto& arm = std::get<SerialArmSpec>(problem.robot);
+    const CorrectedUrdf urdf = corrected_urdf(arm, problem.at(arm.line), variant.convention, values_of(result));
+    for (const std::string& left_out : urdf.left_out) notes.push_back("not in the URDF: " + left_out);
+    write_file_atomically(wanted.urdf, urdf.text);
+  }
+  if (!wanted.parameters.empty())
+    write_file_atomically(wanted.parameters, parameters_yaml(problem, variant, result.values));
+}
+
+std::optional<DhTable> table_of(const Results& wanted, const Problem& problem, const Calibration& result) {
+  if (wanted.dh.empty()) return std::nullopt;
+  const auto& arm = std::get<SerialArmSpec>(problem.robot);
+  return dh_table(arm, problem.at(arm.line), find_variant(problem, result.variant).convention, values_of(result),
+                  wanted.dh == "distal" ? DhConvention::distal : DhConvention::proximal);
 }
 
 CalibrateOptions options_of(const po::variables_map& values, const Words& positional) {
@@ -47,11 +102,15 @@ int run(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const CalibrateOptions calibrate = options_of(values, positional);
   const Problem problem = given_problem(positional.front(), values);
-  const Calibration result =
+  const Results wanted(values, problem, calibrate);
+  Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
+  const std::optional<DhTable> table = table_of(wanted, problem, result);
+  write(wanted, problem, result, result.notes);
   print_notes(result.notes);
   if (!common.json) {
-    print_report(calibration_text(result));
+    print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
+                 written_text({wanted.parameters, wanted.urdf}));
     return result.fit.converged ? done : cannot_do;
   }
   Json json = {{"schema", "posewright/calibration/1"},
@@ -59,6 +118,7 @@ int run(const po::variables_map& values, const Words& positional) {
                {"problem", problem_json(problem)},
                {"data", calibrate.data.string()}};
   json.update(calibration_json(result));
+  json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
   fmt::print("{}\n", json.dump(1));
   return result.fit.converged ? done : cannot_do;
 }

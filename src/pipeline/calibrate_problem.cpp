@@ -162,6 +162,11 @@ class CalibrationRun {
       p.weak = p.sigma > p.label.tolerance * (result_.prior ? prior_share : 1.0);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
+    for (CalibratedValue& value : calibrated_values(problem_, spec_, *model_, result_.correction))
+      result_.values.push_back({std::move(value), {}});
+    for (std::size_t j = 0; j < columns_.selected.size(); ++j)
+      result_.values[std::size_t(columns_.selected[j])].sigma =
+          result_.sigma_factor * std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
     for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
     for (auto* more : {&nuisance, &left_out_})
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());

@@ -71,6 +71,25 @@ TEST_F(CalibrateCommand, JsonHasEveryPoseAndTheCovariance) {
   }
 }
 
+TEST_F(CalibrateCommand, GivesTheRobotToItsUsers) {
+  const ProgramRun shown = run({"-o", "calibrated.yaml", "--urdf", "calibrated.urdf", "--dh", "distal"});
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("Denavit–Hartenberg parameters (distal)"));
+  EXPECT_THAT(shown.out, HasSubstr("Written: calibrated.yaml, calibrated.urdf"));
+  EXPECT_THAT(shown.err, HasSubstr("not in the URDF: target.P1.x"));
+  // With its own parameters the robot has nothing left to be corrected.
+  const ProgramRun again = run({"--parameters", "calibrated.yaml", "--json", "--dh", "proximal"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto json = nlohmann::json::parse(again.out);
+  for (const auto& p : json["parameters"])
+    EXPECT_NEAR(p["value"].get<double>(), p["nominal"].get<double>(), 0.01 * p["sigma"].get<double>()) << p["name"];
+  EXPECT_EQ(json["denavit_hartenberg"]["rows"].size(), 6U);
+  EXPECT_EQ(run({"--dh", "best"}).exit_code, 2);
+  EXPECT_EQ(run({"-o", "data.csv"}).exit_code, 2);
+  folder_.write("precious.urdf", "<robot/>");
+  EXPECT_EQ(run({"--urdf", "precious.urdf"}).exit_code, 1);
+}
+
 TEST_F(CalibrateCommand, SaysWhatIsWrong) {
   EXPECT_THAT(run_program(folder_.path(), {"calibrate", kr270}).err, HasSubstr("DATA.csv is missing"));
   const ProgramRun words = run({"--weights", "best"});

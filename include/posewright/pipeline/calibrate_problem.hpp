@@ -7,6 +7,7 @@
 
 #include "posewright/calibration/curvature.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
 
@@ -68,6 +69,7 @@ struct Calibration {
   std::vector<std::string> notes;
   /// Of the model's whole catalogue, for whoever goes on with the robot.
   std::vector<double> correction;
+  std::vector<EstimatedValue> values;  ///< the same as values, under the model's names, with σ where estimated
 };
 
 /// Estimates the parameters of a variant from measured data. Columns that the data do not determine stay at their

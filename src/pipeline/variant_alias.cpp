@@ -100,8 +100,8 @@ void add_test_poses(VariantAlias& alias, const Problem& problem, const PreparedV
 
 }  // namespace
 
-bool one_catalogue(const PreparedVariant& a, const PreparedVariant& b) {
-  const auto &x = a.model->parameters(), &y = b.model->parameters();
+bool one_catalogue(const IdentificationModel& a, const IdentificationModel& b) {
+  const auto &x = a.parameters(), &y = b.parameters();
   return std::equal(x.begin(), x.end(), y.begin(), y.end(),
                     [](const Parameter& p, const Parameter& q) { return p.name == q.name && p.unit == q.unit; });
 }
@@ -119,7 +119,7 @@ VariantAlias variant_alias(const Problem& problem, const PreparedVariant& fitted
   VariantAlias alias;
   alias.fitted = fitted.spec->name;
   alias.truth = truth.spec->name;
-  if (!one_catalogue(fitted, truth)) {
+  if (!one_catalogue(*fitted.model, *truth.model)) {
     alias.why_not = "the variants do not share one catalogue of parameters";
     return alias;
   }

@@ -17,6 +17,6 @@ VariantAlias variant_alias(const Problem& problem, const PreparedVariant& fitted
 std::vector<int> extra_columns(const PreparedVariant& with, const PreparedVariant& without);
 
 /// Whether the parameters mean the same in both.
-bool one_catalogue(const PreparedVariant& a, const PreparedVariant& b);
+bool one_catalogue(const IdentificationModel& a, const IdentificationModel& b);
 
 }  // namespace posewright

@@ -10,6 +10,7 @@
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
+#include "weighting.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -89,9 +90,7 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   CalibrateOptions calibrate;
   calibrate.data = positional[1];
   calibrate.variant = text_of(values, "variant");
-  const std::string weights = choice_of(values, "weights", {"ols", "wls", "robust"});
-  if (weights == "ols") calibrate.weighting = Weighting::ordinary;
-  if (weights == "robust") calibrate.weighting = Weighting::robust;
+  calibrate.weighting = weighting_of(values);
   calibrate.prior = values.count("prior") > 0;
   calibrate.validate = text_of(values, "validate");
   calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);

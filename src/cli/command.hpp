@@ -37,6 +37,7 @@ Command observe_command();
 Command select_command();
 Command evaluate_command();
 Command compare_command();
+Command simulate_command();
 Command calibrate_command();
 Command route_command();
 Command stations_command();

@@ -7,9 +7,7 @@
 #include "test_configurations.hpp"
 
 namespace posewright {
-namespace {
 
-/// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
 Problem with_pose_seen(Problem problem) {
   PoseMeasurement pose;
   pose.covariance.setIdentity();
@@ -17,8 +15,6 @@ Problem with_pose_seen(Problem problem) {
   problem.measurement.instrument = pose;
   return problem;
 }
-
-}  // namespace
 
 std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
                                       const IdentificationModel& model, const VariantColumns& columns,

@@ -8,6 +8,9 @@
 
 namespace posewright {
 
+/// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
+Problem with_pose_seen(Problem problem);
+
 /// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
 /// does not move the robot are zero. Empty where the problem has none. Throws InputError for configurations that do not
 /// fit the robot, CannotDo for a robot without a tip.

@@ -118,6 +118,13 @@ class Outputs(unittest.TestCase):
             self.assertAlmostEqual(calibration["parameters"][0]["value"], 0.1849, 3)
             self.check("calibration", calibration)
 
+    def test_simulation(self):
+        self.run_program("plan", "smallest.yaml", "--poses", 8, "--json")
+        words = ["simulate", "smallest.yaml", "plan.json", "--draws", 20, "--json"]
+        self.check("simulation", self.run_program(*words, "--data", "readings.csv"))
+        self.assertGreater(len((self.folder / "readings.csv").read_text().splitlines()), 8)
+        self.check("simulation", self.run_program(*words, "--variant", "few", "--truth", "all", "--weights", "robust", "--missing", 0.1))
+
     def test_plan_route_and_stations_of_a_cell(self):
         cell = self.folder / "cell.yaml"
         text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")

@@ -1,0 +1,109 @@
+#include "posewright/calibration/experiment.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double confidence = 0.95;
+constexpr int reports = 200;
+
+/// Position of the point of interest of one place.
+class Position {
+ public:
+  Position(const IdentificationModel& model, const std::vector<int>& from, const std::vector<double>& correction,
+           const Eigen::Vector3d& point)
+      : model_(model), point_(point), correction_(from.size(), 0.0) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (from[i] >= 0) correction_[i] = correction[std::size_t(from[i])];
+  }
+
+  Eigen::Vector3d at(const std::vector<double>& q) {
+    if (!model_.predict(q, correction_, pose_))
+      throw CannotDo("a place to check is out of reach of the calibrated robot");
+    const Eigen::Vector3d turn = pose_.tail<3>();
+    const double angle = turn.norm();
+    if (angle == 0.0) return pose_.head<3>() + point_;
+    return pose_.head<3>() + Eigen::AngleAxisd(angle, turn / angle) * point_;
+  }
+
+ private:
+  const IdentificationModel& model_;
+  Eigen::Vector3d point_;
+  std::vector<double> correction_;
+  Eigen::VectorXd pose_;
+};
+
+void check_places(const CheckPlaces& places, const std::vector<double>& correction, const std::vector<double>& truth,
+                  VirtualCalibration& result) {
+  Position fitted(*places.fitted, places.fitted_from, correction, places.point);
+  Position real(*places.truth, places.truth_from, truth, places.point);
+  double sum = 0, total = 0, largest = 0;
+  for (std::size_t t = 0; t < places.weights.size(); ++t) {
+    const double square = (fitted.at(places.fitted_q[t]) - real.at(places.truth_q[t])).squaredNorm();
+    sum += places.weights[t] * square;
+    total += places.weights[t];
+    largest = std::max(largest, square);
+  }
+  result.mean_square = sum / total;
+  result.largest = std::sqrt(largest);
+}
+
+Eigen::VectorXd error_of(const VirtualExperiment& experiment, const Fit& fitted, const std::vector<double>& truth) {
+  if (!experiment.one_catalogue) return {};
+  Eigen::VectorXd error = fitted.change;
+  for (std::size_t j = 0; j < experiment.columns.selected.size(); ++j) {
+    const auto i = std::size_t(experiment.columns.selected[j]);
+    const double shift = experiment.truth.model->parameters()[i].nominal - experiment.model->parameters()[i].nominal;
+    error[Eigen::Index(j)] -= shift + truth[i];
+  }
+  return error;
+}
+
+VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
+  VirtualCalibration result;
+  try {
+    std::vector<double> truth;
+    const std::vector<MeasuredPose> poses = draw_readings(experiment, draw, truth);
+    const Fit fitted = fit(*experiment.model, experiment.columns, poses, experiment.options.fit);
+    result.end = fitted.converged ? VirtualCalibration::End::fitted : VirtualCalibration::End::not_converged;
+    result.error = error_of(experiment, fitted, truth);
+    result.sigma = fitted.covariance.diagonal().cwiseSqrt();
+    result.interval = interval_factor(confidence, fitted.scale_known, fitted.freedom);
+    result.chi_square = fitted.chi_square;
+    result.freedom = fitted.freedom;
+    if (experiment.places && fitted.converged) check_places(*experiment.places, fitted.correction, truth, result);
+  } catch (const CannotDo& error) {
+    result.end = VirtualCalibration::End::failed;
+    result.why = error.what();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experiment, const Monitor& monitor) {
+  const int draws = experiment.options.draws, step = std::max(1, draws / reports);
+  std::vector<VirtualCalibration> results(static_cast<std::size_t>(draws));
+  std::atomic<int> done{0};
+  parallel_for(results.size(), thread_count(experiment.options.threads), [&](std::size_t draw, int) {
+    if (monitor.should_stop()) return;
+    results[draw] = calibrate(experiment, int(draw));
+    const int now = ++done;
+    if (now % step != 0) return;
+    Progress progress;
+    progress.stage = "draws";
+    progress.done = now;
+    progress.total = draws;
+    monitor.report(progress);
+  });
+  return results;
+}
+
+}  // namespace posewright

@@ -1,0 +1,82 @@
+#include "posewright/calibration/experiment_summary.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <map>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+using End = VirtualCalibration::End;
+using Draws = std::vector<const VirtualCalibration*>;
+
+constexpr double confidence = 0.95;
+
+double binomial_error(double share, std::size_t count) { return std::sqrt(share * (1 - share) / double(count)); }
+
+ParameterErrors errors_of(const Draws& draws, Eigen::Index j) {
+  ParameterErrors result;
+  const auto count = double(draws.size());
+  double squares = 0, inside = 0;
+  for (const auto* draw : draws) {
+    result.bias += draw->error[j] / count;
+    result.stated += draw->sigma[j] * draw->sigma[j] / count;
+    inside += std::abs(draw->error[j]) <= draw->interval * draw->sigma[j] ? 1 : 0;
+  }
+  for (const auto* draw : draws) squares += std::pow(draw->error[j] - result.bias, 2);
+  result.observed = std::sqrt(squares / (count - 1));
+  result.stated = std::sqrt(result.stated);
+  result.bias_error = result.observed / std::sqrt(count);
+  result.coverage = inside / count;
+  return result;
+}
+
+void add_chi_square(const Draws& draws, bool tested, ExperimentSummary& summary) {
+  std::map<int, double> limits;  // by freedom: missing targets change it
+  double rejected = 0, freedom = 0;
+  for (const auto* draw : draws) {
+    if (draw->freedom < 1) return;
+    double& limit = limits[draw->freedom];
+    if (limit == 0) limit = boost::math::quantile(boost::math::chi_squared(draw->freedom), confidence);
+    rejected += draw->chi_square > limit ? 1 : 0;
+    summary.chi_square += draw->chi_square / draw->freedom / double(draws.size());
+    freedom += draw->freedom;
+  }
+  summary.chi_square_error = std::sqrt(2 / freedom);
+  if (!tested) return;
+  summary.rejected = rejected / double(draws.size());
+  summary.rejected_error = binomial_error(*summary.rejected, draws.size());
+}
+
+}  // namespace
+
+ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vector<VirtualCalibration>& all) {
+  ExperimentSummary summary;
+  summary.asked = int(all.size());
+  Draws draws;
+  for (const VirtualCalibration& draw : all) {
+    if (draw.end == End::fitted) draws.push_back(&draw);
+    summary.not_converged += draw.end == End::not_converged ? 1 : 0;
+    if (draw.end == End::failed && summary.failed++ == 0) summary.first_failure = draw.why;
+  }
+  summary.fitted = int(draws.size());
+  if (draws.size() < 2)
+    throw CannotDo(summary.failed > 0 ? "no draw could be calibrated: " + summary.first_failure
+                                      : "fewer than two draws were calibrated");
+  summary.sigma_error = 1 / std::sqrt(2.0 * double(draws.size()));
+  summary.coverage_error = binomial_error(confidence, draws.size());
+  for (Eigen::Index j = 0; j < draws.front()->error.size(); ++j) summary.parameters.push_back(errors_of(draws, j));
+  add_chi_square(draws, experiment.options.fit.weighting != Weighting::robust, summary);
+  if (!experiment.places) return summary;
+  summary.mean_square = 0.0;
+  for (const auto* draw : draws) {
+    *summary.mean_square += draw->mean_square / double(draws.size());
+    summary.largest = std::max(summary.largest, draw->largest);
+  }
+  return summary;
+}
+
+}  // namespace posewright

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "posewright/calibration/experiment.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+
+namespace posewright {
+namespace {
+
+// Streams of a draw: what else is drawn from the seed must not be the same numbers.
+constexpr std::uint64_t readings_stream = 0x51e0, gross_stream = 0x6e055;
+
+/// Which targets are missing or wrong at one pose.
+class Gross {
+ public:
+  Gross(const ExperimentOptions& options, int draw)
+      : options_(options), random_(options.seed ^ gross_stream, std::uint64_t(draw)) {}
+
+  /// Adds gross errors to `change`, whose covariance this is; marks rows of missing targets.
+  /// @param per_target  rows of a target; 0: all are one
+  void apply(const Eigen::MatrixXd& covariance, int per_target, Eigen::VectorXd& change, std::vector<char>& missing) {
+    const auto rows = change.size();
+    const Eigen::Index size = per_target > 0 ? per_target : rows;
+    missing.assign(std::size_t(rows), 0);
+    for (Eigen::Index first = 0; first + size <= rows; first += size) {
+      if (random_.uniform() < options_.missing) std::fill_n(missing.begin() + first, size, 1);
+      // The same numbers are drawn whether the error comes or not.
+      const bool wrong = random_.uniform() < options_.outliers;
+      Eigen::VectorXd direction(size);
+      for (double& value : direction) value = random_.normal();
+      if (!wrong) continue;
+      const Eigen::LLT<Eigen::MatrixXd> root(covariance.block(first, first, size, size));
+      direction *= options_.outlier_size / direction.norm();
+      change.segment(first, size) += root.matrixL() * direction;
+    }
+  }
+
+ private:
+  const ExperimentOptions& options_;
+  Random random_;
+};
+
+}  // namespace
+
+std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth) {
+  const ExperimentOptions& options = experiment.options;
+  const IdentificationModel& robot = *experiment.truth.model;
+  Random random(options.seed ^ readings_stream, std::uint64_t(draw));
+  Gross gross(options, draw);
+  truth.assign(robot.parameters().size(), 0.0);
+  const VariantColumns& drawn = experiment.truth.drawn;
+  for (std::size_t j = 0; j < drawn.selected.size(); ++j) {
+    const double z = random.normal();
+    if (!options.exact) truth[std::size_t(drawn.selected[j])] = drawn.parameters[j].tolerance * z;
+  }
+  std::vector<MeasuredPose> poses;
+  poses.reserve(experiment.poses.size());
+  Linearisation at;
+  Eigen::VectorXd exact, z;
+  std::vector<char> missing;
+  for (std::size_t k = 0; k < experiment.poses.size(); ++k) {
+    const MeasuredPose& wanted = experiment.poses[k];
+    if (!robot.predict_and_linearise(experiment.truth.configurations[k], truth, {}, at, exact))
+      throw CannotDo("pose " + std::to_string(wanted.id) + " is out of reach of the true robot");
+    z.resize(exact.size());
+    for (double& value : z) value = random.normal();
+    const Eigen::LLT<Eigen::MatrixXd> root(at.covariance);
+    if (root.info() != Eigen::Success) throw CannotDo("measurement: the noise covariance is not positive definite");
+    z = root.matrixL() * z;
+    gross.apply(at.covariance, robot.rows_per_target(), z, missing);
+    MeasuredPose pose{wanted.id, wanted.q, {}};
+    robot.shifted(exact, z, pose.y);
+    for (Eigen::Index i = 0; i < pose.y.size(); ++i)
+      if (missing[std::size_t(i)] != 0 || !std::isfinite(wanted.y[i]))
+        pose.y[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!pose.y.array().isNaN().all()) poses.push_back(std::move(pose));
+  }
+  return poses;
+}
+
+}  // namespace posewright

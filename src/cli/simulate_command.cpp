@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "command.hpp"
+#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/version.hpp"
+#include "problem_source.hpp"
+#include "session.hpp"
+#include "simulation_report.hpp"
+#include "terminal.hpp"
+#include "weighting.hpp"
+#include "write_result.hpp"
+
+namespace posewright::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+po::options_description options() {
+  po::options_description options("Options");
+  options.add_options()                                                                                      //
+      ("draws", text("n"), "virtual calibrations (1000)")                                                    //
+      ("truth", text("V"), "variant whose model gives the readings (the one that is calibrated)")            //
+      ("truth-nominal", "of the truth only the nominal values differ")                                       //
+      ("exact", "true parameters are the nominal ones, not one tolerance off")                               //
+      ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                 //
+      ("weights", text("ols|wls|robust"), "what a reading counts: alike, by its noise, less far off (wls)")  //
+      ("missing", text("SHARE"), "share of the targets that are not read (0)")                               //
+      ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                             //
+      ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                               //
+      ("validation", text("k"), "random places to check where there are no test poses (50)")                 //
+      ("candidates", text("n"), "configurations that choose the parameters of auto (10000)")                 //
+      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                       //
+      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                         //
+      ("force", "replace a file that posewright did not write");
+  options.add(problem_options());
+  return options;
+}
+
+double number(const po::variables_map& values, const std::string& option, double standard, double lower, double upper) {
+  const std::string text = text_of(values, option);
+  if (values.count(option) == 0) return standard;
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !(value >= lower) || !(value <= upper))
+    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
+  return value;
+}
+
+SimulateOptions options_of(const po::variables_map& values, const CommonOptions& common) {
+  SimulateOptions simulate;
+  ExperimentOptions& experiment = simulate.experiment;
+  simulate.variant = text_of(values, "variant");
+  simulate.truth = text_of(values, "truth");
+  simulate.truth_nominal = values.count("truth-nominal") > 0;
+  if (simulate.truth_nominal && simulate.truth.empty())
+    throw InputError({}, "--truth-nominal needs another variant", "--truth V");
+  experiment.draws = whole_number(values, "draws", 2, 10000000).value_or(experiment.draws);
+  experiment.exact = values.count("exact") > 0;
+  experiment.missing = number(values, "missing", 0, 0, 0.9);
+  experiment.outliers = number(values, "outliers", 0, 0, 1);
+  experiment.outlier_size = number(values, "outlier-size", experiment.outlier_size, 0, 1e9);
+  if (values.count("outlier-size") > 0 && experiment.outliers == 0)
+    throw InputError({}, "--outlier-size without outliers", "--outliers SHARE");
+  experiment.fit.weighting = weighting_of(values);
+  experiment.seed = common.seed;
+  experiment.threads = common.threads;
+  simulate.validation = whole_number(values, "validation", 1, 1000000).value_or(simulate.validation);
+  simulate.candidates = whole_number(values, "candidates", 1, 10000000).value_or(simulate.candidates);
+  return simulate;
+}
+
+void print_json(const Simulation& result, const SimulateOptions& simulate, const CommonOptions& common,
+                const Problem& problem) {
+  Json json = {{"schema", "posewright/simulation/1"},
+               {"version", version},
+               {"seed", common.seed},
+               {"problem", problem_json(problem)}};
+  json.update(simulation_json(result, simulate));
+  fmt::print("{}\n", json.dump(1));
+}
+
+int run(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  if (positional.size() != 2)
+    throw InputError({}, "two arguments are needed: PROBLEM PLAN", "see posewright help simulate");
+  const SimulateOptions simulate = options_of(values, common);
+  const std::string from = text_of(values, "from");
+  if (!from.empty()) find_readable_format(from);
+  const std::filesystem::path data = values.count("data") > 0 ? output_file(values, "data", "") : "";
+  const Problem problem = given_problem(positional[0], values);
+  std::vector<std::filesystem::path> inputs = files_of(problem);
+  inputs.emplace_back(positional[1]);
+  check_output_files(values, {data}, inputs);
+  const auto [result, was_interrupted] = watched(common, 0, [&](const Monitor& monitor) {
+    return simulate_problem(problem, poses_in_file(positional[1], from), simulate, monitor);
+  });
+  print_notes(result.notes);
+  if (!data.empty()) write_file_atomically(data, result.first_readings);
+  if (common.json) print_json(result, simulate, common, problem);
+  else print_report(simulation_text(result, simulate) + written_text({data}));
+  return was_interrupted ? interrupted : done;
+}
+
+}  // namespace
+
+Command simulate_command() {
+  return {
+      "simulate",
+      "PROBLEM PLAN",
+      "Virtual experiment: measures a plan on drawn robots, calibrates, compares with the truth and the prediction.",
+      options,
+      "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000",
+      run};
+}
+
+}  // namespace posewright::cli

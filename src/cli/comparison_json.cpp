@@ -49,6 +49,7 @@ Json alias_json(const VariantAlias& a) {
                           {"tolerance", p.label.tolerance},
                           {"sigma", p.sigma},
                           {"bias_by_nominal", p.shift},
+                          {"bias_by_nominal_fitted", value_or_null(p.fitted)},
                           {"bias_by_tolerance", p.spread}});
   const auto at_places = [&](double value) { return a.rho0 ? Json(value) : Json(nullptr); };
   return {{"fitted", a.fitted},

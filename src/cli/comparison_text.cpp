@@ -126,16 +126,20 @@ std::string alias_in_full(const VariantAlias& a) {
   text += fmt::format(
       "{} nominal values differ, {} parameters are not fitted and one tolerance off each\n",
       std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.shift != 0; }), spreads);
-  Table table({"parameter", "bias by nominal", "by tolerance", "predicted σ", "tolerance", "bias/σ", "bias/tolerance"},
-              {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
+  Table table(
+      {"parameter", "bias by nominal", "fitted", "by tolerance", "predicted σ", "tolerance", "bias/σ",
+       "bias/tolerance"},
+      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
   for (const AliasedParameter& p : a.parameters) {
     const double size = std::hypot(p.shift, p.spread);
     table.row({p.label.name + (p.label.role == Role::nuisance ? " (nuisance)" : ""), shown_value(p.shift, p.label.unit),
-               shown_value(p.spread, p.label.unit), shown_value(p.sigma, p.label.unit),
-               shown_value(p.label.tolerance, p.label.unit), fmt::format("{:.3g}", size / p.sigma),
-               fmt::format("{:.3g}", size / p.label.tolerance)});
+               p.fitted ? shown_value(*p.fitted, p.label.unit) : "", shown_value(p.spread, p.label.unit),
+               shown_value(p.sigma, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
+               fmt::format("{:.3g}", size / p.sigma), fmt::format("{:.3g}", size / p.label.tolerance)});
   }
   text += table.text();
+  if (std::any_of(a.parameters.begin(), a.parameters.end(), [](const AliasedParameter& p) { return p.fitted; }))
+    text += "bias by nominal: to first order; fitted: by the whole nonlinear fit to readings without noise\n";
   if (a.rho0)
     text += fmt::format("Error at the test poses: {} by noise, {} by the nominal values, {} by the tolerances\n",
                         shown_value(*a.rho0, "m"), shown_value(a.rho0_shift, "m"), shown_value(a.rho0_spread, "m"));

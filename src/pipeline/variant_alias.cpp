@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects.hpp"
+#include "fitted_bias.hpp"
 #include "test_points.hpp"
 
 namespace posewright {
@@ -54,9 +55,12 @@ VariantAlias variant_alias(const Problem& problem, const PreparedVariant& fitted
   const Eigen::Index shifts = effects.by_nominal ? 1 : 0, spreads = effects.count() - shifts;
   const Eigen::VectorXd shift = fit.errors.leftCols(shifts).rowwise().sum();
   const Eigen::VectorXd spread = fit.errors.rightCols(spreads).rowwise().norm();
+  std::optional<Eigen::VectorXd> whole;
+  if (effects.by_nominal) whole = fitted_bias(fitted, truth, poses, settings.prior);
   for (std::size_t j = 0; j < columns.parameters.size(); ++j) {
     const auto k = Eigen::Index(j);
     alias.parameters.push_back({columns.parameters[j], evaluation.sigma[k], shift[k], spread[k]});
+    if (whole) alias.parameters.back().fitted = (*whole)[k];
   }
   add_test_poses(alias, problem, fitted, effects, fit, evaluation, settings);
   if (effects.count() > 0)

@@ -71,9 +71,9 @@ struct Named {
 };
 void PrintTo(const Named& named, std::ostream* out) { *out << named.file << ' ' << named.variant; }
 
-class EveryRobot : public testing::TestWithParam<Named> {};
+class EveryVirtualRobot : public testing::TestWithParam<Named> {};
 
-TEST_P(EveryRobot, HasThePredictedSigmaAndIntervalsThatCoverAndTestsThatKeepTheirLevel) {
+TEST_P(EveryVirtualRobot, HasThePredictedSigmaAndIntervalsThatCoverAndTestsThatKeepTheirLevel) {
   constexpr int draws = 300;
   Case c(GetParam().file, GetParam().variant, GetParam().poses, draws);
   c.experiment.options.exact = true;
@@ -95,7 +95,7 @@ TEST_P(EveryRobot, HasThePredictedSigmaAndIntervalsThatCoverAndTestsThatKeepThei
   EXPECT_NEAR(*summary.rejected, 0.05, 4 * summary.coverage_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, EveryRobot,
+INSTANTIATE_TEST_SUITE_P(Examples, EveryVirtualRobot,
                          testing::Values(Named{"kr270/problem.yaml", "", 18}, Named{"kr270/elastostatic.yaml", "", 20},
                                          Named{"telescope/problem.yaml", "linear", 20},
                                          Named{"gough/problem.yaml", "", 20}),

@@ -57,6 +57,7 @@ struct AliasedParameter {
   double sigma = 0.0;   ///< predicted 1σ
   double shift = 0.0;   ///< estimate − truth, by the difference of nominal values
   double spread = 0.0;  ///< root of the sum of squares over one tolerance of each parameter that is not fitted
+  std::optional<double> fitted = {};  ///< `shift` by the whole nonlinear fit; none: it did not arrive, or no shift
 };
 
 /// An effect that the truth has and the fitted variant does not.
@@ -66,7 +67,7 @@ struct AliasSource {
   double spread = 0.0;  ///< its tolerance where the truth estimates it, the fitted does not, and the nominals are equal
 };
 
-/// To first order: `fitted` is calibrated with a plan while `truth` is the case. SI.
+/// `fitted` is calibrated with a plan while `truth` is the case. SI.
 struct VariantAlias {
   std::string fitted, truth, plan;
   std::string why_not;

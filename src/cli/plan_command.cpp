@@ -20,7 +20,9 @@ po::options_description options() {
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())       //
       ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                   //
       ("candidates", text("n"), "feasible configurations to choose from (10000)")                     //
-      ("restarts", text("k"), "starts of the search (10)")                                            //
+      ("validation", text("k"),
+       "k more poses to judge the calibration by: plan-validation.json, poses-validation.csv")  //
+      ("restarts", text("k"), "starts of the search (10)")                                      //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
@@ -59,9 +61,16 @@ int run(const po::variables_map& values, const Words& positional) {
   if (problem.design.measured) inputs.push_back(*problem.design.measured);
   if (problem.design.test_poses && !problem.design.test_poses->file.empty())
     inputs.push_back(problem.design.test_poses->file);
-  const Outputs outputs(values, inputs, true);
-  return outputs.search_and_write(common, time_limit(values),
-                                  [&](const Monitor& monitor) { return plan_problem(problem, plan_options, monitor); });
+  const std::optional<int> validation = whole_number(values, "validation", 1, 1000000);
+  const Outputs outputs(values, inputs, true, validation.has_value());
+  std::function<Plan(const Plan&, const Monitor&)> validate;
+  if (validation)
+    validate = [&](const Plan& plan, const Monitor& monitor) {
+      return plan_validation(problem, plan_options, plan, *validation, monitor);
+    };
+  return outputs.search_and_write(
+      common, time_limit(values), [&](const Monitor& monitor) { return plan_problem(problem, plan_options, monitor); },
+      validate);
 }
 
 }  // namespace

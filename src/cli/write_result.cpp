@@ -47,23 +47,56 @@ std::string written_text(const std::vector<std::filesystem::path>& outputs) {
   return names.empty() ? names : "Written: " + names + "\n";
 }
 
-Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses) {
+namespace {
+
+/// plan.json: plan-validation.json.
+std::filesystem::path for_validation(std::filesystem::path file) {
+  if (file.empty()) return file;
+  return file.replace_filename(file.stem().string() + "-validation" + file.extension().string());
+}
+
+std::string validation_text(const Plan& plan) {
+  std::string ids;
+  for (const PlannedPose& pose : plan.poses)
+    if (!pose.measured) ids += (ids.empty() ? "" : ", ") + std::to_string(pose.id);
+  return fmt::format(
+      "\nTo judge the calibration by, not to be fitted: poses {}, by criterion {} on top of the plan's\n", ids,
+      plan.criterion);
+}
+
+}  // namespace
+
+Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses,
+                 bool validation) {
   plan_ = output_file(values, "output", "plan.json");
   if (poses) poses_ = output_file(values, "poses-csv", "poses.csv");
-  check_output_files(values, {plan_, poses_}, inputs);
+  if (validation) {
+    validation_plan_ = for_validation(plan_);
+    validation_poses_ = for_validation(poses_);
+  }
+  check_output_files(values, {plan_, poses_, validation_plan_, validation_poses_}, inputs);
+}
+
+void Outputs::write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) const {
+  if (!json.empty()) write_file_atomically(json, plan_json(plan));
+  if (!csv.empty()) write_file_atomically(csv, poses_csv(plan));
 }
 
 int Outputs::search_and_write(const CommonOptions& common, double seconds,
-                              const std::function<Plan(const Monitor&)>& search) const {
+                              const std::function<Plan(const Monitor&)>& search,
+                              const std::function<Plan(const Plan&, const Monitor&)>& validation) const {
   const auto [plan, was_interrupted] = watched(common, seconds, search);
-  const std::string json = plan_json(plan);
-  if (!plan_.empty()) write_file_atomically(plan_, json);
-  if (!poses_.empty()) write_file_atomically(poses_, poses_csv(plan));
-  if (common.json) {
-    fmt::print("{}", json);
-  } else {
-    print_report(plan_summary(plan) + written_text({plan_, poses_}));
+  write(plan, plan_, poses_);
+  std::string text = plan_summary(plan);
+  if (validation && !was_interrupted) {
+    const Plan second = watched(common, seconds, [&, &first = plan](const Monitor& monitor) {
+                          return validation(first, monitor);
+                        }).result;
+    write(second, validation_plan_, validation_poses_);
+    text += validation_text(second);
   }
+  if (common.json) fmt::print("{}", plan_json(plan));
+  else print_report(text + written_text({plan_, poses_, validation_plan_, validation_poses_}));
   return was_interrupted ? interrupted : done;
 }
 

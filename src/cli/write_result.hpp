@@ -28,13 +28,18 @@ std::string written_text(const std::vector<std::filesystem::path>& outputs);
 class Outputs {
  public:
   /// Checks the files before any search. Throws CannotDo or InputError.
-  Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses);
+  /// @param validation  a second plan comes with it, in files named like those of the plan with -validation
+  Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses,
+          bool validation = false);
   /// Runs the search under a Watch, writes everything, returns the exit code.
-  int search_and_write(const CommonOptions& common, double seconds,
-                       const std::function<Plan(const Monitor&)>& search) const;
+  int search_and_write(const CommonOptions& common, double seconds, const std::function<Plan(const Monitor&)>& search,
+                       const std::function<Plan(const Plan&, const Monitor&)>& validation = {}) const;
 
  private:
-  std::filesystem::path plan_, poses_;  ///< empty = not asked for
+  void write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) const;
+
+  std::filesystem::path plan_, poses_;                        ///< empty = not asked for
+  std::filesystem::path validation_plan_, validation_poses_;  ///< the same of the second plan
 };
 
 }  // namespace posewright::cli

@@ -189,4 +189,13 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
   return plan;
 }
 
+Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& plan, int poses, const Monitor& monitor) {
+  const bool told_apart = !options.truth.empty() || problem.design.truth.has_value();
+  options.criterion = told_apart ? "discriminate" : "o1";
+  options.poses = poses;
+  options.smallest = options.reserve = false;
+  options.measured = poses_of(plan);
+  return plan_problem(problem, options, monitor);
+}
+
 }  // namespace posewright

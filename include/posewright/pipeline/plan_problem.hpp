@@ -31,4 +31,11 @@ struct PlanOptions {
 /// stages do; CannotDo naming the shortfall where there are fewer poses than the parameters need.
 Plan plan_problem(const Problem& problem, const PlanOptions& options, const Monitor& monitor);
 
+/// Poses to judge the plan's calibration by, which are not fitted: those where its calibrated model is least certain
+/// and so can be most wrong (what they add to log det of the information); where a truth is named, those that tell it
+/// from the fitted variant best (criterion discriminate). The plan's own poses are in the result as measured.
+/// @param options  those the plan was made with
+/// @param poses    how many, > 0
+Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& plan, int poses, const Monitor& monitor);
+
 }  // namespace posewright

@@ -181,7 +181,7 @@ def write_svg(path, rows, floors):
               '<path d="M308 314l8 8m0 -8l-8 8" stroke="#444" stroke-width="1.5"/>'
               '<text x="322" y="322" fill="#222">first N</text>'
               '<line x1="384" x2="404" y1="318" y2="318" stroke="#444" stroke-dasharray="4 3"/>'
-              '<text x="410" y="322" fill="#222">all fitted; RMS of held-back poses, mm, over N</text>')
+              '<text x="410" y="322" fill="#222">all fitted; RMS beyond the fit, mm, over N</text>')
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {max(width, 700)} 340" '
                     f'font-family="sans-serif" font-size="13"><rect width="{max(width, 700)}" height="340" '
                     'fill="#ffffff"/>\n' + "\n".join(panels) + "\n" + legend + "</svg>\n", encoding="utf-8")

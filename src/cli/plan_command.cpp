@@ -13,13 +13,14 @@ namespace {
 
 po::options_description options() {
   po::options_description options("Options");
-  options.add_options()                                                                               //
-      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")   //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                       //
-      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())       //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                   //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                     //
+  options.add_options()                                                                                               //
+      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")                   //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                                       //
+      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")                  //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())                       //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                                   //
+      ("candidates", text("n"), "feasible configurations to choose from (10000)")                                     //
+      ("candidates-from", text("FILE"), "choose among these configurations instead (CSV, plan.json, measured data)")  //
       ("validation", text("k"),
        "k more poses to judge the calibration by: plan-validation.json, poses-validation.csv")  //
       ("restarts", text("k"), "starts of the search (10)")                                      //
@@ -50,6 +51,10 @@ int run(const po::variables_map& values, const Words& positional) {
     plan_options.prior = prior == "tolerance";
   if (const std::string scaling = choice_of(values, "scaling", {"tolerance", "norm", "none"}); !scaling.empty())
     plan_options.scaling = scaling_of(scaling);
+  const std::filesystem::path list = text_of(values, "candidates-from");
+  if (!list.empty() && plan_options.candidates)
+    throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
+  if (!list.empty()) plan_options.candidates_from = poses_in_file(list);
   const std::filesystem::path augment = text_of(values, "augment");
   if (!augment.empty()) plan_options.measured = poses_in_file(augment);
   plan_options.reserve = values.count("reserve") > 0;
@@ -58,6 +63,8 @@ int run(const po::variables_map& values, const Words& positional) {
   const Problem problem = given_problem(file, values);
   std::vector<std::filesystem::path> inputs = files_of(problem);
   if (!augment.empty()) inputs.push_back(augment);
+  if (!list.empty()) inputs.push_back(list);
+  if (problem.design.candidates_from) inputs.push_back(*problem.design.candidates_from);
   if (problem.design.measured) inputs.push_back(*problem.design.measured);
   if (problem.design.test_poses && !problem.design.test_poses->file.empty())
     inputs.push_back(problem.design.test_poses->file);

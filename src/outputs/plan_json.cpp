@@ -133,6 +133,9 @@ Json cell_json(const CellNotes& cell) {
 
 Json pose_json(const PlannedPose& pose) {
   Json json = {{"id", pose.id}, {"candidate", pose.candidate ? Json(*pose.candidate) : Json(nullptr)}};
+  if (pose.listed)
+    json["listed"] = {{"id", pose.listed->id},
+                      {"line", pose.listed->line > 0 ? Json(pose.listed->line) : Json(nullptr)}};
   if (pose.measured) json["measured"] = true;
   if (!pose.configuration.empty()) {
     Json values = Json::array(), names = Json::array(), units = Json::array();
@@ -164,6 +167,8 @@ Json statistics_json(const PlanStatistics& s) {
   Json json = {{"candidates_drawn", s.drawn}, {"candidates_feasible", s.feasible},
                {"rejected", rejected},        {"exchanges", s.exchanges},
                {"restarts", s.restarts},      {"seconds", s.seconds}};
+  if (!s.list.empty()) json["candidates_from"] = s.list;
+  if (!s.notes.empty()) json["notes"] = s.notes;
   if (!s.stages.empty()) {
     json["stages"] = Json::array();
     for (const PlanStage& stage : s.stages)

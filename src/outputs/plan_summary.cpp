@@ -155,7 +155,7 @@ std::string rejection_table(const PlanStatistics& s) {
   std::vector<std::pair<std::string, long>> rows = s.rejected;
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   using A = Table::Align;
-  Table table({"rejected because", "draws", "share"}, {A::left, A::right, A::right});
+  Table table({"rejected because", s.list.empty() ? "draws" : "candidates", "share"}, {A::left, A::right, A::right});
   for (const auto& [reason, count] : rows)
     table.row({reason, std::to_string(count), fmt::format("{:.1f} %", 100.0 * double(count) / double(s.drawn))});
   return table.text();
@@ -181,8 +181,10 @@ std::string cell_text(const CellNotes& cell) {
 std::string candidates_text(const Plan& plan) {
   const PlanStatistics& s = plan.statistics;
   if (s.drawn == 0) return {};
-  std::string text =
-      fmt::format("Candidates: {} drawn, {} feasible\n", s.drawn, s.feasible) + rejection_table(s) + cell_text(s.cell);
+  std::string text = fmt::format("Candidates: {} {}, {} feasible\n", s.drawn,
+                                 s.list.empty() ? "drawn" : "different ones in " + s.list, s.feasible);
+  for (const std::string& note : s.notes) text += note + "\n";
+  text += rejection_table(s) + cell_text(s.cell);
   if (s.poses_on_boundary)
     text += fmt::format(
         "{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",

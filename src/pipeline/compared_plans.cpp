@@ -41,6 +41,7 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
 SearchRequest request_for(const Preparation& prepared, const PreparedVariant& variant, const Settings& settings,
                           int poses) {
   SearchRequest request = spaced_request(prepared, settings, poses);
+  if (!prepared.list.empty()) return request;
   request.make_space = [&prepared, &variant](const Eigen::MatrixXd& R) {
     return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns().selected, {}}},
                                     prepared.configurations, prepared.measured, prepared.spacing, R);

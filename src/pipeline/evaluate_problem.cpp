@@ -61,9 +61,7 @@ class ListEvaluation {
       shape.design.members.push_back(int(prepared_.configurations.count() + i));
     shape.without = without_each(value.phi, references);
     fill_poses(plan, prepared_, poses_, shape, judgement);
-    plan.statistics.drawn = prepared_.configurations.drawn;
-    plan.statistics.feasible = long(prepared_.configurations.count());
-    plan.statistics.rejected = prepared_.configurations.rejected;
+    fill_candidates(plan.statistics, prepared_);
     if (options_.drop) result.drop = drop(*options_.drop, value.phi, references);
     if (options_.add) result.add = add(*options_.add, value.phi, references);
     plan.interrupted = monitor_.should_stop();

@@ -105,6 +105,15 @@ void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& p
                     prepared.variants.size() > 1 ? prepared.variants[v].spec->name : "");
 }
 
+void fill_candidates(PlanStatistics& statistics, const Preparation& prepared) {
+  const Configurations& candidates = prepared.configurations;
+  statistics.drawn = candidates.drawn;
+  statistics.feasible = long(candidates.count());
+  statistics.rejected = candidates.rejected;
+  statistics.list = prepared.list;
+  statistics.notes = prepared.notes;
+}
+
 void fill_variants(Plan& plan, const Judgement& judgement, const Preparation& prepared,
                    const std::vector<double>& references) {
   const std::vector<double> efficiency = log_efficiencies(judgement, prepared, references);
@@ -129,7 +138,14 @@ void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& c
     pose.contribution = contribution[Eigen::Index(i)];
     if (!measured) {
       const int member = found.design.members[i - before];
-      if (std::size_t(member) < prepared.configurations.count()) pose.candidate = member;
+      if (std::size_t(member) < prepared.configurations.count()) {
+        pose.candidate = member;
+        if (!prepared.configurations.rows.empty()) {
+          const ListedRow& row = prepared.configurations.rows[std::size_t(member)];
+          pose.candidate = row.index;
+          pose.listed = PlannedPose::Listed{row.id, row.line};
+        }
+      }
       pose.without = found.without[i - before];
     }
     plan.poses.push_back(std::move(pose));

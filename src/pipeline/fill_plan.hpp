@@ -10,6 +10,9 @@ namespace posewright {
 /// What a judgement says of the whole: log det, indices, accuracy, parameters; names of variant and criterion.
 void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& prepared, const Settings& settings);
 
+/// How many candidates there are, where they came from, why others were rejected.
+void fill_candidates(PlanStatistics& statistics, const Preparation& prepared);
+
 /// Efficiency of every variant; nothing where the plan serves one.
 void fill_variants(Plan& plan, const Judgement& judgement, const Preparation& prepared,
                    const std::vector<double>& references);

@@ -19,16 +19,6 @@ constexpr std::array<const char*, 4> quaternion_names = {"pose.qx", "pose.qy", "
 // Printed quaternions have few digits; anything farther from one is something else.
 constexpr double unit_slack = 1e-3;
 
-/// Limits are for planning; what was measured was there.
-std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates) {
-  for (Coordinate& c : coordinates)
-    if (!c.choice()) {
-      c.lower = -std::numeric_limits<double>::max() / 4;
-      c.upper = -c.lower;
-    }
-  return coordinates;
-}
-
 }  // namespace
 
 MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,

@@ -161,9 +161,7 @@ class Planning {
     certify(plan.certificate, value.phi, found.degree);
     fill_variants(plan, judgement, prepared_, found.references);
     fill_poses(plan, prepared_, chosen, found, judgement);
-    plan.statistics.drawn = prepared_.configurations.drawn;
-    plan.statistics.feasible = long(n);
-    plan.statistics.rejected = prepared_.configurations.rejected;
+    fill_candidates(plan.statistics, prepared_);
     plan.statistics.cell = cell_notes(*prepared_.cell);
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;

@@ -4,8 +4,10 @@
 #include <numeric>
 
 #include "discrepancy.hpp"
+#include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/support/error.hpp"
+#include "read_poses.hpp"
 #include "study_space.hpp"
 #include "test_points.hpp"
 
@@ -21,6 +23,14 @@ void require_same_coordinates(const PreparedVariant& a, const PreparedVariant& b
                    "' have different coordinates: no pose can serve both");
 }
 
+Configurations drawn(const Preparation& prepared, const Settings& settings, const Monitor& monitor) {
+  SamplingOptions sampling;
+  sampling.count = std::size_t(settings.candidates);
+  sampling.seed = settings.planner.seed;
+  sampling.threads = settings.planner.threads;
+  return sample_configurations(*prepared.first().workspace, sampling, monitor);
+}
+
 /// Candidates of the first variant that all others can take.
 Configurations common(const std::vector<PreparedVariant>& variants, Configurations all) {
   if (variants.size() == 1) return all;
@@ -32,7 +42,7 @@ Configurations common(const std::vector<PreparedVariant>& variants, Configuratio
   for (std::size_t i = 0; i < all.count(); ++i) {
     const bool good = std::all_of(variants.begin() + 1, variants.end(),
                                   [&](const PreparedVariant& v) { return v.workspace->violation(all[i]) < 0; });
-    if (good) append(kept, all[i]);
+    if (good) append(kept, all, i);
     else ++lost;
   }
   if (lost > 0) kept.rejected.emplace_back("another variant's limits", lost);
@@ -86,6 +96,11 @@ void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
 }
 
+void append(Configurations& list, const Configurations& from, std::size_t i) {
+  append(list, from[i]);
+  if (!from.rows.empty()) list.rows.push_back(from.rows[i]);
+}
+
 Preparation prepare(const Problem& problem, const Settings& settings, const Monitor& monitor,
                     Unidentifiable unidentifiable) {
   Preparation prepared;
@@ -105,12 +120,9 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
   prepared.measured.dimension = int(coordinates.size());
   if (settings.measured)
     for (const auto& q : settings.measured(coordinates).configurations) append(prepared.measured, q);
-  SamplingOptions sampling;
-  sampling.count = std::size_t(settings.candidates);
-  sampling.seed = settings.planner.seed;
-  sampling.threads = settings.planner.threads;
-  prepared.configurations =
-      common(prepared.variants, sample_configurations(*prepared.first().workspace, sampling, monitor));
+  if (settings.candidates_from)
+    take_listed_candidates(prepared, problem, settings.candidates_from(without_limits(coordinates)));
+  else prepared.configurations = common(prepared.variants, drawn(prepared, settings, monitor));
   for (PreparedVariant& variant : prepared.variants) {
     try {
       resolve(prepared, variant, problem, settings);
@@ -138,8 +150,9 @@ void keep_away_from_measured(Preparation& prepared, Repeats repeats) {
     return false;
   };
   prepared.configurations.values.clear();
+  prepared.configurations.rows.clear();
   for (std::size_t i = 0; i < all.count(); ++i)
-    if (!taken(all[i])) append(prepared.configurations, all[i]);
+    if (!taken(all[i])) append(prepared.configurations, all, i);
   if (const long lost = long(all.count() - prepared.configurations.count()); lost > 0)
     prepared.configurations.rejected.emplace_back("measured already", lost);
   if (prepared.configurations.count() == 0)
@@ -170,6 +183,7 @@ SearchRequest spaced_request(const Preparation& prepared, const Settings& settin
 
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Preparation& prepared,
                                                                                          const std::string& criterion) {
+  if (!prepared.list.empty()) return {};
   return [&prepared, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const PreparedVariant& v : prepared.variants)
@@ -224,8 +238,8 @@ std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts) {
   for (const SearchPart& part : parts) {
     std::vector<int> all(part.blocks.count());
     std::iota(all.begin(), all.end(), 0);
-    copies.push_back({part.blocks.subset(all), part.nuisance, part.weight, part.scale, part.test_points, part.prior,
-                      part.effects});
+    copies.push_back(
+        {part.blocks.subset(all), part.nuisance, part.weight, part.scale, part.test_points, part.prior, part.effects});
   }
   return copies;
 }

@@ -22,6 +22,7 @@ struct Settings {
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
   Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
   PoseSource measured;                         ///< empty: none
+  PoseSource candidates_from;                  ///< empty: candidates are drawn
   PlannerOptions planner;
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.
@@ -49,6 +50,8 @@ struct Preparation {
   std::shared_ptr<const Cell> cell;
   std::vector<PreparedVariant> variants;
   Configurations configurations;
+  std::string list;                ///< that the candidates came from; empty: they were drawn
+  std::vector<std::string> notes;  ///< of how it was read
   Configurations measured;
   Spacing spacing;           ///< for configurations that are no candidates
   Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
@@ -86,5 +89,7 @@ void keep_away_from_measured(Preparation& prepared, Repeats repeats);
 
 /// One configuration more.
 void append(Configurations& list, std::span<const double> q);
+/// The i-th of `from` with its row.
+void append(Configurations& list, const Configurations& from, std::size_t i);
 
 }  // namespace posewright

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "posewright/outputs/pose_formats.hpp"
@@ -69,8 +70,11 @@ class Mapping {
         throw InputError({file_, table_.header}, "has no column '" + coordinates_[k].name + "'",
                          "the names of all coordinates are expected");
     }
-    for (std::size_t i = 0; i < table_.names.size(); ++i)
+    for (std::size_t i = 0; i < table_.names.size(); ++i) {
       if (table_.names[i] == "weight") weight_ = int(i);
+      if (table_.names[i] == "id" || table_.names[i] == "pose") id_ = int(i);
+    }
+    list_.columns = table_.names;
   }
 
   void map_by_order() {
@@ -107,6 +111,8 @@ class Mapping {
     list_.configurations.push_back(std::move(q));
     list_.measured.push_back(row.measured);
     list_.ids.push_back(row.id > 0 ? row.id : int(list_.configurations.size()));
+    list_.lines.push_back(row.line);
+    if (id_ >= 0 || row.id > 0) list_.own_ids.push_back(row.id > 0 ? row.id : id_of(row.cells[std::size_t(id_)]));
     if (weight_ >= 0) list_.weights.push_back(weight_of(row.cells[std::size_t(weight_)], place));
   }
 
@@ -121,6 +127,14 @@ class Mapping {
     if (c.choice()) return of_label(fmt::format("{}", value), c, place);
     if (unit != degrees_or_millimetres) return value;
     return c.unit == "m" ? value * 1e-3 : value * (std::numbers::pi / 180);
+  }
+
+  static int id_of(const PoseCell& cell) {
+    const auto* text = std::get_if<std::string>(&cell);
+    int id = 0;
+    if (text == nullptr) return 0;
+    const auto [end, code] = std::from_chars(text->data(), text->data() + text->size(), id);
+    return code == std::errc() && end == text->data() + text->size() && id > 0 ? id : 0;
   }
 
   static double weight_of(const PoseCell& cell, const SourcePlace& place) {
@@ -142,7 +156,7 @@ class Mapping {
   const std::vector<Coordinate>& coordinates_;
   const PoseTable& table_;
   std::vector<int> column_;
-  int weight_ = -1;
+  int weight_ = -1, id_ = -1;
   PoseList list_;
 };
 
@@ -155,10 +169,23 @@ PoseTable recognised(const std::string& text, const std::string& file) {
 
 }  // namespace
 
-void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
+bool inside(double value, const Coordinate& c) {
   // What a controller shows has few digits: a hair beyond a limit is the limit.
   const double slack = 1e-6 * (1 + std::abs(c.upper - c.lower));
-  if (c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack)) return;
+  return c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack);
+}
+
+std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates) {
+  for (Coordinate& c : coordinates)
+    if (!c.choice()) {
+      c.lower = -std::numeric_limits<double>::max() / 4;
+      c.upper = -c.lower;
+    }
+  return coordinates;
+}
+
+void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
+  if (inside(value, c)) return;
   throw InputError(place, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
                    fmt::format("allowed: {:.6g} to {:.6g} {}", c.lower, c.upper, c.unit));
 }

@@ -21,7 +21,12 @@ PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordin
 PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates,
                          const std::string& format = "");
 
-/// Throws InputError for a value outside the limits of c by more than rounding.
+/// The same coordinates with limits that no value meets: what was measured was there, whatever the limits say.
+std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates);
+
+/// Whether a value keeps the limits of c, but for rounding.
+bool inside(double value, const Coordinate& c);
+/// Throws InputError for a value that is not inside().
 void require_inside(double value, const Coordinate& c, const SourcePlace& place);
 
 }  // namespace posewright

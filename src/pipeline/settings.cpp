@@ -53,6 +53,9 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
     throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
                      "set design: test_poses");
   s.candidates = options.candidates.value_or(design.candidates.value);
+  s.candidates_from = options.candidates_from;
+  if (!s.candidates_from && !options.candidates && design.candidates_from)
+    s.candidates_from = poses_in_file(*design.candidates_from);
   s.prior = options.prior.value_or(design.prior);
   s.reserve = options.reserve || design.reserve;
   s.repeats = options.repeats.value_or(design.repeats);

@@ -105,14 +105,19 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
 DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& variants,
                        const std::filesystem::path& folder) {
   const Section section(value);
-  section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates", "restarts",
-                 "repeats", "minimum_distance", "scaling", "prior", "reserve", "measured", "test_poses"});
+  section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates",
+                 "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve",
+                 "measured", "test_poses"});
   DesignSpec design;
   design.line = value.line();
   read_aim(section, variants, folder, design);
   if (const Value* method = section.find("method")) design.method = method->located_text();
   if (const Value* poses = section.find("poses")) read_poses(*poses, design);
   if (const Value* candidates = section.find("candidates")) design.candidates = read_count(*candidates, 10'000'000);
+  if (const Value* list = section.find("candidates_from")) {
+    design.candidates_from = folder / list->text("a file is expected");
+    if (section.has("candidates")) list->fail("stands beside candidates", "drawn candidates or those of a list");
+  }
   if (const Value* restarts = section.find("restarts")) design.restarts = read_count(*restarts, 1'000'000);
   if (const Value* repeats = section.find("repeats")) design.repeats = read_repeats(*repeats);
   if (const Value* distance = section.find("minimum_distance"))

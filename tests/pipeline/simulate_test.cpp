@@ -11,6 +11,7 @@
 #include "posewright/pipeline/simulate_problem.hpp"
 #include "posewright/pipeline/variant_model.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/workspace/candidates.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -30,8 +30,14 @@ struct TargetSight {
 };
 
 struct PlannedPose {
-  int id = 0;                                  ///< 1, 2, … in measuring order
-  std::optional<int> candidate;                ///< zero-based index in the candidate set; none: found between them
+  int id = 0;                    ///< 1, 2, … in measuring order
+  std::optional<int> candidate;  ///< zero-based index in the candidate set; none: found between them
+  /// The pose in the list that the candidates came from; `candidate` is then its index there.
+  struct Listed {
+    int id = 0;    ///< as the list calls it
+    int line = 0;  ///< of its file; 0: not known
+  };
+  std::optional<Listed> listed{};
   bool measured = false;                       ///< was there before: not to be measured again
   std::vector<NamedValue> configuration;       ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;           ///< of a parallel robot
@@ -103,6 +109,8 @@ struct CellNotes {
 struct PlanStatistics {
   long drawn = 0, feasible = 0;
   std::vector<std::pair<std::string, long>> rejected;
+  std::string list{};                ///< that the candidates came from; empty: they were drawn
+  std::vector<std::string> notes{};  ///< what the user must know of it
   long exchanges = 0;
   int restarts = 0;
   double seconds = 0.0;

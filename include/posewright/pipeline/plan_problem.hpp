@@ -22,6 +22,8 @@ struct PlanOptions {
   std::optional<bool> prior;  ///< count tolerances as prior knowledge
   bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
   PoseSource measured;        ///< poses that are measured already; empty = as in the file
+  /// Candidates, in place of drawn ones; empty = as in the file, unless `candidates` says how many to draw.
+  PoseSource candidates_from{};
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

@@ -13,14 +13,17 @@ namespace posewright {
 /// Configurations as a user lists them, with a weight where the list has one.
 struct PoseList {
   std::vector<std::vector<double>>
-      configurations;                ///< in the order of the problem's coordinates, SI; a choice as 0, 1, …
-  std::vector<double> weights;       ///< as many, or none
-  std::vector<bool> measured{};      ///< of a plan: which poses were there before it; else empty
-  std::vector<int> ids{};            ///< of a plan or route; else 1, 2, …
-  std::vector<std::string> notes{};  ///< what the user must know of how the list was read
-  std::string name{};                ///< of the list, for messages: its file
-  std::string problem_sha256{};      ///< of the problem it was made for; empty: not known
-  ParametersFile parameters_file{};  ///< that it was made at
+      configurations;                  ///< in the order of the problem's coordinates, SI; a choice as 0, 1, …
+  std::vector<double> weights;         ///< as many, or none
+  std::vector<bool> measured{};        ///< of a plan: which poses were there before it; else empty
+  std::vector<int> ids{};              ///< of a plan or route; else 1, 2, …
+  std::vector<int> lines{};            ///< of the file, 0: not known; empty for configurations in memory
+  std::vector<int> own_ids{};          ///< of a column `id` or `pose`, 0: it is no number; empty: there is none
+  std::vector<std::string> columns{};  ///< names of all columns of the list
+  std::vector<std::string> notes{};    ///< what the user must know of how the list was read
+  std::string name{};                  ///< of the list, for messages: its file
+  std::string problem_sha256{};        ///< of the problem it was made for; empty: not known
+  ParametersFile parameters_file{};    ///< that it was made at
 };
 
 /// A list that is read once the coordinates of the problem are known, and judged by them: InputError for values that do

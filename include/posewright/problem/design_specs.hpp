@@ -66,6 +66,7 @@ struct DesignSpec {
   bool smallest = false;  ///< poses: auto
   RequirementSpec require;
   Located<int> candidates{10000, 0};
+  std::optional<std::filesystem::path> candidates_from;  ///< a user's list in place of drawn ones
   Located<int> restarts{10, 0};
   Repeats repeats;
   /// Two poses differ in at least one coordinate by this much: rad and m; 0: no distance is asked of that kind.

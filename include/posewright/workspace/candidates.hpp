@@ -16,12 +16,20 @@ namespace posewright {
 /// Feasible configurations that OMPL's samplers drew on the way to what they return; told among the rejected.
 inline constexpr const char* passed_over_reason = "passed over by the sampler";
 
+/// Where a candidate stands in a user's list.
+struct ListedRow {
+  int index = 0;  ///< zero-based, repeated configurations counted once
+  int id = 0;     ///< as the list calls it, or index + 1
+  int line = 0;   ///< of its file, where it stands first; 0: not known
+};
+
 /// Feasible configurations and why others were not: drawn = feasible + Σ rejected.
 struct Configurations {
   std::vector<double> values;  ///< count × dimension, one configuration after the other
   int dimension = 0;
   long drawn = 0;
   std::vector<std::pair<std::string, long>> rejected;  ///< per reason, in the workspace's order
+  std::vector<ListedRow> rows{};                       ///< one for each of a user's list; empty: they were drawn
 
   std::size_t count() const { return dimension == 0 ? 0 : values.size() / std::size_t(dimension); }
   std::span<const double> operator[](std::size_t i) const {

@@ -11,8 +11,8 @@
 #include "posewright/pipeline/simulate_problem.hpp"
 #include "posewright/pipeline/variant_model.hpp"
 #include "posewright/problem/read_problem.hpp"
-#include "posewright/workspace/candidates.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
 namespace {
@@ -73,7 +73,8 @@ TEST(Simulate, OtherNominalValuesBiasTheEstimatesAsComparingSays) {
   compare.plan.candidates = 200;
   compare.plans.push_back({"list", poses_given(list)});
   const Comparison c = compare_problem(problem, compare, Monitor{});
-  const auto alias = std::find_if(c.aliases.begin(), c.aliases.end(), [](const auto& a) { return a.fitted == "linear"; });
+  const auto alias =
+      std::find_if(c.aliases.begin(), c.aliases.end(), [](const auto& a) { return a.fitted == "linear"; });
   ASSERT_NE(alias, c.aliases.end());
   ASSERT_EQ(alias->parameters.size(), s.parameters.size());
   for (std::size_t j = 0; j < s.parameters.size(); ++j) {

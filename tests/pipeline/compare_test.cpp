@@ -107,6 +107,37 @@ TEST(Compare, PublishedMatrixLeavesMillimetresInTheRigidFit) {
   for (const AliasedParameter& p : alias.parameters) EXPECT_EQ(p.spread, 0);
 }
 
+/// ‖first order − fitted‖ / ‖fitted‖ of the biases in units of σ; the worst relative one of those above a tenth of the
+/// largest.
+std::pair<double, double> first_order_off(const VariantAlias& alias) {
+  double off = 0, size = 0, largest = 0, worst = 0;
+  for (const AliasedParameter& p : alias.parameters) {
+    off += std::pow((p.shift - p.fitted.value()) / p.sigma, 2);
+    size += std::pow(*p.fitted / p.sigma, 2);
+    largest = std::max(largest, std::abs(*p.fitted) / p.sigma);
+  }
+  for (const AliasedParameter& p : alias.parameters)
+    if (std::abs(*p.fitted) / p.sigma > 0.1 * largest) worst = std::max(worst, std::abs(p.shift / *p.fitted - 1));
+  return {std::sqrt(off / size), worst};
+}
+
+TEST(Compare, FirstOrderBiasIsThatOfTheWholeFitWhereTheEffectIsSmall) {
+  Problem problem = example("telescope/problem.yaml");
+  const CompareOptions options = quick({"rigid", "linear", "matrix"}, 40);
+  const Comparison published = compare_problem(problem, options, Monitor{});
+  for (const char* fitted : {"rigid", "linear"})
+    EXPECT_LT(first_order_off(alias_of(published, fitted, "matrix")).first, 0.05) << fitted;
+  for (VariantSpec& variant : problem.variants)
+    if (variant.name == "matrix")
+      for (PatternValue& value : variant.nominal) value.value *= 0.05;
+  const Comparison small = compare_problem(problem, options, Monitor{});
+  for (const char* fitted : {"rigid", "linear"}) {
+    const auto [all, worst] = first_order_off(alias_of(small, fitted, "matrix"));
+    EXPECT_LT(all, 0.005) << fitted;
+    EXPECT_LT(worst, 0.05) << fitted;
+  }
+}
+
 TEST(Compare, BiasIsTheLeastSquaresAnswerToTheDifferenceOfTheReadings) {
   const Problem problem = example("telescope/problem.yaml");
   const auto list = list_of(problem, 25);

@@ -165,7 +165,7 @@ TEST(CommandLine, InterruptWritesTheBestPlanSoFar) {
       run_program(folder.path(), {"plan", telescope, "--candidates", "2000", "--restarts", "1000000"}, 2.0);
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_THAT(run.out, HasSubstr("search interrupted: best plan so far"));
-  const WrittenPlan plan = read_back(read_file(folder / "plan.json"));
+  const PlanFile plan = read_back(read_file(folder / "plan.json"));
   EXPECT_EQ(plan.poses.size(), 40U);
   EXPECT_GT(plan.efficiency, 0.9);
 }

@@ -51,9 +51,9 @@ std::vector<std::vector<double>> configurations_of(const Problem& problem, const
   return poses;
 }
 
-WrittenPlan read_back(const std::string& text) {
+PlanFile read_back(const std::string& text) {
   const auto json = nlohmann::json::parse(text);
-  WrittenPlan plan;
+  PlanFile plan;
   plan.variant = json.value("variant", "");
   plan.log_det = json.at("criterion").at("log_det");
   plan.log_det_bound = json.at("certificate").at("candidates").at("log_det_bound");

@@ -18,13 +18,13 @@ double recomputed_log_det(const Problem& problem, const std::string& variant,
 std::vector<std::vector<double>> configurations_of(const Problem& problem, const Plan& plan);
 
 /// What a reader of plan.json finds.
-struct WrittenPlan {
+struct PlanFile {
   std::string variant;
   double log_det = 0, log_det_bound = 0, efficiency = 0;
   std::vector<std::vector<double>> poses;
   std::vector<int> candidates;
 };
-WrittenPlan read_back(const std::string& json);
+PlanFile read_back(const std::string& json);
 
 /// The first `columns` numbers of every pose in poses.csv.
 std::vector<std::vector<double>> read_back_csv(const std::string& csv, std::size_t columns);

@@ -190,7 +190,7 @@ TEST(KnownAnswers, StatedLogDetIsRecomputedFromTheWrittenPosesAlone) {
     options.candidates = 1500;
     options.restarts = 2;
     const Plan plan = plan_problem(problem, options, Monitor{});
-    const WrittenPlan written = read_back(plan_json(plan));
+    const PlanFile written = read_back(plan_json(plan));
     EXPECT_NEAR(recomputed_log_det(problem, written.variant, written.poses), written.log_det, 1e-9) << name;
     EXPECT_LE(written.log_det, written.log_det_bound) << name;
     EXPECT_EQ(read_back_csv(poses_csv(plan), written.poses.front().size()), written.poses) << name;

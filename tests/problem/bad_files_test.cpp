@@ -154,8 +154,7 @@ const BadFile rest[] = {
     {"ParametersNested", arm, "[px1,", "[[px1],", 20, "variants.geometric.parameters[1] is a list"},
     {"NuisanceIsText", arm, "[\"base.*\"]", "base", 21, "variants.geometric.nuisance is 'base'; a list of names"},
     {"ToleranceZero", arm, "0.001}", "0}", 23, "variants.geometric.tolerance.*.gear is '0'; a value > 0"},
-    {"ToleranceInSeconds", arm, "0.5 mm", "0.5 s", 23,
-     "wrong unit 's'; allowed: m, mm, um, nm, rad, mrad, urad, deg"},
+    {"ToleranceInSeconds", arm, "0.5 mm", "0.5 s", 23, "wrong unit 's'; allowed: m, mm, um, nm, rad, mrad, urad, deg"},
     {"TolerancePatternTwice", arm, "\"*.gear\"", "\"*.x\"", 23, "duplicate key '*.x'"},
     {"JointsOfPlatform", platform, "  pose: {", "  joints: {", 21, "unknown key 'joints'; allowed: pose"},
     {"PoseOfArm", arm, "  joints:", "  pose:", 27, "unknown key 'pose'; allowed: joints"},
@@ -191,10 +190,11 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
     parse_problem(replaced(arm, "candidates: 20000", "candidate: 20000"), "bad.yaml");
     FAIL() << "was accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "bad.yaml:36: unknown key 'candidate'; allowed: variant, variants, criterion, method, poses, "
-                 "require, candidates, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
-                 "test_poses");
+    EXPECT_STREQ(
+        error.what(),
+        "bad.yaml:36: unknown key 'candidate'; allowed: variant, variants, truth, criterion, method, poses, "
+        "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
+        "test_poses");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "posewright/calibration/curvature.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,13 +21,15 @@ Curvature curvature(const IdentificationModel& model, const VariantColumns& colu
   const Eigen::MatrixXd covariance = stacked.tolerances().cwiseInverse().asDiagonal() * result.covariance *
                                      stacked.tolerances().cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+  // One σ along an axis changes the whitened readings by this much; less where a prior tells more than they do.
+  const double unit = result.scale_known ? 1.0 : result.scale;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     const double length = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
     const Eigen::VectorXd v = length * axes.eigenvectors().col(k);
     double missed = std::numeric_limits<double>::infinity();
     if (stacked.residual(x + v, ahead) && stacked.residual(x - v, behind))
-      missed = (ahead + behind - 2 * at).norm() / 2;
+      missed = (ahead + behind - 2 * at).norm() / 2 / std::max((J * v).norm(), 0.5 * unit);
     if (!(missed > worst.largest)) continue;
     worst.largest = missed;
     Eigen::Index column = 0;

@@ -103,7 +103,10 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, const 
   }
   result.scale_known = options.weighting == Weighting::weighted;
   const auto tolerances = stacked.tolerances().asDiagonal();
-  result.covariance = factor * (tolerances * inverse_information(J) * tolerances);
+  // The prior's rows stay as they are: tolerances do not grow with the noise.
+  if (factor > 0) J.topRows(stacked.readings()) /= std::sqrt(factor);
+  result.covariance = tolerances * inverse_information(J) * tolerances;
+  if (!(factor > 0)) result.covariance.setZero();
   stacked.spread(x, result.residuals, result.whitened);
 }
 
@@ -116,7 +119,7 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
     throw CannotDo(std::to_string(stacked.readings()) + " readings cannot tell " + std::to_string(stacked.columns()) +
                    " parameters");
   if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
-    throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weighted");
+    throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weights wls");
   Fit result;
   Eigen::VectorXd x = stacked.start();
   for (int round = 0; round < weight_rounds; ++round) {

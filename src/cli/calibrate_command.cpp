@@ -43,8 +43,8 @@ struct Results {
   std::string dh;
 
   Results(const po::variables_map& values, const Problem& problem, const CalibrateOptions& calibrate)
-      : parameters(text_of(values, "output")),
-        urdf(text_of(values, "urdf")),
+      : parameters(values.count("output") > 0 ? output_file(values, "output", "") : ""),
+        urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : ""),
         dh(choice_of(values, "dh", {"distal", "proximal"})) {
     if ((!urdf.empty() || !dh.empty()) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
@@ -105,11 +105,13 @@ int run(const po::variables_map& values, const Words& positional) {
   Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
   const std::optional<DhTable> table = table_of(wanted, problem, result);
-  write(wanted, problem, result, result.notes);
+  if (result.fit.converged) write(wanted, problem, result, result.notes);
+  else if (!wanted.parameters.empty() || !wanted.urdf.empty())
+    result.notes.emplace_back("nothing is written: these are no parameters to go on with");
   print_notes(result.notes);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
-                 written_text({wanted.parameters, wanted.urdf}));
+                 (result.fit.converged ? written_text({wanted.parameters, wanted.urdf}) : ""));
     return result.fit.converged ? done : cannot_do;
   }
   Json json = {{"schema", "posewright/calibration/1"},

@@ -123,9 +123,15 @@ std::string noise_text(const Calibration& c) {
           ".\n  The model or the stated noise is refused; σ and intervals above are stretched by {:.3g} to what the "
           "residuals show.\n",
           c.sigma_factor);
+    else if (c.tests.chi_square.probability < remarkable && c.fit.scale > 1)
+      text +=
+          ".\n  The model or the stated noise is refused; with tolerances as prior knowledge σ still count what was "
+          "stated.\n";
     else if (c.tests.chi_square.probability < remarkable)
       text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
     else text += ": as they should be.\n";
+  } else if (c.fit.scale_known) {
+    text += "No degrees of freedom are left: σ rest on the stated noise, and nothing tests it.\n";
   } else {
     text += fmt::format("The residuals tell the noise: {:.3g} times the stated one ({} degrees of freedom).\n",
                         c.fit.scale, c.fit.freedom);

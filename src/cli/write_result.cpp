@@ -87,17 +87,18 @@ int Outputs::search_and_write(const CommonOptions& common, double seconds,
                               const std::function<Plan(const Plan&, const Monitor&)>& validation) const {
   const auto [plan, was_interrupted] = watched(common, seconds, search);
   write(plan, plan_, poses_);
-  std::string text = plan_summary(plan);
-  if (validation && !was_interrupted) {
-    const Plan second = watched(common, seconds, [&, &first = plan](const Monitor& monitor) {
-                          return validation(first, monitor);
-                        }).result;
-    write(second, validation_plan_, validation_poses_);
-    text += validation_text(second);
-  }
   if (common.json) fmt::print("{}", plan_json(plan));
-  else print_report(text + written_text({plan_, poses_, validation_plan_, validation_poses_}));
-  return was_interrupted ? interrupted : done;
+  else print_report(plan_summary(plan) + written_text({plan_, poses_}));
+  if (!validation || was_interrupted) return was_interrupted ? interrupted : done;
+  try {
+    const auto [second, stopped] =
+        watched(common, seconds, [&, &first = plan](const Monitor& monitor) { return validation(first, monitor); });
+    write(second, validation_plan_, validation_poses_);
+    if (!common.json) print_report(validation_text(second) + written_text({validation_plan_, validation_poses_}));
+    return stopped ? interrupted : done;
+  } catch (const CannotDo& error) {
+    throw CannotDo(std::string("--validation: ") + error.what());
+  }
 }
 
 }  // namespace posewright::cli

@@ -21,6 +21,8 @@ constexpr double exact = 1e-9;
 constexpr double interval_probability = 0.95;
 // A model that chance refuses this seldom is refused: its σ are stretched to the residuals.
 constexpr double refusal = 0.01;
+// Residuals so many times the noise are no robot's.
+constexpr double absurd = 1000.0;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
 constexpr double prior_share = 1 / std::numbers::sqrt2;
 
@@ -54,6 +56,7 @@ class CalibrationRun {
     result_.tests = test_residuals(result_.fit);
     judge_noise();
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
+    result_.curvature.largest *= result_.sigma_factor;
     fill_parameters();
     fill_residuals();
     report(2);
@@ -69,7 +72,7 @@ class CalibrationRun {
     result_.spread = data.spread;
     result_.readings = model_->readings();
     spread_freedom_ = data.spread_freedom;
-    use_repeats(data.repeats);
+    if (data.rows > int(data.poses.size())) use_repeats(data.repeats);
     for (std::size_t k = 0; k < data.poses.size(); ++k) {
       const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
       (back ? held_back_ : fitted_).push_back(std::move(data.poses[k]));
@@ -87,7 +90,11 @@ class CalibrationRun {
   /// Rows that were averaged are the repeats, whatever the problem planned.
   void use_repeats(double repeats) {
     const int rounded = std::max(1, int(std::lround(repeats)));
-    if (rounded == 1 || rounded == problem_.measurement.repeats) return;
+    if (std::abs(repeats - rounded) > 1e-9)
+      result_.notes.push_back(
+          fmt::format("poses have different numbers of readings; each counts as the mean of {} (harmonic mean {:.3g})",
+                      rounded, repeats));
+    if (rounded == problem_.measurement.repeats) return;
     result_.notes.push_back(fmt::format("{} readings a pose are averaged, not {} as the problem says", rounded,
                                         problem_.measurement.repeats));
     problem_.measurement.repeats = rounded;
@@ -123,9 +130,17 @@ class CalibrationRun {
   /// Whether residuals are larger than the noise allows; then σ follow the residuals.
   void judge_noise() {
     const Fit& fit = result_.fit;
-    if (fit.freedom > 0 && spread_freedom_ > 0) lack_of_fit();
+    // Prior terms and weights have no place in the comparison with the spread of readings.
+    if (fit.freedom > 0 && spread_freedom_ > 0 && !result_.prior && fit.weights.empty()) lack_of_fit();
+    if (fit.scale > absurd)
+      result_.notes.push_back(fmt::format(
+          "residuals are {:.3g} times the stated noise: no robot's errors explain that. Are units, signs of the "
+          "joints and the order of the targets right?",
+          fit.scale));
     if (!fit.scale_known || fit.freedom < 1) return;
-    if (fit.scale > 1 && chi_square_exceeded(fit.chi_square, fit.freedom) < refusal) result_.sigma_factor = fit.scale;
+    // Tolerances do not grow with the noise, so with a prior nothing is stretched.
+    if (!result_.prior && fit.scale > 1 && chi_square_exceeded(fit.chi_square, fit.freedom) < refusal)
+      result_.sigma_factor = fit.scale;
   }
 
   /// Residuals of the means against the spread of the rows, both in σ of the rows: F of (freedom, rows − poses).
@@ -142,8 +157,7 @@ class CalibrationRun {
     const int freedom = result_.fit.freedom;
     if (count < result_.fit.readings || freedom < 1) return;
     result_.lack_of_fit.statistic = between / freedom;
-    const boost::math::fisher_f_distribution<double> f(freedom,
-                                                       double(spread_freedom_) * double(result_.readings.size()));
+    const boost::math::fisher_f_distribution<double> f(freedom, double(spread_freedom_));
     result_.lack_of_fit.probability = boost::math::cdf(boost::math::complement(f, result_.lack_of_fit.statistic));
     result_.lack_of_fit.possible = true;
   }

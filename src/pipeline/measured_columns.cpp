@@ -43,11 +43,14 @@ void MeasuredColumns::index_columns() {
 void MeasuredColumns::find_readings() {
   int found = 0;
   std::string names;
+  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
+  const auto given = [&](const Reading& reading) {
+    return has(reading.name) || (quaternions_ && reading.name.starts_with("pose.r"));
+  };
   for (const Reading& reading : model_.readings()) {
-    found += has(reading.name) ? 1 : 0;
+    found += given(reading) ? 1 : 0;
     if (names.size() < 200) names += (names.empty() ? "" : ", ") + reading.name;
   }
-  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
   if (quaternions_ && has("pose.rx"))
     throw InputError(header(), "has an orientation twice, pose.rx and pose.qx", "one of them");
   const bool by_points =
@@ -56,10 +59,10 @@ void MeasuredColumns::find_readings() {
       });
   if (!by_points) markers_.clear();
   if (found == 0 && !by_points) throw InputError(header(), "has no column of a reading", "names of readings: " + names);
-  if (found < int(model_.readings().size()) && !by_points && !quaternions_) {
+  if (found < int(model_.readings().size()) && !by_points) {
     std::string missing;
     for (const Reading& reading : model_.readings())
-      if (!has(reading.name)) missing += (missing.empty() ? "" : ", ") + reading.name;
+      if (!given(reading)) missing += (missing.empty() ? "" : ", ") + reading.name;
     notes_.push_back("no column for " + missing + ": counted as not read");
   }
   if (by_points) notes_.push_back("poses are rigid fits to the photogrammetric points");
@@ -86,7 +89,11 @@ void MeasuredColumns::from_actuators() {
   std::vector<double> actuators, q(start.size());
   for (int i = 0; i < rows(); ++i) {
     actuators.clear();
-    for (const Coordinate& a : model_.actuators()) actuators.push_back(value(i, a.name, a.unit));
+    for (const Coordinate& a : model_.actuators()) {
+      actuators.push_back(value(i, a.name, a.unit));
+      if (!std::isfinite(actuators.back()))
+        throw InputError({file_, line(i)}, "'" + a.name + "' is empty", "every actuator of a pose");
+    }
     if (!model_.configuration_at(actuators, start, q))
       throw InputError({file_, line(i)}, "no pose of the nominal robot has these actuators", "are their units right?");
     for (std::size_t k = 0; k < q.size(); ++k) {
@@ -110,7 +117,8 @@ std::string MeasuredColumns::text(int row, const std::string& column) const {
 
 double MeasuredColumns::value(int row, const std::string& column, const std::string& unit) const {
   std::string cell = text(row, column);
-  if (cell.empty()) return not_read;
+  // Tables of numbers write nan for what is missing.
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NA") return not_read;
   const std::string written = table_.units.empty() ? "" : table_.units[column_.at(column)];
   if (!written.empty() && written != "px") cell += " " + written;
   const Quantity quantity = unit == "m" ? Quantity::length : unit == "rad" ? Quantity::angle : Quantity::number;
@@ -166,8 +174,8 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
     else y[i] = value(row, reading.name, reading.unit);
   }
   // A rotation vector is one reading of three numbers.
-  if (!whole && !quaternions_ && has("pose.rx") && count >= 3 && !y.tail<3>().allFinite())
-    y.tail<3>().setConstant(not_read);
+  const bool turns = count >= 3 && model_.readings().back().name == pose_names[5];
+  if (turns && !y.tail<3>().allFinite()) y.tail<3>().setConstant(not_read);
   return y;
 }
 

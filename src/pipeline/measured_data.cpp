@@ -40,7 +40,7 @@ class Averaging {
   void finish() {
     if (!group_.empty()) close();
     data_.repeats = double(data_.poses.size()) / inverse_repeats_;
-    data_.spread_freedom = data_.rows - int(data_.poses.size());
+    data_.spread_freedom = int(counts_.sum());
     if (data_.spread_freedom == 0) return;
     for (Eigen::Index i = 0; i < squares_.size(); ++i)
       data_.spread.push_back(counts_[i] > 0 ? std::sqrt(squares_[i] / counts_[i])
@@ -50,13 +50,20 @@ class Averaging {
  private:
   void close() {
     inverse_repeats_ += 1.0 / double(group_.size());
-    data_.poses.push_back({group_.front().id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()});
+    const int id = group_.front().id > 0 ? group_.front().id : int(data_.poses.size()) + 1;
+    data_.poses.push_back({id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()});
     data_.held_back.push_back(group_.front().held_back);
     group_.clear();
   }
 
+  /// A row of which all was read, so that orientations have something to be relative to; else the first.
+  const Eigen::VectorXd& reference() const {
+    const auto whole = std::find_if(group_.begin(), group_.end(), [](const Row& row) { return row.y.allFinite(); });
+    return whole == group_.end() ? group_.front().y : whole->y;
+  }
+
   Eigen::VectorXd mean() {
-    const Eigen::VectorXd& first = group_.front().y;
+    const Eigen::VectorXd& first = reference();
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), number = sum, change, mean;
     for (const Row& row : group_) {
       model_.difference(row.y, first, change);
@@ -67,16 +74,24 @@ class Averaging {
         }
     }
     model_.shifted(first, sum.cwiseQuotient(number), mean);
-    // Where the first row misses a reading there is nothing to be relative to: plain means.
     for (Eigen::Index i = 0; i < sum.size(); ++i)
-      if (!std::isfinite(mean[i])) mean[i] = plain_mean(i);
+      if (!std::isfinite(mean[i]) && !model_.readings()[std::size_t(i)].name.starts_with("pose.r"))
+        mean[i] = plain_mean(i);
+    add_spread(mean);
+    return mean;
+  }
+
+  void add_spread(const Eigen::VectorXd& mean) {
+    Eigen::VectorXd change, number = Eigen::VectorXd::Zero(mean.size());
     for (const Row& row : group_) {
       model_.difference(row.y, mean, change);
-      for (Eigen::Index i = 0; i < sum.size(); ++i)
-        if (std::isfinite(change[i])) squares_[i] += change[i] * change[i];
+      for (Eigen::Index i = 0; i < mean.size(); ++i)
+        if (std::isfinite(change[i])) {
+          squares_[i] += change[i] * change[i];
+          number[i] += 1;
+        }
     }
-    for (Eigen::Index i = 0; i < sum.size(); ++i) counts_[i] += std::max(number[i] - 1, 0.0);
-    return mean;
+    counts_ += (number.array() - 1).max(0).matrix();
   }
 
   double plain_mean(Eigen::Index i) const {
@@ -128,13 +143,18 @@ MeasuredData read_measured_data(const std::filesystem::path& file, const Problem
     Row row;
     row.line = columns.line(i);
     const SourcePlace place{file.string(), row.line};
-    row.id = columns.text(i, "id").empty() ? int(data.poses.size()) + 1 : id_of(columns.text(i, "id"), place);
+    row.id = columns.text(i, "id").empty() ? 0 : id_of(columns.text(i, "id"), place);
     row.held_back = !columns.text(i, "use").empty() && held_back(columns.text(i, "use"), place);
     row.q = columns.configuration(i);
     row.y = columns.readings(i);
-    if (!row.y.array().isFinite().any()) throw InputError(place, "has no readings", "at least one cell is needed");
+    if (!row.y.array().isFinite().any()) {
+      data.notes.push_back(fmt::format("{}:{}: nothing was read as a whole; left out", file.string(), row.line));
+      --data.rows;
+      continue;
+    }
     averaging.add(std::move(row));
   }
+  if (data.rows == 0) throw InputError({file.string(), 0}, "has no readings", "at least one line with some");
   averaging.finish();
   return data;
 }

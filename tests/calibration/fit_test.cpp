@@ -171,6 +171,28 @@ TEST(Fit, APriorHoldsWhatTheDataCannotTell) {
   }
 }
 
+TEST(Fit, CurvatureGrowsWithTheNoiseWhicheverWayItIsKnown) {
+  Case c("kr270/problem.yaml", "", 30);
+  c.read(std::vector<double>(c.model->parameters().size(), 0.0), 10.0);
+  FitOptions ordinary;
+  ordinary.weighting = Weighting::ordinary;
+  const Fit stated = fit(*c.model, c.columns, c.poses, {}), told = fit(*c.model, c.columns, c.poses, ordinary);
+  const double by_stated = curvature(*c.model, c.columns, c.poses, stated).largest,
+               by_told = curvature(*c.model, c.columns, c.poses, told).largest;
+  EXPECT_NEAR(by_told / by_stated / told.scale, 1.0, 0.2);
+}
+
+TEST(Fit, APriorIsNotStretchedByTheNoise) {
+  Case c("kr270/problem.yaml", "", 18);
+  c.read(random_truth(*c.model, c.columns, 0.1, c.random), 50.0);
+  FitOptions options;
+  options.prior = true;
+  options.weighting = Weighting::ordinary;
+  const Fit result = fit(*c.model, c.columns, c.poses, options);
+  for (Eigen::Index j = 0; j < result.change.size(); ++j)
+    EXPECT_LE(std::sqrt(result.covariance(j, j)), c.columns.parameters[std::size_t(j)].tolerance * (1 + 1e-9));
+}
+
 TEST(Fit, SaysWhereThePredictedIntervalsCannotHold) {
   // The same robot, the same poses: linear with little noise, far from it with the stated noise.
   Case c("telescope/problem.yaml", "rigid", 20);

@@ -92,13 +92,44 @@ TEST(MeasuredData, RepeatsAreAveragedAndTheirSpreadIsTheNoise) {
   EXPECT_EQ(back.poses.size(), 30U);
   EXPECT_EQ(back.rows, 240);
   EXPECT_DOUBLE_EQ(back.repeats, 8.0);
-  EXPECT_EQ(back.spread_freedom, 210);
+  EXPECT_EQ(back.spread_freedom, 6 * 210);
   for (const double spread : back.spread) EXPECT_NEAR(spread, 1e-4, 2e-5);
   Eigen::VectorXd off;
   for (std::size_t k = 0; k < 30; ++k) {
     data.model->difference(back.poses[k].y, data.poses[k].y, off);
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 5e-4 / std::sqrt(8.0));
   }
+}
+
+TEST(MeasuredData, PosesAreNumberedByOrderAndHolesInRepeatsAreNoReadings) {
+  VirtualFile data("kr270/problem.yaml", 6, 0.0);
+  std::vector<MeasuredPose> rows;
+  for (const MeasuredPose& pose : data.poses)
+    for (int i = 0; i < 4; ++i) {
+      rows.push_back(pose);
+      rows.back().y.array() += 1e-4 * double(i % 2);
+      if (i == 0) rows.back().y[0] = std::numeric_limits<double>::quiet_NaN();
+    }
+  std::string text = measured_data_csv(*data.model, rows);
+  // Without ids, as most tables come; the last line holds nothing.
+  std::string plain;
+  for (const std::string& line : lines_of(text)) plain += line.substr(line.find(',') + 1);
+  std::string empty = plain.substr(plain.rfind('\n', plain.size() - 2) + 1);
+  for (std::size_t cell = 0, at = 0; (at = empty.find(',', at)) != std::string::npos; ++at)
+    if (++cell == 6) {
+      empty = empty.substr(0, at) + ",,,,,,,,,\n";
+      break;
+    }
+  const MeasuredData back = read_measured_data(data.write(plain + empty), data.problem, *data.model);
+  ASSERT_EQ(back.poses.size(), 6U);
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(back.poses[std::size_t(k)].id, k + 1);
+  EXPECT_EQ(back.rows, 24);
+  ASSERT_EQ(back.notes.size(), 1U);
+  EXPECT_THAT(back.notes[0], HasSubstr("data.csv:26: nothing was read"));
+  // 0, 1, 0, 1 tenths of a millimetre: variance 1/3; without the first 2/3·1/2.
+  EXPECT_NEAR(back.spread[1], 1e-4 / std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(back.spread[0], 1e-4 / std::sqrt(3.0), 1e-9);
+  EXPECT_EQ(back.spread_freedom, 6 * (8 * 3 + 2));
 }
 
 TEST(MeasuredData, ActuatorsQuaternionsAndPhotogrammetricPointsStandForPoses) {

@@ -5,11 +5,23 @@
 #include <numeric>
 
 #include "posewright/planning/ascent.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
 
 namespace posewright {
 namespace {
+
+// With fewer candidates a plan is a quick look: it gets so many rounds and no more.
+constexpr std::size_t few_candidates = 1000;
+constexpr int few_rounds = 8;
+// Candidates that the weights are solved over at first, for each column: optimal weights sit on some two for each;
+// those that turn out to be missing come in later.
+constexpr int pool_per_column = 4;
+// Largest d over its bound from which on the local searches are thorough.
+constexpr double nearly = 1.02;
+// Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
+constexpr double start_distance = 0.1, end_distance = 1e-3;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
@@ -43,31 +55,69 @@ void append(Pool& pool, const std::vector<std::vector<double>>& found, Configura
   pool.blocks = std::move(grown);
 }
 
-/// Where the local searches start: half of the starts are the pool's largest d, half are drawn from the rest.
-std::vector<std::size_t> starts_of(const ApproximateDesign& design, int count, Random& random) {
+/// Whether two configurations are one for a local search: no coordinate differs by this share of its range or more.
+bool is_same_place(const std::vector<ConfigurationSpace::Axis>& axes, std::span<const double> a,
+                   std::span<const double> b, double share) {
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const double apart = std::abs(a[k] - b[k]);
+    if (axes[k].continuous ? apart >= share * (axes[k].upper - axes[k].lower) && apart > 0 : apart > 0) return false;
+  }
+  return true;
+}
+
+/// Where the local searches start: half are the pool's largest d, half are drawn from the candidates; no two in one
+/// place. What is drawn depends on the seed and the round alone: not on an order of d that the last bit may turn.
+std::vector<std::size_t> starts_of(const ApproximateDesign& design, const Pool& pool,
+                                   const std::vector<ConfigurationSpace::Axis>& axes, int count, Random& random) {
   std::vector<std::size_t> order(design.sensitivity.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto half = std::min(order.size(), std::size_t(count / 2 + 1));
   const auto& d = design.sensitivity;
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(half), order.end(),
-                    [&](auto a, auto b) { return d[a] != d[b] ? d[a] > d[b] : a < b; });
-  for (std::size_t i = half; i < std::min(order.size(), std::size_t(count)); ++i)
-    std::swap(order[i], order[i + std::size_t(random.index(int(order.size() - i)))]);
-  order.resize(std::min(order.size(), std::size_t(count)));
-  return order;
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return d[a] != d[b] ? d[a] > d[b] : a < b; });
+  std::vector<std::size_t> starts;
+  const auto enter = [&](std::size_t i) {
+    for (const std::size_t known : starts)
+      if (is_same_place(axes, pool.configurations[known], pool.configurations[i], start_distance)) return;
+    starts.push_back(i);
+  };
+  for (std::size_t i = 0; i < order.size() && int(starts.size()) < count / 2; ++i) enter(order[i]);
+  for (int draw = 0; draw < 2 * count && int(starts.size()) < count; ++draw)
+    enter(std::size_t(random.index(int(pool.candidates))));
+  return starts;
 }
 
 std::vector<AscentResult> search_from(const std::vector<std::size_t>& starts, const Pool& pool,
-                                      const Eigen::MatrixXd& T, const ConfigurationSpace& space,
+                                      const Eigen::MatrixXd& T, const ConfigurationSpace& space, int evaluations,
                                       const WorkspaceBoundOptions& options) {
   std::vector<AscentResult> results(starts.size());
   parallel_for(starts.size(), thread_count(options.threads), [&](std::size_t i, int) {
     const auto probe = space.probe();
     Sensitivity d(T);
     results[i] = ascend(space, *probe, d, pool.blocks.rows(), pool.blocks.columns(), pool.configurations[starts[i]],
-                        options.evaluations);
+                        evaluations);
   });
   return results;
+}
+
+/// Candidates whose d exceeds `limit`, largest first, no two in one place; and the largest d of all.
+std::vector<std::vector<double>> candidates_above(double limit, const BlockArray& blocks, const Eigen::MatrixXd& T,
+                                                  const ConfigurationSpace& space, int most_returned, double& largest) {
+  Sensitivity sensitivity(T);
+  std::vector<std::pair<double, int>> above;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    const double d = sensitivity.value(blocks.block(i));
+    largest = std::max(largest, d);
+    if (d > limit) above.emplace_back(-d, int(i));
+  }
+  std::sort(above.begin(), above.end());
+  std::vector<std::vector<double>> result;
+  for (const auto& [d, i] : above) {
+    const auto q = space.candidate(i);
+    if (std::none_of(result.begin(), result.end(),
+                     [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
+      result.emplace_back(q.begin(), q.end());
+    if (int(result.size()) == most_returned) break;
+  }
+  return result;
 }
 
 Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
@@ -99,34 +149,44 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
   weights.prior = options.prior;
   weights.tolerance = 0.1 * options.tolerance;
   weights.threads = options.threads;
-  Pool pool = first_pool(blocks, on_candidates, space, std::size_t(20 * blocks.columns()));
+  Pool pool = first_pool(blocks, on_candidates, space, std::size_t(pool_per_column * blocks.columns()));
   ApproximateDesign design;
   WorkspaceBound result;
   result.degree = function.degree();
+  // The first rounds bring in whatever is larger than the rest; only the last ones must find each top.
+  int evaluations = options.evaluations / 4;
   Random random(options.seed, 0);
   const auto probe = space.probe();
-  for (int round = 0; round < options.rounds; ++round) {
+  const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
+  for (int round = 0; round < rounds; ++round) {
     design = solve_approximate_design(pool.blocks, function, weights, monitor);
-    const std::vector<AscentResult> ends =
-        search_from(starts_of(design, options.starts, random), pool, design.factor, space, options);
+    const std::vector<AscentResult> ends = search_from(starts_of(design, pool, space.axes(), options.starts, random),
+                                                       pool, design.factor, space, evaluations, options);
     result.searches += int(ends.size());
     // What the prior adds to every d, so that Σ w d is the degree.
     const double extra =
         weights.prior.size() > 0 ? (design.factor.transpose() * weights.prior * design.factor).trace() : 0.0;
     const double own = *std::max_element(design.sensitivity.begin(), design.sensitivity.end());
     double most = own;
-    std::vector<std::vector<double>> found;
+    const double limit = design.degree * (1 + options.tolerance) - extra;
+    std::vector<std::vector<double>> found =
+        candidates_above(std::max(limit, own * (1 + 1e-6)), blocks, design.factor, space, options.starts, most);
     for (const AscentResult& end : ends) {
       most = std::max(most, end.value);
-      if (end.value > own * (1 + 1e-6) || end.value + extra > design.degree * (1 + options.tolerance))
-        found.push_back(end.q);
+      if (end.value > own * (1 + 1e-6) || end.value > limit)
+        if (std::none_of(found.begin(), found.end(),
+                         [&](const auto& q) { return is_same_place(space.axes(), q, end.q, end_distance); }))
+          found.push_back(end.q);
     }
     result.value = design.value;
     result.max_ratio = std::max(1.0, (most + extra) / design.degree);
     result.bound = design.value + design.degree * std::log(result.max_ratio);
     result.stopped = monitor.should_stop();
-    monitor.report({"workspace bound", double(round + 1), double(options.rounds), {}, {}, 1 / result.max_ratio});
-    if (result.max_ratio <= 1 + options.tolerance || result.stopped || found.empty()) break;
+    monitor.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result.max_ratio});
+    if (result.stopped) break;
+    const bool thorough = evaluations == options.evaluations;
+    if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
+    if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     append(pool, found, *probe);
   }
   for (std::size_t i = 0; i < design.support.size(); ++i)

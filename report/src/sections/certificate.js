@@ -20,7 +20,7 @@ export function certificateSection(plan) {
   }
   const space = w
     ? [
-        ['share of the best, as far as the search saw', percentDown(w.efficiency)],
+        ['share of the best, as far as the search saw', percentDown(Math.min(1, w.efficiency + 5e-4), 0)],
         ['bound', number(w.bound, 8)],
         ['largest sensitivity found', number(w.max_sensitivity_ratio, 6)],
         ['method', w.method],

@@ -83,7 +83,7 @@ export function proofMeaning(plan) {
 export function searched(plan) {
   const w = plan.certificate.workspace;
   return w
-    ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(w.efficiency)} of the best.`
+    ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(Math.min(1, w.efficiency + 5e-4), 0)} of the best.`
     : '';
 }
 

@@ -47,9 +47,9 @@ export function coordinate(value, unit) {
   return unit === 'm' || unit === 'rad' ? `${fixed(value * factor, 3)} ${name}` : quantity(value, unit, 6);
 }
 
-/** Rounded down: what is proved must not read as more. @param {number|null} share */
-export const percentDown = (share) =>
-  share === null || !Number.isFinite(share) ? missing : `${(Math.floor(share * 1e4) / 100).toFixed(2)} %`;
+/** Rounded down: what is proved must not read as more. @param {number|null} share @param {number} decimals */
+export const percentDown = (share, decimals = 2) =>
+  share === null || !Number.isFinite(share) ? missing : `${(Math.floor(share * 10 ** (decimals + 2)) / 10 ** decimals).toFixed(decimals)} %`;
 
 /** @param {number|null} share @param {number} decimals */
 export const percent = (share, decimals = 1) =>

@@ -1,7 +1,9 @@
 # One interface target carries the warnings, so that they reach our code and nobody else's.
 add_library(posewright_warnings INTERFACE)
 target_compile_options(posewright_warnings INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wno-sign-conversion;-Wshadow;-Wnon-virtual-dtor>)
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wno-sign-conversion;-Wshadow;-Wnon-virtual-dtor>
+  # Sources that are compiled as one are included ones.
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 
 # Debian's libompl allocates Eigen matrices with plain malloc; a translation unit built for AVX frees them
 # with its own aligned allocator and crashes. Kernels that profit from AVX carry their own flags.

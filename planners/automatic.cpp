@@ -20,7 +20,6 @@ using Clock = std::chrono::steady_clock;
 // Shares of the time that is left, for the stages that could take any time.
 constexpr double exchange_share = 0.5, tabu_share = 0.5;
 constexpr std::size_t tabu_starts = 4;
-constexpr int idle_per_kick = 2;
 
 /// The caller's monitor with an earlier deadline.
 class Part {
@@ -159,8 +158,7 @@ class Run {
     parallel_for(outcomes.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (i > 0 && part.monitor().should_stop()) return;
       Random random(mix_bits(seed) + 1, i);
-      outcomes[i] =
-          tabu_search(reduced.task(), start, std::max(20, idle_per_kick * options_.kicks), random, part.monitor());
+      outcomes[i] = tabu_search(reduced.task(), start, tabu_patience(options_.kicks), random, part.monitor());
     });
     for (Outcome& outcome : outcomes) {
       if (!outcome.done || !(outcome.value > best_.value + smallest_gain)) continue;

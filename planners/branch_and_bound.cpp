@@ -22,9 +22,9 @@ struct Node {
   std::vector<int> least, most;
 };
 
-class Search {
+class Tree {
  public:
-  Search(const DesignTask& task, const Monitor& monitor, Design& best)
+  Tree(const DesignTask& task, const Monitor& monitor, Design& best)
       : task_(task), function_(task.criterion->function()), monitor_(monitor), best_(best) {}
 
   /// True where the best design is proved.
@@ -263,7 +263,7 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
                                       const Monitor& monitor) const {
   Design design = ExchangePlanner().plan(task, options, monitor);
   if (task.criterion->function().degree() > 0) {
-    design.optimal = Search(task, monitor, design).run();
+    design.optimal = Tree(task, monitor, design).run();
   } else {
     const double sets =
         number_of_sets(double(task.candidates.blocks->count()), task.poses, task.candidates.max_repeats > 1);

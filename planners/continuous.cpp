@@ -7,6 +7,7 @@
 #include "exchange.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/planning/ascent.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -8,8 +8,6 @@
 namespace posewright {
 namespace {
 
-// Swaps without a new best after which a start ends, for each kick that `exchange` would have made.
-constexpr int idle_per_kick = 2;
 // Swaps after which running quantities are computed anew.
 constexpr long refresh_after = 40;
 
@@ -103,11 +101,10 @@ Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Ra
 }
 
 Design TabuPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
-  return run_restarts(task, options, monitor, "tabu",
-                      [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-                        return tabu_search(part, start_of_restart(part, i, random),
-                                           std::max(20, idle_per_kick * options.kicks), random, watch);
-                      });
+  return run_restarts(
+      task, options, monitor, "tabu", [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
+        return tabu_search(part, start_of_restart(part, i, random), tabu_patience(options.kicks), random, watch);
+      });
 }
 
 }  // namespace posewright

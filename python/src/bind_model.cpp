@@ -53,7 +53,7 @@ Configurations configurations_of(const GivenModel& model, const py::object& pose
   return result;
 }
 
-py::array_t<double> array_of(const Configurations& list) {
+py::array_t<double> configuration_array(const Configurations& list) {
   return py::array_t<double>({py::ssize_t(list.count()), py::ssize_t(list.dimension)}, list.values.data());
 }
 
@@ -102,7 +102,7 @@ py::array_t<double> candidates(const GivenModel& model, long long count, const p
   Watch watch({}, std::move(progress));
   watch.run([&](const Monitor& monitor) { drawn = sample_configurations(*model.variant.workspace, options, monitor); },
             OnInterrupt::raise);
-  return array_of(drawn);
+  return configuration_array(drawn);
 }
 
 void bind_coordinate(py::module_& m) {
@@ -151,7 +151,7 @@ and has exactly the plan's.)")
           "nuisance", [](const GivenModel& g) { return g.variant.columns.nuisance; }, "How many columns are nuisance.")
       .def(
           "configurations",
-          [](const GivenModel& g, const py::object& poses) { return array_of(configurations_of(g, poses)); },
+          [](const GivenModel& g, const py::object& poses) { return configuration_array(configurations_of(g, poses)); },
           py::arg("poses"), "Any list of poses as an array with one column for each coordinate.")
       .def("blocks", &blocks_at, py::arg("configurations"), py::kw_only(), py::arg("threads") = 0,
            "Whitened blocks J = L⁻¹ G (covariance of the residual = L Lᵀ), so that the information is Σ JᵀJ.")

@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "posewright/outputs/route.hpp"
+#include "posewright/support/json.hpp"
 #include "src/cli/evaluation_report.hpp"
 #include "src/cli/observation_report.hpp"
 
@@ -18,7 +19,7 @@ Names names_of(const std::vector<Parameter>& parameters) {
   return names;
 }
 
-std::vector<PlannedParameter> labelled(const std::vector<Parameter>& parameters) {
+std::vector<PlannedParameter> planned_parameters(const std::vector<Parameter>& parameters) {
   std::vector<PlannedParameter> result;
   for (const Parameter& p : parameters) result.push_back({p, "", std::nullopt, ""});
   return result;
@@ -98,8 +99,8 @@ void bind_evaluation(py::module_& m) {
       .def_readonly("drop", &E::drop, "which poses to leave out, or None")
       .def_readonly("add", &E::add, "which poses to measure more, or None")
       .def("summary", &cli::evaluation_text, "The table that the command line prints.")
-      .def("to_json", [](const E& e) { return cli::evaluation_json(e).dump(1) + "\n"; })
-      .def("to_dict", [](const E& e) { return parsed(cli::evaluation_json(e).dump()); })
+      .def("to_json", [](const E& e) { return json_text(cli::evaluation_json(e)); })
+      .def("to_dict", [](const E& e) { return parsed(json_text(cli::evaluation_json(e), JsonLayout::one_line)); })
       .def("__repr__", [](const E& e) { return "<Evaluation: " + plan_line(e.plan) + ">"; })
       .def("_repr_html_", [](const E& e) { return plan_html(e.plan); });
 }
@@ -117,7 +118,7 @@ void bind_observation(py::module_& m) {
           "singular_values", [](const O& o) { return array_of(o.identifiability.singular_values); },
           "of G with columns in units of tolerance, descending")
       .def_property_readonly(
-          "parameters", [](const O& o) { return labelled(o.parameters); }, "all free ones, nuisance first")
+          "parameters", [](const O& o) { return planned_parameters(o.parameters); }, "all free ones, nuisance first")
       .def_property_readonly(
           "kept", [](const O& o) { return names_of(o.kept); }, "names of the independent ones")
       .def_property_readonly("dependencies",
@@ -143,7 +144,7 @@ void bind_observation(py::module_& m) {
           [](const O& o) { return o.practical ? named(o.practical->near, o.kept) : std::vector<NamedDependency>(); },
           "of kept ones that mostly look like others")
       .def("summary", &cli::observation_text, "The table that the command line prints.")
-      .def("to_dict", [](const O& o) { return parsed(cli::observation_json(o).dump()); })
+      .def("to_dict", [](const O& o) { return parsed(json_text(cli::observation_json(o), JsonLayout::one_line)); })
       .def("__repr__", [](const O& o) {
         return py::str("<Observation of {}: rank {} of {} parameters>")
             .format(o.variant, o.identifiability.rank, o.parameters.size());

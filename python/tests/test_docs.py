@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 
+import posewright as pw
 from conftest import ROOT
 
 
@@ -11,6 +12,9 @@ def test_the_examples_of_the_documentation_run(examples, tmp_path, monkeypatch):
     text = (ROOT / "docs" / "python.md").read_text()
     shutil.copytree(examples / "kr270", tmp_path / "kr270")
     monkeypatch.chdir(tmp_path)
+    # Searches that take long as they stand end with the best plan of five seconds.
+    whole = pw.plan
+    monkeypatch.setattr(pw, "plan", lambda *given, **named: whole(*given, **{"time_limit": 5, **named}))
     names = {}
     found = list(re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M))
     assert len(found) > 8
@@ -22,8 +26,6 @@ def test_the_examples_of_the_documentation_run(examples, tmp_path, monkeypatch):
 
 
 def test_every_function_is_in_the_documentation():
-    import posewright as pw
-
     text = (ROOT / "docs" / "python.md").read_text()
     functions = [name for name in pw.__all__ if callable(getattr(pw, name)) and not isinstance(getattr(pw, name), type)]
     assert functions and all(f"pw.{name}(" in text for name in functions)

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

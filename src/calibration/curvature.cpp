@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "posewright/support/dense.hpp"
 #include "stacked_readings.hpp"
 
 namespace posewright {

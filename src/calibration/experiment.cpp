@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/model/rotation_vector.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double confidence = 0.95;
 constexpr int reports = 200;
 
 /// Position of the point of interest of one place.
@@ -27,10 +27,7 @@ class Position {
   Eigen::Vector3d at(const std::vector<double>& q) {
     if (!model_.predict(q, correction_, pose_))
       throw CannotDo("a place to check is out of reach of the calibrated robot");
-    const Eigen::Vector3d turn = pose_.tail<3>();
-    const double angle = turn.norm();
-    if (angle == 0.0) return pose_.head<3>() + point_;
-    return pose_.head<3>() + Eigen::AngleAxisd(angle, turn / angle) * point_;
+    return pose_.head<3>() + rotation_by(pose_.tail<3>()) * point_;
   }
 
  private:
@@ -75,7 +72,7 @@ VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
     result.end = fitted.converged ? VirtualCalibration::End::fitted : VirtualCalibration::End::not_converged;
     result.error = error_of(experiment, fitted, truth);
     result.sigma = fitted.covariance.diagonal().cwiseSqrt();
-    result.interval = interval_factor(confidence, fitted.scale_known, fitted.freedom);
+    result.interval = interval_factor(interval_probability, fitted.scale_known, fitted.freedom);
     result.chi_square = fitted.chi_square;
     result.freedom = fitted.freedom;
     if (experiment.places && fitted.converged) check_places(*experiment.places, fitted.correction, truth, result);

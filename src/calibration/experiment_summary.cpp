@@ -1,10 +1,11 @@
 #include "posewright/calibration/experiment_summary.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 
+#include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -13,7 +14,8 @@ namespace {
 using End = VirtualCalibration::End;
 using Draws = std::vector<const VirtualCalibration*>;
 
-constexpr double confidence = 0.95;
+// The χ² test rejects a right model in the rest of the draws.
+constexpr double accepted = 0.95;
 
 double binomial_error(double share, std::size_t count) { return std::sqrt(share * (1 - share) / double(count)); }
 
@@ -40,7 +42,7 @@ void add_chi_square(const Draws& draws, bool tested, ExperimentSummary& summary)
   for (const auto* draw : draws) {
     if (draw->freedom < 1) return;
     double& limit = limits[draw->freedom];
-    if (limit == 0) limit = boost::math::quantile(boost::math::chi_squared(draw->freedom), confidence);
+    if (limit == 0) limit = chi_square_quantile(accepted, draw->freedom);
     rejected += draw->chi_square > limit ? 1 : 0;
     summary.chi_square += draw->chi_square / draw->freedom / double(draws.size());
     freedom += draw->freedom;
@@ -67,7 +69,7 @@ ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vect
     throw CannotDo(summary.failed > 0 ? "no draw could be calibrated: " + summary.first_failure
                                       : "fewer than two draws were calibrated");
   summary.sigma_error = 1 / std::sqrt(2.0 * double(draws.size()));
-  summary.coverage_error = binomial_error(confidence, draws.size());
+  summary.coverage_error = binomial_error(interval_probability, draws.size());
   for (Eigen::Index j = 0; j < draws.front()->error.size(); ++j) summary.parameters.push_back(errors_of(draws, j));
   add_chi_square(draws, experiment.options.fit.weighting != Weighting::robust, summary);
   if (!experiment.places) return summary;

@@ -5,6 +5,7 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_weights.hpp"
 #include "stacked_readings.hpp"
@@ -82,6 +83,20 @@ bool settle_weights(StackedReadings& stacked, const FitOptions& options, RobustS
   return false;
 }
 
+/// Per pose, those of its targets.
+std::vector<std::vector<double>> weights_of_targets(StackedReadings& stacked, const Eigen::VectorXd& x) {
+  const Eigen::VectorXd weights = robust_weights(stacked.group_squares(x), stacked.group_sizes(), RobustShape::tukey);
+  std::vector<std::vector<double>> result;
+  std::size_t row = 0;
+  for (const std::vector<int>& read : stacked.read()) {
+    result.emplace_back();
+    for (std::size_t i = 0; i < read.size(); ++i, ++row)
+      if (i == 0 || stacked.group_of()[row] != stacked.group_of()[row - 1])
+        result.back().push_back(weights[stacked.group_of()[row]]);
+  }
+  return result;
+}
+
 void fill_statistics(StackedReadings& stacked, const FitOptions& options, const Eigen::VectorXd& x, Fit& result) {
   Eigen::VectorXd f;
   Eigen::MatrixXd J;
@@ -129,14 +144,7 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
   if (options.weighting == Weighting::robust) {
     result.converged = settle_weights(stacked, options, RobustShape::huber, x, result.evaluations) && result.converged;
     result.converged = settle_weights(stacked, options, RobustShape::tukey, x, result.evaluations) && result.converged;
-    const Eigen::VectorXd weights = robust_weights(stacked.group_squares(x), stacked.group_sizes(), RobustShape::tukey);
-    std::size_t row = 0;
-    for (const std::vector<int>& read : stacked.read()) {
-      result.weights.emplace_back();
-      for (std::size_t i = 0; i < read.size(); ++i, ++row)
-        if (i == 0 || stacked.group_of()[row] != stacked.group_of()[row - 1])
-          result.weights.back().push_back(weights[stacked.group_of()[row]]);
-    }
+    result.weights = weights_of_targets(stacked, x);
   }
   fill_statistics(stacked, options, x, result);
   result.correction = stacked.correction_of(x);
@@ -166,13 +174,10 @@ BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& col
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (!model.predict_and_linearise(poses[k].q, correction, columns.selected, out, y))
       throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the parameters at hand");
-    std::vector<int> read;
-    for (int i = 0; i < int(poses[k].y.size()); ++i)
-      if (std::isfinite(poses[k].y[i])) read.push_back(i);
+    const std::vector<int> read = indices_read(poses[k].y);
     Eigen::MatrixXd rows = out.G(read, Eigen::all);
-    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(out.covariance(read, read)));
-    if (root.info() != Eigen::Success) throw CannotDo("measurement: the noise covariance is not positive definite");
-    root.matrixL().solveInPlace(rows);
+    factorise_covariance(out.covariance(read, read), out.factor);
+    out.factor.matrixL().solveInPlace(rows);
     blocks.all().middleRows(Eigen::Index(k) * model.rows(), model.rows()).setZero();
     blocks.all().middleRows(Eigen::Index(k) * model.rows(), rows.rows()) = rows;
   }

@@ -1,11 +1,10 @@
 #include "posewright/calibration/residual_statistics.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
+
+#include "posewright/support/distributions.hpp"
 
 namespace posewright {
 namespace {
@@ -29,9 +28,7 @@ void finish(ResidualSummary& summary) {
   summary.mean /= summary.count;
 }
 
-double both_sides(double z) {
-  return 2 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::abs(z)));
-}
+double both_sides(double z) { return 2 * normal_exceeded(std::abs(z)); }
 
 /// Correlation between pose k and k + 1, reading by reading.
 TestResult serial_correlation(const std::vector<Eigen::VectorXd>& whitened) {
@@ -102,14 +99,10 @@ std::vector<ResidualSummary> summarise(const IdentificationModel& model, const s
   return result;
 }
 
-double chi_square_exceeded(double value, double freedom) {
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), value));
-}
-
 double interval_factor(double probability, bool scale_known, int freedom) {
   const double tail = 0.5 * (1 - probability);
-  if (scale_known || freedom < 1) return boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(double(freedom)), tail));
+  if (scale_known || freedom < 1) return normal_upper_quantile(tail);
+  return student_upper_quantile(tail, freedom);
 }
 
 ResidualTests test_residuals(const Fit& result) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -23,11 +24,12 @@ RigidFit rigid_fit(const std::vector<Eigen::Vector3d>& body, const std::vector<E
   if (body.size() != measured.size()) throw std::invalid_argument("rigid_fit: as many points on both sides");
   const Eigen::Matrix3Xd from = columns_of(body), to = columns_of(measured);
   const Eigen::Matrix3Xd centred = from.colwise() - Eigen::Vector3d(from.rowwise().mean());
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> spread(centred);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> spread(centred);
   if (body.size() < 3 || !(spread.singularValues()[1] > flat * spread.singularValues()[0]))
     throw CannotDo("a pose needs three points that are not in a line");
   RigidFit fit;
-  fit.X.matrix() = Eigen::umeyama(from, to, false);
+  // As matrices of any size, which are decomposed elsewhere already.
+  fit.X.matrix() = Eigen::umeyama(Eigen::MatrixXd(from), Eigen::MatrixXd(to), false);
   const Eigen::Matrix3Xd placed = (fit.X.linear() * from).colwise() + fit.X.translation();
   fit.rms = std::sqrt((to - placed).colwise().squaredNorm().mean());
   // A twist (v, ω) about the body's origin moves a point at lever l by v + ω × l.

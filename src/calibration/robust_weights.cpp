@@ -1,9 +1,10 @@
 #include "robust_weights.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <vector>
+
+#include "posewright/support/distributions.hpp"
 
 namespace posewright {
 namespace {
@@ -23,8 +24,7 @@ double median(std::vector<double> values) {
 double central_scale(const Eigen::VectorXd& squares, const Eigen::VectorXd& sizes) {
   std::vector<double> relative;
   for (Eigen::Index g = 0; g < squares.size(); ++g)
-    if (sizes[g] > 0)
-      relative.push_back(std::sqrt(squares[g] / boost::math::quantile(boost::math::chi_squared(sizes[g]), 0.5)));
+    if (sizes[g] > 0) relative.push_back(std::sqrt(squares[g] / chi_square_quantile(0.5, sizes[g])));
   return relative.empty() ? 1.0 : std::max(median(std::move(relative)), smallest_scale);
 }
 

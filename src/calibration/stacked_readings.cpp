@@ -5,9 +5,17 @@
 #include <map>
 #include <string>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
+
+std::vector<int> indices_read(const Eigen::VectorXd& y) {
+  std::vector<int> read;
+  for (int i = 0; i < int(y.size()); ++i)
+    if (std::isfinite(y[i])) read.push_back(i);
+  return read;
+}
 
 StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
                                  const std::vector<MeasuredPose>& poses, bool prior, const std::vector<double>& start)
@@ -19,11 +27,9 @@ StackedReadings::StackedReadings(const IdentificationModel& model, const Variant
   const int per_target = model.rows_per_target();
   int group = -1;
   for (const MeasuredPose& pose : poses) {
-    read_.emplace_back();
+    read_.push_back(indices_read(pose.y));
     int target = -1;
-    for (int i = 0; i < int(pose.y.size()); ++i) {
-      if (!std::isfinite(pose.y[i])) continue;
-      read_.back().push_back(i);
+    for (const int i : read_.back()) {
       const int own = per_target > 0 ? i / per_target : 0;
       if (own != target) ++group;
       target = own;

@@ -6,6 +6,9 @@
 
 namespace posewright {
 
+/// Which readings are there.
+std::vector<int> indices_read(const Eigen::VectorXd& y);
+
 /// All readings of a calibration as one vector of whitened residuals of the parameters x in units of tolerance.
 class StackedReadings {
  public:

@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "posewright/calibration/experiment.hpp"
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
 
@@ -66,9 +68,8 @@ std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int
       throw CannotDo("pose " + std::to_string(wanted.id) + " is out of reach of the true robot");
     z.resize(exact.size());
     for (double& value : z) value = random.normal();
-    const Eigen::LLT<Eigen::MatrixXd> root(at.covariance);
-    if (root.info() != Eigen::Success) throw CannotDo("measurement: the noise covariance is not positive definite");
-    z = root.matrixL() * z;
+    factorise_covariance(at.covariance, at.factor);
+    z = at.factor.matrixL() * z;
     gross.apply(at.covariance, robot.rows_per_target(), z, missing);
     MeasuredPose pose{wanted.id, wanted.q, {}};
     robot.shifted(exact, z, pose.y);

@@ -11,7 +11,7 @@ namespace {
 // Configurations that decide which pairs of links touch wherever the robot stands, as MoveIt's assistant does.
 constexpr int always_samples = 1000;
 constexpr double always_share = 0.95;
-constexpr std::uint64_t seed = 271828;
+constexpr std::uint64_t contact_seed = 271828;
 
 using NamePair = std::pair<std::string, std::string>;
 
@@ -112,7 +112,7 @@ class SceneBuilder {
   void drop_always_touching() {
     std::vector<int> touching(scene_.pairs.size(), 0), near(scene_.pairs.size(), 0);
     std::vector<Eigen::Isometry3d> X(std::size_t(scene_.frames->count()));
-    Random random(seed, 0);
+    Random random(contact_seed, 0);
     std::vector<double> q;
     const int misses = int(always_samples * (1 - always_share));
     for (int i = 0; i < always_samples; ++i) {

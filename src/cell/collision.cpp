@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "posewright/support/dense.hpp"
 #include "scene.hpp"
 
 namespace posewright {

@@ -5,6 +5,7 @@
 
 #include "posewright/cell/collision.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -14,6 +14,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "posewright/support/dense.hpp"
+
 /// The only file that knows FCL: its headers are slow to compile.
 namespace posewright {
 namespace {

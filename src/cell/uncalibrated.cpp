@@ -10,7 +10,7 @@ namespace posewright {
 namespace {
 
 constexpr int samples = 200;
-constexpr std::uint64_t seed = 4711;
+constexpr std::uint64_t tolerance_seed = 4711;
 
 std::vector<double> random_configuration(const std::vector<Coordinate>& coordinates, Random& random) {
   std::vector<double> q;
@@ -39,7 +39,7 @@ UncalibratedError::UncalibratedError(const Problem& problem, const Identificatio
   if (!(sigmas_ > 0)) return;
   const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
   const std::unique_ptr<IdentificationModel> arm = bare_robot(problem);
-  Random random(seed, 0);
+  Random random(tolerance_seed, 0);
   Linearisation scratch;
   std::vector<int> selected;
   std::vector<double> tolerances, of_arm;

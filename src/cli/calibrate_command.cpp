@@ -6,6 +6,7 @@
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-po::options_description options() {
+po::options_description calibrate_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                      //
       ("variant", text("V"), "which variant is calibrated (design: variant, or the first)")  //
@@ -97,7 +98,7 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   return calibrate;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const CalibrateOptions calibrate = options_of(values, positional);
   const Problem problem = given_problem(positional.front(), values);
@@ -120,7 +121,7 @@ int run(const po::variables_map& values, const Words& positional) {
                {"data", calibrate.data.string()}};
   json.update(calibration_json(result));
   json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
-  fmt::print("{}\n", json.dump(1));
+  fmt::print("{}", json_text(json));
   return result.fit.converged ? done : cannot_do;
 }
 
@@ -130,9 +131,9 @@ Command calibrate_command() {
   return {"calibrate",
           "PROBLEM DATA.csv",
           "Estimates a variant's parameters from measured data: values, intervals, residuals, tests of the model.",
-          options,
+          calibrate_command_options,
           "posewright calibrate problem.yaml measured.csv --validate more.csv",
-          run};
+          run_calibrate};
 }
 
 }  // namespace posewright::cli

@@ -1,6 +1,8 @@
 #include <cmath>
 
 #include "calibration_report.hpp"
+#include "posewright/outputs/json_values.hpp"
+#include "weighting.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -26,7 +28,7 @@ Json parameter_json(const CalibratedParameter& p) {
           {"sigma", estimate(p.sigma)},
           {"interval", p.estimated ? Json({p.lower, p.upper}) : Json(nullptr)},
           {"tells_less_than_tolerance", p.weak},
-          {"why_not", p.why_not.empty() ? Json(nullptr) : Json(p.why_not)}};
+          {"why_not", text_or_null(p.why_not)}};
 }
 
 Json test_json(const TestResult& test) {
@@ -58,10 +60,6 @@ Json covariance_json(const Calibration& c) {
   return rows;
 }
 
-const char* word(Weighting weighting) {
-  return weighting == Weighting::ordinary ? "ols" : weighting == Weighting::weighted ? "wls" : "robust";
-}
-
 }  // namespace
 
 Json calibration_json(const Calibration& c) {
@@ -74,7 +72,7 @@ Json calibration_json(const Calibration& c) {
                      {"weight", pose.weight},
                      {"residuals", numbers(pose.residuals)}});
   return {{"variant", c.variant},
-          {"weights", word(c.weighting)},
+          {"weights", weighting_word(c.weighting)},
           {"prior", c.prior},
           {"rows", c.rows},
           {"poses_fitted", c.poses},

@@ -4,6 +4,7 @@
 #include "comparison_report.hpp"
 #include "planners/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-po::options_description options() {
+po::options_description compare_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                     //
       ("variant", po::value<Words>()->value_name("V")->composing(), "these variants, or a list A,B (all)")  //
@@ -52,7 +53,7 @@ CompareOptions options_of(const po::variables_map& values, const Words& position
   return compare;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_compare(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const CompareOptions compare = options_of(values, positional, common);
   const Problem problem = given_problem(positional.front(), values);
@@ -68,7 +69,7 @@ int run(const po::variables_map& values, const Words& positional) {
                {"seed", common.seed},
                {"problem", problem_json(problem)}};
   json.update(comparison_json(result));
-  fmt::print("{}\n", json.dump(1));
+  fmt::print("{}", json_text(json));
   return done;
 }
 
@@ -78,9 +79,9 @@ Command compare_command() {
   return {"compare",
           "PROBLEM [PLAN...]",
           "Variants against plans: efficiency, σ, accuracy, what one variant's effects do to another.",
-          options,
+          compare_command_options,
           "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix",
-          run};
+          run_compare};
 }
 
 }  // namespace posewright::cli

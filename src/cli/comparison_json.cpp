@@ -1,17 +1,11 @@
 #include "comparison_report.hpp"
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/json_values.hpp"
 
 namespace posewright::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
-template <class T>
-Json value_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json variant_json(const ComparedVariant& v) {
   return {{"name", v.name},

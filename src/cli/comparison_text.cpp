@@ -17,9 +17,6 @@ constexpr std::size_t names_shown = 3;
 // A bias that is this share of the noise is rounding.
 constexpr double no_bias = 1e-9;
 
-/// Rounded down: what is stated as reached must be.
-std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
-
 std::string headline(const Comparison& c) {
   std::string text = fmt::format("{} variants, {} plans; {} candidates that every variant can take\n",
                                  c.variants.size(), c.plans.size(), c.candidates);

@@ -6,6 +6,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/pipeline/evaluate_problem.hpp"
+#include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
@@ -14,7 +15,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description options() {
+po::options_description evaluate_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                               //
       ("drop", text("k"), "which k poses to leave out")                                               //
@@ -31,7 +32,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_evaluate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.size() != 2)
     throw InputError({}, "two arguments are needed: PROBLEM POSES", "see posewright help evaluate");
@@ -54,7 +55,7 @@ int run(const po::variables_map& values, const Words& positional) {
   });
   if (was_interrupted) return interrupted;
   print_notes(result.notes);
-  if (common.json) fmt::print("{}\n", evaluation_json(result).dump(1));
+  if (common.json) fmt::print("{}", json_text(evaluation_json(result)));
   else print_report(evaluation_text(result));
   return done;
 }
@@ -65,9 +66,9 @@ Command evaluate_command() {
   return {"evaluate",
           "PROBLEM POSES",
           "Scores poses that you have (CSV or plan.json): every criterion, each pose's share, what to drop and add.",
-          options,
+          evaluate_command_options,
           "posewright evaluate examples/telescope/problem.yaml poses.csv --drop 2 --add 3",
-          run};
+          run_evaluate};
 }
 
 }  // namespace posewright::cli

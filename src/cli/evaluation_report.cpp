@@ -6,15 +6,13 @@
 
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Align = Table::Align;
-
-/// Rounded down: what is stated as reached must be.
-std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
 
 /// Criteria that are variances in m² are shown as what people know, their root in mm.
 std::string shown_score(const CriterionScore& score, bool at_test_poses) {
@@ -102,7 +100,7 @@ std::string evaluation_text(const PoseListEvaluation& e) {
 }
 
 Json evaluation_json(const PoseListEvaluation& e) {
-  Json json = Json::parse(plan_json(e.plan));
+  Json json = parse_ordered_json(plan_json(e.plan));
   json["schema"] = "posewright/evaluation/1";
   json["scores"] = Json::array();
   for (const CriterionScore& score : e.scores)

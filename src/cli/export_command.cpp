@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t plan_limit = 200'000'000, settings_limit = 1'000'000;
 constexpr const char* no_controller = "syntax checked, not run on a controller";
 
-po::options_description options() {
+po::options_description export_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                   //
       ("to", text("FORMAT"), "format; list or none: the table of formats")                                //
@@ -161,7 +161,7 @@ void print_table(bool json) {
                                  {"options", format.options},
                                  {"read_back", format.read != nullptr},
                                  {"note", format.controller ? no_controller : ""}});
-    fmt::print("{}\n", list.dump(1));
+    fmt::print("{}", json_text(list));
     return;
   }
   using A = Table::Align;
@@ -181,10 +181,10 @@ std::string summary_json(const PoseFormat& format, const PoseSequence& sequence,
   json["files"] = nlohmann::ordered_json::array();
   for (const fs::path& file : files) json["files"].push_back(file.string());
   json["notes"] = notes;
-  return json.dump(1) + "\n";
+  return json_text(json);
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_export(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::string to = text_of(values, "to");
   if (to.empty() || to == "list") {
@@ -232,9 +232,9 @@ Command export_command() {
   return {"export",
           "PLAN",
           "Writes the poses of a plan or route as robot programs and as pose lists of calibration tools.",
-          options,
+          export_command_options,
           "posewright export route.json --to kuka-krl -o CALPOSES.src",
-          run};
+          run_export};
 }
 
 }  // namespace posewright::cli

@@ -56,7 +56,7 @@ int run_command(const Command& command, const Words& words) {
   return command.run(values, values.count("positional") > 0 ? values["positional"].as<Words>() : Words{});
 }
 
-int run(const Words& words) {
+int run_program(const Words& words) {
   if (words.empty()) {
     fmt::print(stderr, "{}", general_help());
     return bad_input;
@@ -90,7 +90,7 @@ int main(int count, char** arguments) {
     return code;
   };
   try {
-    const int code = cli::run(cli::Words(arguments + 1, arguments + count));
+    const int code = cli::run_program(cli::Words(arguments + 1, arguments + count));
     if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
     return code;
   } catch (const cli::Interrupted&) {

@@ -25,14 +25,14 @@ std::string spectrum_text(const Eigen::VectorXd& sigma) {
   return text + "\n";
 }
 
-std::string percent(double share) {
+std::string share_text(double share) {
   return share >= 0.0995 ? fmt::format("{:.0f} %", 100 * share) : fmt::format("{:.2g} %", 100 * share);
 }
 
 std::string equations(const std::vector<Dependency>& dependencies, const std::vector<Parameter>& parameters) {
   Table table({"not explained", ""}, {Table::Align::right, Table::Align::left});
   for (const Dependency& d : dependencies)
-    table.row({d.remainder < exact ? "exact" : percent(d.remainder), describe(d, parameters)});
+    table.row({d.remainder < exact ? "exact" : share_text(d.remainder), describe(d, parameters)});
   return table.text();
 }
 
@@ -96,7 +96,7 @@ std::string practical_text(const Observation& o) {
     const auto k = Eigen::Index(j);
     const bool worth = p.sigma[k] < label.tolerance;
     table.row({label.name, shown_value(label.tolerance, label.unit), shown_value(p.sigma[k], label.unit),
-               fmt::format("{:.3g}", p.sigma[k] / label.tolerance), percent(p.unexplained[k]),
+               fmt::format("{:.3g}", p.sigma[k] / label.tolerance), share_text(p.unexplained[k]),
                label.role == Role::nuisance ? "nuisance"
                : worth                      ? "yes"
                                             : "no: tolerance says more",

@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "observation_report.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-po::options_description options() {
+po::options_description observe_command_options() {
   po::options_description options("Options");
   options.add_options()                                                        //
       ("variant", text("V"), "only this variant (all)")                        //
@@ -22,7 +23,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_observe(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   ObserveOptions observe;
@@ -42,7 +43,7 @@ int run(const po::variables_map& values, const Words& positional) {
                  {"problem", problem_json(problem)},
                  {"variants", Json::array()}};
     for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
-    fmt::print("{}\n", json.dump(1));
+    fmt::print("{}", json_text(json));
     return done;
   }
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -58,9 +59,9 @@ Command observe_command() {
   return {"observe",
           "PROBLEM",
           "What can be identified: rank, dependencies, smallest number of poses, what is worth identifying.",
-          options,
+          observe_command_options,
           "posewright observe examples/telescope/problem.yaml",
-          run};
+          run_observe};
 }
 
 }  // namespace posewright::cli

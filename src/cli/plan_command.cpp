@@ -11,7 +11,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description options() {
+po::options_description plan_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                               //
       ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")                   //
@@ -34,7 +34,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_plan(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path file = single(positional, "PROBLEM");
   PlanOptions plan_options;
@@ -86,9 +86,9 @@ Command plan_command() {
   return {"plan",
           "PROBLEM",
           "Searches for the poses to measure; writes the plan and the pose list.",
-          options,
+          plan_command_options,
           "posewright plan examples/kr270/problem.yaml --poses 18 -o plan.json --poses-csv poses.csv",
-          run};
+          run_plan};
 }
 
 }  // namespace posewright::cli

@@ -10,7 +10,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description options() {
+po::options_description report_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                          //
       ("output,o", text("FILE"), "the page (report.html; - for none)")                           //
@@ -23,7 +23,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_report(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path plan = single(positional, "PLAN");
   ReportOptions report_options;
@@ -56,9 +56,9 @@ Command report_command() {
   return {"report",
           "PLAN",
           "Writes a page to look at: robot, poses, accuracy, what each pose brings.",
-          options,
+          report_command_options,
           "posewright report plan.json --route route.json -o report.html",
-          run};
+          run_report};
 }
 
 }  // namespace posewright::cli

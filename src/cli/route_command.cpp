@@ -13,7 +13,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description options() {
+po::options_description route_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                      //
       ("from-home", "begin at home (workspace: motion: home, else zero)")                    //
@@ -30,7 +30,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_route(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path plan = single(positional, "PLAN");
   RouteOptions route_options;
@@ -70,9 +70,9 @@ Command route_command() {
   return {"route",
           "PLAN",
           "Puts the poses of a plan in the order that takes least time, with collision-free motions between them.",
-          options,
+          route_command_options,
           "posewright route plan.json --from-home --closed -o route.json",
-          run};
+          run_route};
 }
 
 }  // namespace posewright::cli

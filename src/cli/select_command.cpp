@@ -7,7 +7,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description options() {
+po::options_description select_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                          //
       ("poses", text("N"), "number of blocks to choose (required)")                              //
@@ -22,7 +22,7 @@ po::options_description options() {
   return options;
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_select(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path file = single(positional, "BLOCKS");
   SelectOptions select;
@@ -49,9 +49,9 @@ Command select_command() {
   return {"select",
           "BLOCKS",
           "The same search on your own whitened Jacobian blocks (.npy n×r×m, or CSV of n·r rows × m columns).",
-          options,
+          select_command_options,
           "posewright select blocks.npy --poses 20 -o plan.json",
-          run};
+          run_select};
 }
 
 }  // namespace posewright::cli

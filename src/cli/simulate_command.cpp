@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-po::options_description options() {
+po::options_description simulate_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                      //
       ("draws", text("n"), "virtual calibrations (1000)")                                                    //
@@ -79,10 +80,10 @@ void print_json(const Simulation& result, const SimulateOptions& simulate, const
                {"seed", common.seed},
                {"problem", problem_json(problem)}};
   json.update(simulation_json(result, simulate));
-  fmt::print("{}\n", json.dump(1));
+  fmt::print("{}", json_text(json));
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_simulate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.size() != 2)
     throw InputError({}, "two arguments are needed: PROBLEM PLAN", "see posewright help simulate");
@@ -111,9 +112,9 @@ Command simulate_command() {
       "simulate",
       "PROBLEM PLAN",
       "Virtual experiment: measures a plan on drawn robots, calibrates, compares with the truth and the prediction.",
-      options,
+      simulate_command_options,
       "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000",
-      run};
+      run_simulate};
 }
 
 }  // namespace posewright::cli

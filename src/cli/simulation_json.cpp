@@ -1,6 +1,8 @@
 #include <cmath>
 
+#include "posewright/outputs/json_values.hpp"
 #include "simulation_report.hpp"
+#include "weighting.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -15,7 +17,7 @@ Json options_json(const SimulateOptions& options) {
           {"missing", e.missing},
           {"outliers", e.outliers},
           {"outlier_size", e.outlier_size},
-          {"weights", weighting_name(e.fit.weighting)}};
+          {"weights", weighting_word(e.fit.weighting)}};
 }
 
 Json draws_json(const Simulation& s) {
@@ -56,7 +58,7 @@ Json accuracy_json(const Simulation& s) {
 Json chi_square_json(const ExperimentSummary& summary) {
   return {{"per_freedom", summary.chi_square},
           {"per_freedom_error", summary.chi_square_error},
-          {"rejected", summary.rejected ? Json(*summary.rejected) : Json(nullptr)},
+          {"rejected", value_or_null(summary.rejected)},
           {"rejected_error", summary.rejected ? Json(summary.rejected_error) : Json(nullptr)}};
 }
 

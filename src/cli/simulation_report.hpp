@@ -13,7 +13,4 @@ std::string simulation_text(const Simulation& simulation, const SimulateOptions&
 /// The same for machines: what posewright/simulation/1 has besides program and problem.
 nlohmann::ordered_json simulation_json(const Simulation& simulation, const SimulateOptions& options);
 
-/// "ols", "wls", "robust".
-std::string weighting_name(Weighting weighting);
-
 }  // namespace posewright::cli

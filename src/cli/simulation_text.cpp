@@ -4,6 +4,7 @@
 
 #include "posewright/outputs/table.hpp"
 #include "simulation_report.hpp"
+#include "weighting.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -20,7 +21,7 @@ std::string headline(const Simulation& s, const SimulateOptions& options) {
   else if (options.truth_nominal)
     text += "nominal as in " + s.truth + ", one tolerance (1σ) off where " + s.variant + " estimates";
   else text += "of " + s.truth + ", one tolerance (1σ) off";
-  text += fmt::format("; weights: {}; {} readings a draw\n", weighting_name(e.fit.weighting), s.readings);
+  text += fmt::format("; weights: {}; {} readings a draw\n", weighting_word(e.fit.weighting), s.readings);
   if (s.hidden > 0) text += fmt::format("{} readings more are of targets that cannot be seen.\n", s.hidden);
   if (e.missing > 0)
     text += fmt::format("{:.3g} % of the targets are missing, at random; the prediction counts on that.\n",
@@ -66,10 +67,6 @@ std::string totals_text(const Simulation& s) {
 }
 
 }  // namespace
-
-std::string weighting_name(Weighting weighting) {
-  return weighting == Weighting::ordinary ? "ols" : weighting == Weighting::weighted ? "wls" : "robust";
-}
 
 std::string simulation_text(const Simulation& s, const SimulateOptions& options) {
   std::string text = headline(s, options) + "\n" + parameters_text(s) + "\n" + totals_text(s) + "\nVerdict: ";

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "command.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/pipeline/place_stations.hpp"
+#include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
@@ -15,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-po::options_description options() {
+po::options_description stations_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                     //
       ("choose", text("k"), "how many stations are used (workspace: stations: choose, 1)")  //
@@ -96,7 +95,7 @@ Json ranking_json(const std::vector<StationRank>& ranks) {
   return {{"schema", "posewright/stations/1"}, {"ranking", list}};
 }
 
-int run(const po::variables_map& values, const Words& positional) {
+int run_stations(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   StationOptions stations;
   stations.choose = whole_number(values, "choose", 1, 100);
@@ -112,7 +111,7 @@ int run(const po::variables_map& values, const Words& positional) {
   const std::vector<StationRank> ranks = watched(common, time_limit(values), [&](const Monitor& monitor) {
                                            return place_stations(problem, stations, monitor);
                                          }).result;
-  if (common.json) fmt::print("{}\n", ranking_json(ranks).dump(1));
+  if (common.json) fmt::print("{}", json_text(ranking_json(ranks)));
   else print_report(ranking_text(ranks));
   return done;
 }
@@ -123,9 +122,9 @@ Command stations_command() {
   return {"stations",
           "PROBLEM",
           "Ranks places for the instrument by the plan that each of them allows.",
-          options,
+          stations_command_options,
           "posewright stations examples/cell/problem.yaml --choose 1",
-          run};
+          run_stations};
 }
 
 }  // namespace posewright::cli

@@ -3,12 +3,11 @@
 
 #include "effects.hpp"
 #include "posewright/criterion/discrepancy.hpp"
+#include "posewright/support/dense.hpp"
 #include "regular.hpp"
 
 namespace posewright {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// φ and its parts at one M.
 struct MeanSquare {

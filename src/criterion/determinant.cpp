@@ -1,6 +1,5 @@
 #include "posewright/criterion/determinant.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,13 +7,12 @@
 #include "determinant_nuisance.hpp"
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/inverse_information.hpp"
+#include "posewright/support/dense.hpp"
+#include "regular.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-// In whitened coordinates an average pose adds the identity, so this is a thousandth of a pose.
-constexpr double start_ridge = 1e-3;
 // Removing a block that carries (almost) all information about some direction: 1 − λmax(D_k) below this.
 constexpr double indispensable = 1e-8;
 constexpr int refresh_after = 40;

@@ -4,11 +4,10 @@
 #include <limits>
 
 #include "posewright/criterion/leave_one_out.hpp"
+#include "regular.hpp"
 
 namespace posewright {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Gains come from a fresh factor of the remaining members; the derivative of the concave criterion prunes:
 /// Φ(swap k → j) − Φ ≤ d_j − d_k, d being the sensitivities of the interest information.

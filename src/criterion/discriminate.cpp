@@ -3,13 +3,13 @@
 
 #include "effects.hpp"
 #include "posewright/criterion/discrepancy.hpp"
+#include "posewright/support/dense.hpp"
 #include "product_curvature.hpp"
 #include "regular.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // A residual that is this share of the effect is rounding: the plan has no reading over.
 constexpr double no_residual = 1e-10;
 

@@ -5,14 +5,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "posewright/support/dense.hpp"
+#include "regular.hpp"
 #include "summed_information.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-// In whitened coordinates an average pose adds the identity, so this is a thousandth of a pose.
-constexpr double start_ridge = 1e-3;
 // Exact evaluations for one position. Of concave criteria most are cut off by the derivative before.
 constexpr std::size_t most_evaluated = 16;
 

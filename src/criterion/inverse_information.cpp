@@ -1,10 +1,10 @@
 #include "posewright/criterion/inverse_information.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "posewright/support/dense.hpp"
 #include "regular.hpp"
 
 namespace posewright {

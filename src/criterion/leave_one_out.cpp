@@ -5,13 +5,13 @@
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "posewright/support/dense.hpp"
 #include "regular.hpp"
 #include "summed_information.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Ridge where a member is indispensable; in whitened coordinates an average pose adds the identity.
 constexpr double ridge = 1e-6;
 

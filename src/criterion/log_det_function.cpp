@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/support/dense.hpp"
 #include "regular.hpp"
 
 namespace posewright {

@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "regular.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // The soft minimum lies within ln(variants)/p below the minimum; larger p makes Newton's steps shorter.
 constexpr double sharpness = 100.0;
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <Eigen/Dense>
-
 #include "posewright/blocks/block_array.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 

@@ -6,14 +6,14 @@
 
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "posewright/support/dense.hpp"
+#include "regular.hpp"
 #include "summed_information.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double start_ridge = 1e-3;
-constexpr std::size_t most_evaluated = 12;
+constexpr std::size_t most_evaluated_in_reserve = 12;
 
 class ReserveState : public DesignState {
  public:
@@ -109,7 +109,7 @@ class ReserveState : public DesignState {
     std::vector<int> order;
     for (int j = 0; j < int(d_.size()); ++j)
       if (may_enter(j)) order.push_back(j);
-    const std::size_t keep = std::min(order.size(), most_evaluated);
+    const std::size_t keep = std::min(order.size(), most_evaluated_in_reserve);
     std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(keep), order.end(), [&](int a, int b) {
       return d_[std::size_t(a)] != d_[std::size_t(b)] ? d_[std::size_t(a)] > d_[std::size_t(b)] : a < b;
     });

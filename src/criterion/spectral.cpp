@@ -1,9 +1,10 @@
 #include "posewright/criterion/spectral.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

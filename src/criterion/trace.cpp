@@ -3,14 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "product_curvature.hpp"
 #include "regular.hpp"
 
 namespace posewright {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A_t in whitened coordinates: tr(A M_raw⁻¹ Aᵀ) = tr(A_w M⁻¹ A_wᵀ), A_w = A R⁻¹.
 Eigen::MatrixXd whitened(const CriterionData& data, const Eigen::MatrixXd& A) {

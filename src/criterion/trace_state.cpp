@@ -4,17 +4,15 @@
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
 #include "posewright/criterion/trace.hpp"
+#include "posewright/support/dense.hpp"
 #include "regular.hpp"
 #include "summed_information.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-// In whitened coordinates an average pose adds the identity, so this is a thousandth of a pose.
-constexpr double start_ridge = 1e-3;
 // Smallest eigenvalue of I − D_k for which removing k first keeps its digits.
-constexpr double indispensable = 1e-6;
+constexpr double indispensable_in_trace = 1e-6;
 
 /// Exact changes of φ = tr(L V), V = M⁻¹, B = V L V, by parts. With D_j = J_j V J_jᵀ and T_j = J_j B J_jᵀ,
 ///   adding j:    φ falls by tr((I + D_j)⁻¹ T_j),
@@ -122,7 +120,7 @@ class TraceState : public DesignState {
     own(k, B_, T_k_);
     const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(rows_, rows_) - D_k_;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest);
-    if (!(eigen.eigenvalues()[0] > indispensable)) return false;
+    if (!(eigen.eigenvalues()[0] > indispensable_in_trace)) return false;
     E_ = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
     leaving_ = E_.cwiseProduct(T_k_).sum();
     return true;

@@ -8,6 +8,7 @@
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "displacement.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr int newton_steps = 50;
 // Newton's method ends after a step this small (m, rad): it squares the error, so what is left is rounding.
 constexpr double newton_tolerance = 1e-12;

@@ -12,7 +12,7 @@ namespace {
 
 enum Parameters { length, pin_x, pin_y, offset, base };
 
-constexpr double length_tolerance = 5e-3, angle_tolerance = std::numbers::pi / 180;  // m, rad
+constexpr double linkage_length_tolerance = 5e-3, linkage_angle_tolerance = std::numbers::pi / 180;  // m, rad
 
 /// Measurement spec reduced to what the two markers need.
 const PointsMeasurement& markers_of(const MeasurementSpec& measurement) {
@@ -34,11 +34,11 @@ CompensatorGeometry::CompensatorGeometry(const CompensatorGeometrySpec& spec, co
       noise_(markers_of(measurement).noise),
       repeats_(measurement.repeats),
       repeatability_(measurement.repeatability) {
-  parameters_ = {{"L", "m", spec.L, length_tolerance, Role::interest},
-                 {"ax", "m", spec.ax, length_tolerance, Role::interest},
-                 {"ay", "m", spec.ay, length_tolerance, Role::interest},
-                 {"q2.offset", "rad", 0.0, angle_tolerance, Role::interest}};
-  append_displacement(parameters_, "base", Eigen::Isometry3d::Identity(), 10e-3, angle_tolerance);
+  parameters_ = {{"L", "m", spec.L, linkage_length_tolerance, Role::interest},
+                 {"ax", "m", spec.ax, linkage_length_tolerance, Role::interest},
+                 {"ay", "m", spec.ay, linkage_length_tolerance, Role::interest},
+                 {"q2.offset", "rad", 0.0, linkage_angle_tolerance, Role::interest}};
+  append_displacement(parameters_, "base", Eigen::Isometry3d::Identity(), 10e-3, linkage_angle_tolerance);
   for (int i = 0; i < int(parameters_.size()); ++i) geometric_.push_back({i, i >= base ? 0 : i == offset ? 2 : 1});
   coordinates_ = {{"q2", "rad", spec.lower, spec.upper}};
   for (const char* pin : {"P0", "P1"})

@@ -6,21 +6,21 @@
 namespace posewright {
 namespace {
 
-constexpr int legs = 3, per_leg = 6;
-constexpr double length_tolerance = 0.5e-3, angle_tolerance = 1e-3;  // m, rad
-constexpr std::array<const char*, per_leg> names = {"base_radius", "platform_radius", "arm",
-                                                    "forearm",     "offset",          "azimuth"};
+constexpr int delta_legs = 3, delta_parameters = 6;
+constexpr double delta_length_tolerance = 0.5e-3, delta_angle_tolerance = 1e-3;  // m, rad
+constexpr std::array<const char*, delta_parameters> delta_names = {"base_radius", "platform_radius", "arm",
+                                                                   "forearm",     "offset",          "azimuth"};
 
-using Leg = std::array<double, per_leg>;
+using DeltaLeg = std::array<double, delta_parameters>;
 
-Leg nominal_leg(const DeltaSpec& spec, int i) {
+DeltaLeg nominal_leg(const DeltaSpec& spec, int i) {
   return {spec.base_radius, spec.platform_radius, spec.arm, spec.forearm, 0.0, i * 2 * std::numbers::pi / 3};
 }
 
-Leg corrected_leg(const DeltaSpec& spec, int i, std::span<const double> own) {
-  Leg leg = nominal_leg(spec, i);
+DeltaLeg corrected_leg(const DeltaSpec& spec, int i, std::span<const double> own) {
+  DeltaLeg leg = nominal_leg(spec, i);
   if (!own.empty())
-    for (std::size_t k = 0; k < per_leg; ++k) leg[k] += own[std::size_t(per_leg * i) + k];
+    for (std::size_t k = 0; k < delta_parameters; ++k) leg[k] += own[std::size_t(delta_parameters * i) + k];
   return leg;
 }
 
@@ -28,12 +28,12 @@ Leg corrected_leg(const DeltaSpec& spec, int i, std::span<const double> own) {
 
 Delta::Delta(const DeltaSpec& spec) : ClosedChain(spec.placement), spec_(spec) {
   std::vector<Parameter> own;
-  for (int i = 0; i < legs; ++i) {
+  for (int i = 0; i < delta_legs; ++i) {
     const std::string prefix = "leg_" + std::to_string(i + 1) + ".";
-    const Leg nominal = nominal_leg(spec, i);
-    for (std::size_t k = 0; k < per_leg; ++k)
-      own.push_back({prefix + names[k], k < 4 ? "m" : "rad", nominal[k], k < 4 ? length_tolerance : angle_tolerance,
-                     Role::interest});
+    const DeltaLeg nominal = nominal_leg(spec, i);
+    for (std::size_t k = 0; k < delta_parameters; ++k)
+      own.push_back({prefix + delta_names[k], k < 4 ? "m" : "rad", nominal[k],
+                     k < 4 ? delta_length_tolerance : delta_angle_tolerance, Role::interest});
     actuators_.push_back({prefix + "rho", "rad", spec.travel_lower, spec.travel_upper});
   }
   for (int k = 0; k < 3; ++k) coordinates_.push_back({std::string(1, "xyz"[k]), "m", spec.lower[k], spec.upper[k]});
@@ -46,8 +46,8 @@ Eigen::Isometry3d Delta::do_platform(std::span<const double> q, Twists& freedoms
 }
 
 bool Delta::do_inverse_kinematics(std::span<const double> q, std::span<const double> own, std::span<double> rho) const {
-  for (int i = 0; i < legs; ++i) {
-    const Leg leg = corrected_leg(spec_, i, own);
+  for (int i = 0; i < delta_legs; ++i) {
+    const DeltaLeg leg = corrected_leg(spec_, i, own);
     const Eigen::Vector3d d(std::cos(leg[5]), std::sin(leg[5]), 0);
     // From the arm's pivot to the platform's joint; A cos θ + B sin θ = K closes the loop.
     const Eigen::Vector3d c = Eigen::Vector3d(q[0], q[1], q[2]) + (leg[1] - leg[0]) * d;
@@ -65,8 +65,8 @@ std::vector<Polyline> Delta::do_skeleton(std::span<const double> q, std::span<co
   const Eigen::Vector3d centre(q[0], q[1], q[2]);
   std::vector<Polyline> lines;
   Polyline base, platform;
-  for (int i = 0; i < legs; ++i) {
-    const Leg leg = nominal_leg(spec_, i);
+  for (int i = 0; i < delta_legs; ++i) {
+    const DeltaLeg leg = nominal_leg(spec_, i);
     const Eigen::Vector3d d(std::cos(leg[5]), std::sin(leg[5]), 0);
     const double theta = rho[std::size_t(i)];
     base.emplace_back(leg[0] * d);
@@ -84,8 +84,8 @@ std::vector<Polyline> Delta::do_skeleton(std::span<const double> q, std::span<co
 
 void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
                      std::span<const int> selected, Loops& out) const {
-  for (int i = 0; i < legs; ++i) {
-    const Leg leg = corrected_leg(spec_, i, own);
+  for (int i = 0; i < delta_legs; ++i) {
+    const DeltaLeg leg = corrected_leg(spec_, i, own);
     const double theta = rho[std::size_t(i)] + leg[4], cosine = std::cos(theta), sine = std::sin(theta);
     const Eigen::Vector3d d(std::cos(leg[5]), std::sin(leg[5]), 0), across(-d.y(), d.x(), 0);
     const double radial = leg[1] - leg[0] - leg[2] * cosine;
@@ -93,10 +93,11 @@ void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std
     const Eigen::Vector3d e = h.normalized();
     out.value[i] = leg[3] - h.norm();
     const double swing = -leg[2] * (sine * e.dot(d) + cosine * e.z());
-    const Leg columns = {e.dot(d), -e.dot(d), cosine * e.dot(d) - sine * e.z(), 1.0, swing, -radial * e.dot(across)};
+    const DeltaLeg columns = {e.dot(d), -e.dot(d), cosine * e.dot(d) - sine * e.z(),
+                              1.0,      swing,     -radial * e.dot(across)};
     for (std::size_t c = 0; c < selected.size(); ++c)
-      if (selected[c] >= 0 && selected[c] / per_leg == i)
-        out.parameter(i, Eigen::Index(c)) = columns[std::size_t(selected[c] % per_leg)];
+      if (selected[c] >= 0 && selected[c] / delta_parameters == i)
+        out.parameter(i, Eigen::Index(c)) = columns[std::size_t(selected[c] % delta_parameters)];
     out.platform.row(i).head<3>() = -e.transpose();
     out.actuator(i, i) = swing;
   }

@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "displacement.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 // Axes closer than this (sine of their angle) count as parallel: rounded URDFs (3.1416) are 1e-5 off, and a common
 // normal of almost parallel axes lies anywhere. Lines closer than this (m) coincide.
 constexpr double parallel = 1e-3, coincident = 1e-7;

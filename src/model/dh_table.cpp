@@ -1,6 +1,7 @@
 #include "posewright/model/dh_table.hpp"
 
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

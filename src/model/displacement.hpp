@@ -1,12 +1,15 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/tip_model.hpp"
 
 /// Six small displacements of a frame, D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), and the twists along them.
 namespace posewright {
+
+inline constexpr double degree = std::numbers::pi / 180;
 
 inline constexpr std::array<const char*, 6> displacement_names = {"x", "y", "z", "rx", "ry", "rz"};
 

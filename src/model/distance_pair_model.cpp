@@ -3,14 +3,9 @@
 #include "measure_distance.hpp"
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/model/pair_names.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
-namespace {
-
-constexpr double default_target_tolerance = 1e-3;  // m
-
-}  // namespace
-
 struct DistancePairModel::End {
   Eigen::Isometry3d X;
   Twists twists, reading_twists;

@@ -9,7 +9,6 @@
 namespace posewright {
 namespace {
 
-constexpr std::size_t max_joints = 64;
 // 1σ before calibration: a joint's compliance is known from similar arms to about a third, at the least to this much.
 constexpr double relative_tolerance = 0.3;
 constexpr double compliance_tolerance = 0.3e-6;  // rad/(N·m); m/N for prismatic joints

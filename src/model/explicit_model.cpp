@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "posewright/model/closed_chain.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

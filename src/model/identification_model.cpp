@@ -1,6 +1,7 @@
 #include "posewright/model/identification_model.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "posewright/model/pair_names.hpp"
@@ -154,10 +155,19 @@ void IdentificationModel::hide(std::span<const double> q, Linearisation& out) co
 }
 
 int IdentificationModel::visible_rows(std::span<const double> q) const {
-  if (visibility_ == nullptr || rows_per_target_ == 0) return rows_;
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(rows_);
+  blank_hidden(q, y);
+  return rows_ - int(y.array().isNaN().count());
+}
+
+void IdentificationModel::blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const {
+  if (visibility_ == nullptr || rows_per_target_ == 0) return;
   std::vector<char> seen(std::size_t(visibility_->targets()));
   visibility_->visible(q, seen);
-  return rows_ - rows_per_target_ * int(std::count(seen.begin(), seen.end(), 0));
+  for (std::size_t t = 0; t < seen.size(); ++t)
+    if (seen[t] == 0)
+      y.segment(Eigen::Index(t) * rows_per_target_, rows_per_target_)
+          .setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 bool IdentificationModel::reading_twists(std::span<const double> q,

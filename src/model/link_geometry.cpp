@@ -3,6 +3,7 @@
 #include <map>
 
 #include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
 #include "urdf_document.hpp"
 
 namespace posewright {

@@ -5,6 +5,7 @@
 #include "displacement.hpp"
 #include "pinhole.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {
@@ -86,7 +87,6 @@ CameraModel::CameraModel(const MeasurementSpec& spec)
   rows_ = 2 * int(points_.size());
   replaces_tool_ = true;
   unseen_reason_ = "board not in the image or behind the camera";
-  constexpr double degree = std::numbers::pi / 180;
   append_displacement(parameters_, "camera", X_CarrierCamera_, 5e-3, 1 * degree);
   append_displacement(parameters_, "board", X_CarrierBoard_, 5e-3, 1 * degree);
   // The one on the hand is the tool; the other one is fixed in the measurement frame, as the base is.

@@ -1,14 +1,9 @@
 #include "measure_points.hpp"
 
 #include "point_noise.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
-namespace {
-
-constexpr double default_target_tolerance = 1e-3;  // m
-
-}  // namespace
-
 PointsModel::PointsModel(const MeasurementSpec& spec)
     : spec_(std::get<PointsMeasurement>(spec.instrument)),
       places_(spec_.stations),

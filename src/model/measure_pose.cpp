@@ -1,29 +1,14 @@
 #include "measure_pose.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "displacement.hpp"
 #include "measure_points.hpp"
+#include "posewright/model/rotation_vector.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
-
-Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
-  if (!R.allFinite()) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
-}
-
-/// NaN where v is: an orientation that was not read is none.
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& v) {
-  const double angle = v.norm();
-  if (std::isnan(angle)) return Eigen::Matrix3d::Constant(angle);
-  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
-}
 
 /// The points of a photogrammetric pose, measured once.
 std::unique_ptr<MeasurementModel> points_of(const PoseMeasurement& pose) {

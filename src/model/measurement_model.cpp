@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -39,8 +41,8 @@ Eigen::Matrix<double, 6, 6> fitted_pose_covariance(const MeasurementModel& measu
   const MeasurementModel::Sighting sighting{X, {}, 0};
   measurement.rows_of_twists(sighting, about_tip, y);
   measurement.covariance(sighting, noise);
-  const Eigen::LLT<Eigen::MatrixXd> factor(noise);
-  if (factor.info() != Eigen::Success) throw CannotDo("measurement: the noise covariance is not positive definite");
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  factorise_covariance(noise, factor);
   factor.matrixL().solveInPlace(y);
   const Twist scale = y.colwise().norm().transpose();
   const char* const message =

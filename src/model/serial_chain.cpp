@@ -10,9 +10,6 @@
 namespace posewright {
 namespace {
 
-constexpr std::size_t max_joints = 64;
-constexpr double degree = std::numbers::pi / 180;
-
 /// Everything of one configuration that columns are made of: displacement axes of base, joints and tool, joint axes.
 struct ChainState {
   std::array<DisplacementAxes, max_joints + 2> displacement;

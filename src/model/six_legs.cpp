@@ -10,7 +10,7 @@
 namespace posewright {
 namespace {
 
-constexpr int legs = 6;
+constexpr int leg_count = 6;
 constexpr double default_length_tolerance = 0.5e-3;     // m
 constexpr double default_direction_tolerance = 1e-3;    // rad, as components of a unit vector
 constexpr double default_deformation_tolerance = 0.01;  // m of platform per m of actuator
@@ -27,11 +27,11 @@ constexpr std::array<Entry, 7> extend_entries = {ax, ay, az, bx, by, bz, length}
 constexpr std::array<const char*, 9> entry_names = {"ax", "ay", "az", "bx", "by", "bz", "ux", "uy", "l"};
 
 /// One leg with its corrections applied.
-struct Leg {
+struct PlacedLeg {
   Eigen::Vector3d a, b, u;
   double l;
 
-  Leg(const LegSpec& spec, std::span<const Entry> entries, std::span<const double> correction)
+  PlacedLeg(const LegSpec& spec, std::span<const Entry> entries, std::span<const double> correction)
       : a(spec.a), b(spec.b), u(spec.u), l(spec.l) {
     for (std::size_t k = 0; k < correction.size(); ++k) {
       const Entry entry = entries[k];
@@ -59,13 +59,13 @@ struct Deformation {
   }
   double lift(int leg, std::span<const double> rho) const {
     double sum = kappa * rho[std::size_t(leg)];
-    for (int j = 0; j < legs; ++j) sum += K[std::size_t(6 * leg + j)] * rho[std::size_t(j)];
+    for (int j = 0; j < leg_count; ++j) sum += K[std::size_t(6 * leg + j)] * rho[std::size_t(j)];
     return sum;
   }
 };
 
 /// Slide that gives the leg its length: ‖q − ρu‖ = l, q = p + R b − a.
-bool slide_of(const Leg& leg, const Eigen::Vector3d& joint, double& rho) {
+bool slide_of(const PlacedLeg& leg, const Eigen::Vector3d& joint, double& rho) {
   const Eigen::Vector3d q = joint - leg.a;
   const double along = leg.u.dot(q);
   const double under_root = along * along - (q.squaredNorm() - leg.l * leg.l);
@@ -85,7 +85,7 @@ std::span<const double> leg_part(std::span<const double> own, int leg, int per_l
 
 std::vector<Parameter> catalogue(const SixLegsSpec& spec) {
   std::vector<Parameter> parameters;
-  for (int i = 0; i < legs; ++i) {
+  for (int i = 0; i < leg_count; ++i) {
     const LegSpec& leg = spec.legs[std::size_t(i)];
     const std::array<double, 9> nominal = {leg.a.x(), leg.a.y(), leg.a.z(), leg.b.x(), leg.b.y(),
                                            leg.b.z(), leg.u.x(), leg.u.y(), leg.l};
@@ -98,8 +98,8 @@ std::vector<Parameter> catalogue(const SixLegsSpec& spec) {
   }
   if (spec.actuation == LegActuation::extend) return parameters;
   parameters.push_back({"kappa", "1", 0.0, default_deformation_tolerance, Role::interest});
-  for (int i = 1; i <= legs; ++i)
-    for (int j = 1; j <= legs; ++j)
+  for (int i = 1; i <= leg_count; ++i)
+    for (int j = 1; j <= leg_count; ++j)
       parameters.push_back(
           {"K_" + std::to_string(i) + std::to_string(j), "1", 0.0, default_deformation_tolerance, Role::interest});
   return parameters;
@@ -112,7 +112,7 @@ SixLegs::SixLegs(const SixLegsSpec& spec, const std::vector<CoordinateLimits>& p
       spec_(spec),
       X_BaseReference_(isometry(spec.reference)),
       per_leg_(int(entries_of(spec.actuation).size())) {
-  for (int i = 0; i < legs; ++i)
+  for (int i = 0; i < leg_count; ++i)
     actuators_.push_back({"leg_" + std::to_string(i + 1) + ".rho", "m", spec.travel_lower, spec.travel_upper});
   for (std::size_t k = 0; k < 6; ++k) {
     // Without limits from the problem file, a platform moves as far as its actuators let it: anything larger serves.
@@ -155,19 +155,19 @@ bool SixLegs::do_inverse_kinematics(std::span<const double> q, std::span<const d
   const Eigen::Isometry3d X = platform_pose(q);
   const auto entries = entries_of(spec_.actuation);
   const bool slides = spec_.actuation == LegActuation::slide;
-  const Deformation deformation(slides && !own.empty() ? own.subspan(std::size_t(legs * per_leg_)) : own.first(0));
+  const Deformation deformation(slides && !own.empty() ? own.subspan(std::size_t(leg_count * per_leg_)) : own.first(0));
   std::array<double, 6> lift{}, before{};
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    for (int i = 0; i < legs; ++i) {
+    for (int i = 0; i < leg_count; ++i) {
       const auto k = std::size_t(i);
-      const Leg leg(spec_.legs[k], entries, leg_part(own, i, per_leg_));
+      const PlacedLeg leg(spec_.legs[k], entries, leg_part(own, i, per_leg_));
       const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift[k] * Eigen::Vector3d::UnitZ());
       if (!slides) rho[k] = (joint - leg.a).norm() - leg.l;
       else if (!slide_of(leg, joint, rho[k])) return false;
     }
     if (deformation.none || std::equal(rho.begin(), rho.end(), before.begin())) return true;
     std::copy(rho.begin(), rho.end(), before.begin());
-    for (int i = 0; i < legs; ++i) lift[std::size_t(i)] = deformation.lift(i, rho);
+    for (int i = 0; i < leg_count; ++i) lift[std::size_t(i)] = deformation.lift(i, rho);
   }
   return true;  // alternates between neighbouring doubles
 }
@@ -176,7 +176,7 @@ std::vector<Polyline> SixLegs::do_skeleton(std::span<const double> q, std::span<
   const Eigen::Isometry3d X = platform_pose(q);
   std::vector<Polyline> lines;
   Polyline base, platform;
-  for (std::size_t i = 0; i < legs; ++i) {
+  for (std::size_t i = 0; i < leg_count; ++i) {
     const LegSpec& leg = spec_.legs[i];
     const Eigen::Vector3d joint = X * leg.b;
     if (spec_.actuation == LegActuation::slide) lines.push_back({leg.a, leg.a + rho[i] * leg.u, joint});
@@ -196,11 +196,11 @@ void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, s
   const Eigen::Isometry3d X = platform_pose(q);
   const auto entries = entries_of(spec_.actuation);
   const bool slides = spec_.actuation == LegActuation::slide;
-  const int first_deformation = legs * per_leg_;
+  const int first_deformation = leg_count * per_leg_;
   const Deformation deformation(slides && !own.empty() ? own.subspan(std::size_t(first_deformation)) : own.first(0));
-  for (int i = 0; i < legs; ++i) {
+  for (int i = 0; i < leg_count; ++i) {
     const double slide = slides ? rho[std::size_t(i)] : 0.0, extension = slides ? 0.0 : rho[std::size_t(i)];
-    const Leg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
+    const PlacedLeg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
     const double lift = deformation.none ? 0.0 : deformation.lift(i, rho);
     const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift * Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d h = joint - leg.a - slide * leg.u, e = h.normalized();
@@ -218,15 +218,15 @@ void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, s
       if (j < 0) continue;
       if (j < first_deformation) value = j / per_leg_ == i ? column_entry(entries[std::size_t(j % per_leg_)]) : 0.0;
       else if (j == first_deformation) value = -e_platform.z() * rho[std::size_t(i)];
-      else if ((j - first_deformation - 1) / legs == i)
-        value = -e_platform.z() * rho[std::size_t((j - first_deformation - 1) % legs)];
+      else if ((j - first_deformation - 1) / leg_count == i)
+        value = -e_platform.z() * rho[std::size_t((j - first_deformation - 1) % leg_count)];
     }
     // A twist (v, ω) moves the platform joint by v + ω × joint.
     out.platform.row(i) << -e.transpose(), -joint.cross(e).transpose();
     out.actuator(i, i) = slides ? leg.u.dot(e) : 1.0;
     if (deformation.none) continue;
     out.actuator(i, i) -= deformation.kappa * e_platform.z();
-    for (int j = 0; j < legs; ++j) out.actuator(i, j) -= deformation.K[std::size_t(6 * i + j)] * e_platform.z();
+    for (int j = 0; j < leg_count; ++j) out.actuator(i, j) -= deformation.K[std::size_t(6 * i + j)] * e_platform.z();
   }
 }
 

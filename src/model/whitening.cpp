@@ -3,16 +3,13 @@
 #include <cmath>
 
 #include "posewright/blocks/block_array.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
-void factorise_covariance(Linearisation& scratch) {
-  scratch.factor.compute(scratch.covariance);
-  if (scratch.factor.info() != Eigen::Success)
-    throw CannotDo("measurement: the noise covariance is not positive definite");
-}
+[[noreturn]] void refuse_covariance() { throw CannotDo("measurement: the noise covariance is not positive definite"); }
 
 /// Divides rows of `block` by the lower triangle l, row by row: the block is row-major.
 template <class Block, class Triangle>
@@ -28,11 +25,10 @@ void forward_substitute(const Triangle& l, Block& block) {
 /// (I + R N Nᵀ Rᵀ)^{-1/2} R C, so that the cost grows with the readings r linearly.
 void whiten_factored(Linearisation& s, BlockArray::Map& block) {
   if (s.covariance.isDiagonal(0.0)) {
-    if (!(s.covariance.diagonal().minCoeff() > 0))
-      throw CannotDo("measurement: the noise covariance is not positive definite");
+    if (!(s.covariance.diagonal().minCoeff() > 0)) refuse_covariance();
     for (Eigen::Index i = 0; i < s.basis.rows(); ++i) s.basis.row(i) /= std::sqrt(s.covariance(i, i));
   } else {
-    factorise_covariance(s);
+    factorise_covariance(s.covariance, s.factor);
     s.factor.matrixL().solveInPlace(s.basis);
   }
   s.compression.compute(s.basis);
@@ -56,6 +52,11 @@ void whiten_factored(Linearisation& s, BlockArray::Map& block) {
 
 }  // namespace
 
+void factorise_covariance(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen::MatrixXd>& factor) {
+  factor.compute(covariance);
+  if (factor.info() != Eigen::Success) refuse_covariance();
+}
+
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
                     std::span<const int> selected, Linearisation& scratch, double* out, int stride) {
   const Eigen::Index rows = model.block_rows(selected);
@@ -66,7 +67,7 @@ bool whitened_block(const IdentificationModel& model, std::span<const double> q,
     return true;
   }
   if (!model.linearise(q, correction, selected, scratch)) return false;
-  factorise_covariance(scratch);
+  factorise_covariance(scratch.covariance, scratch.factor);
   block = scratch.G;
   forward_substitute(scratch.factor.matrixLLT(), block);
   return true;

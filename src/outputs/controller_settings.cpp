@@ -12,9 +12,9 @@ using formats::YamlList;
 
 const std::string allowed_keys = "allowed: sign, zero_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm";
 
-class Reader {
+class SettingsReader {
  public:
-  Reader(const YamlList& yaml, ControllerSettings& settings) : yaml_(yaml), settings_(settings) {}
+  SettingsReader(const YamlList& yaml, ControllerSettings& settings) : yaml_(yaml), settings_(settings) {}
 
   void read(const YAML::Node& root) {
     if (!root.IsMap()) yaml_.fail(root, "is no mapping", allowed_keys);
@@ -46,7 +46,7 @@ class Reader {
       if (pivot.size() != 3) yaml_.fail(at, "pivot_mm has not three numbers", "[R, S, T] in mm");
       settings_.pivot_mm = {pivot[0], pivot[1], pivot[2]};
     } else {
-      yaml_.fail(at, "unknown key " + formats::quoted(key), allowed_keys);
+      yaml_.fail(at, "unknown key " + formats::in_quotes(key), allowed_keys);
     }
   }
 
@@ -77,7 +77,7 @@ ControllerSettings parse_controller_settings(const std::string& text, const std:
   settings.file = file;
   const YamlList yaml(file);
   try {
-    Reader(yaml, settings).read(YAML::Load(text));
+    SettingsReader(yaml, settings).read(YAML::Load(text));
   } catch (const YAML::Exception& error) {
     throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + formats::ascii(error.msg), "");
   }

@@ -4,16 +4,9 @@
 
 #include <cmath>
 
+#include "posewright/outputs/json_values.hpp"
+
 namespace posewright {
-namespace {
-
-template <class T>
-nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
-}  // namespace
-
 nlohmann::ordered_json discrimination_json(const Discrimination& test) {
   return {{"truth", test.truth},
           {"noncentrality", test.noncentrality()},

@@ -1,7 +1,7 @@
-#include <nlohmann/json.hpp>
 
 #include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/write_plan.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
 
@@ -206,7 +206,7 @@ std::string plan_json(const Plan& plan) {
   json["poses"] = Json::array();
   for (const PlannedPose& pose : plan.poses) json["poses"].push_back(pose_json(pose));
   json["statistics"] = statistics_json(plan.statistics);
-  return json.dump(1) + "\n";
+  return json_text(json);
 }
 
 }  // namespace posewright

@@ -32,9 +32,6 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
-/// Rounded down: a certificate must not promise more than was proved.
-std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
-
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved)
@@ -56,7 +53,7 @@ std::string certificate_text(const Plan& plan) {
   if (c.workspace)
     text +=
         fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof).\n",
-                    percent(c.workspace->efficiency));
+                    searched_percent(c.workspace->efficiency));
   return text;
 }
 

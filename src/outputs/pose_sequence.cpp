@@ -4,58 +4,56 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "formats/text.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright {
 namespace {
 
-using Json = nlohmann::json;
-
 /// Names must fit a table, a comment, a cell: no line ends, no controls.
-std::string name_of(const Json& json, const SourcePlace& place) {
+std::string name_of(const nlohmann::json& json, const SourcePlace& place) {
   const std::string name = json.get<std::string>();
   if (name.empty() || std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
-    throw InputError(place, "has a name " + formats::quoted(name), "names without control characters");
+    throw InputError(place, "has a name " + formats::in_quotes(name), "names without control characters");
   return name;
 }
 
-std::vector<std::string> names_of(const Json& json, const SourcePlace& place) {
+std::vector<std::string> names_of(const nlohmann::json& json, const SourcePlace& place) {
   std::vector<std::string> names;
-  for (const Json& name : json) names.push_back(name_of(name, place));
+  for (const nlohmann::json& name : json) names.push_back(name_of(name, place));
   return names;
 }
 
-double number_of(const Json& json, const SourcePlace& place) {
+double number_of(const nlohmann::json& json, const SourcePlace& place) {
   const double value = json.get<double>();
   if (!std::isfinite(value)) throw InputError(place, "has a number that is not finite", "finite numbers");
   return value == 0 ? 0.0 : value;
 }
 
-std::vector<double> numbers_of(const Json& json, const SourcePlace& place) {
+std::vector<double> numbers_of(const nlohmann::json& json, const SourcePlace& place) {
   std::vector<double> numbers;
-  for (const Json& value : json) numbers.push_back(number_of(value, place));
+  for (const nlohmann::json& value : json) numbers.push_back(number_of(value, place));
   return numbers;
 }
 
 /// −1 for anything that is no id.
-int id_of(const Json& json) {
+int id_of(const nlohmann::json& json) {
   const bool fits = json.is_number_integer() && json >= 0 && json <= 1'000'000'000;
   return fits ? json.get<int>() : -1;
 }
 
-std::string label_of(const Json& pose, const char* key, const SourcePlace& place) {
+std::string label_of(const nlohmann::json& pose, const char* key, const SourcePlace& place) {
   return !pose.contains(key) || pose[key].is_null() ? std::string() : name_of(pose[key], place);
 }
 
-Eigen::Vector3d vector_of(const Json& json, const SourcePlace& place) {
+Eigen::Vector3d vector_of(const nlohmann::json& json, const SourcePlace& place) {
   return {number_of(json.at(0), place), number_of(json.at(1), place), number_of(json.at(2), place)};
 }
 
-Eigen::Isometry3d tool_pose_of(const Json& json, const SourcePlace& place) {
-  const Json& q = json.at("quaternion_xyzw");
+Eigen::Isometry3d tool_pose_of(const nlohmann::json& json, const SourcePlace& place) {
+  const nlohmann::json& q = json.at("quaternion_xyzw");
   const Eigen::Quaterniond rotation(number_of(q.at(3), place), number_of(q.at(0), place), number_of(q.at(1), place),
                                     number_of(q.at(2), place));
   if (!(std::abs(rotation.norm() - 1) < 1e-6)) throw InputError(place, "has a quaternion not of length 1", "");
@@ -65,9 +63,11 @@ Eigen::Isometry3d tool_pose_of(const Json& json, const SourcePlace& place) {
   return X;
 }
 
-class Reader {
+class SequenceReader {
  public:
-  Reader(const Json& json, const std::string& file) : json_(json), place_{file, 0} { sequence_.file = file; }
+  SequenceReader(const nlohmann::json& json, const std::string& file) : json_(json), place_{file, 0} {
+    sequence_.file = file;
+  }
 
   PoseSequence read() {
     const std::string schema = json_.value("schema", std::string("posewright/plan/1"));
@@ -75,17 +75,17 @@ class Reader {
     if (json_.contains("problem") && json_["problem"].is_object()) read_problem(json_["problem"]);
     const bool list = schema == "posewright/poses/1";
     if (!sequence_.is_route && !list && schema != "posewright/plan/1" && schema != "posewright/evaluation/1")
-      throw InputError(place_, "has schema " + formats::quoted(schema),
+      throw InputError(place_, "has schema " + formats::in_quotes(schema),
                        "allowed: posewright/plan/1, posewright/route/1, posewright/evaluation/1, posewright/poses/1");
     if (sequence_.is_route || list) {
       sequence_.names = names_of(json_.at("names"), place_);
       sequence_.units = names_of(json_.at("units"), place_);
     }
-    for (const Json& pose : json_.at("poses")) read_pose(pose, list ? "values" : "configuration");
+    for (const nlohmann::json& pose : json_.at("poses")) read_pose(pose, list ? "values" : "configuration");
     if (sequence_.poses.empty()) throw InputError(place_, "has no poses", "at least one is needed");
     for (const std::string& unit : sequence_.units)
       if (unit != "rad" && unit != "m")
-        throw InputError(place_, "has unit " + formats::quoted(unit), "allowed: rad, m");
+        throw InputError(place_, "has unit " + formats::in_quotes(unit), "allowed: rad, m");
     if (sequence_.names.size() != sequence_.units.size())
       throw InputError(place_, "has names and units of different number", "one unit a name");
     require_ids();
@@ -94,15 +94,15 @@ class Reader {
   }
 
  private:
-  void read_problem(const Json& json) {
+  void read_problem(const nlohmann::json& json) {
     sequence_.problem_sha256 = json.value("sha256", std::string());
     if (!json.contains("parameters") || !json["parameters"].is_object()) return;
-    const Json& parameters = json["parameters"];
+    const nlohmann::json& parameters = json["parameters"];
     sequence_.parameters_file = {parameters.value("file", std::string()), parameters.value("sha256", std::string()),
                                  parameters.value("variant", std::string())};
   }
 
-  void read_pose(const Json& json, const char* key) {
+  void read_pose(const nlohmann::json& json, const char* key) {
     SequencePose pose;
     pose.id = json.contains("id") ? id_of(json["id"]) : int(sequence_.poses.size()) + 1;
     pose.measured = json.value("measured", false);
@@ -129,7 +129,7 @@ class Reader {
     if (json.contains("actuators") && !json["actuators"].empty()) sequence_.is_platform = true;
     if (json.contains("tool_pose")) pose.tool_pose = tool_pose_of(json["tool_pose"], place_);
     if (json.contains("targets"))
-      for (const Json& target : json["targets"])
+      for (const nlohmann::json& target : json["targets"])
         pose.targets.push_back({name_of(target.at("target"), place_), label_of(target, "station", place_),
                                 vector_of(target.at("position"), place_),
                                 target.contains("hidden_by") && !target["hidden_by"].is_null()});
@@ -154,19 +154,19 @@ class Reader {
     sequence_.closed = json_.at("closed").get<bool>();
     sequence_.home = numbers_of(json_.at("home"), place_);
     sequence_.settle = number_of(json_.at("seconds").at("settle"), place_) / double(sequence_.poses.size());
-    for (const Json& json : json_.at("motions")) {
+    for (const nlohmann::json& json : json_.at("motions")) {
       SequenceMotion motion;
       motion.from = id_of(json.at("from"));
       motion.to = id_of(json.at("to"));
       motion.seconds = number_of(json.at("seconds"), place_);
-      for (const Json& point : json.at("points")) motion.points.push_back(numbers_of(point, place_));
+      for (const nlohmann::json& point : json.at("points")) motion.points.push_back(numbers_of(point, place_));
       sequence_.motions.push_back(std::move(motion));
     }
     if (json_.contains("references"))
-      for (const Json& check : json_["references"])
+      for (const nlohmann::json& check : json_["references"])
         for (SequencePose& pose : sequence_.poses)
           if (pose.id == id_of(check.at("after_pose")))
-            for (const Json& target : check.at("targets"))
+            for (const nlohmann::json& target : check.at("targets"))
               pose.references.push_back(name_of(target.at("target"), place_));
     require_motions();
   }
@@ -202,7 +202,7 @@ class Reader {
                       [](double a, double b) { return std::abs(a - b) < 1e-9; });
   }
 
-  const Json& json_;
+  const nlohmann::json& json_;
   SourcePlace place_;
   PoseSequence sequence_;
 };
@@ -211,9 +211,9 @@ class Reader {
 
 PoseSequence parse_sequence(const std::string& text, const std::string& file) {
   try {
-    const Json json = Json::parse(text);
-    return Reader(json, file).read();
-  } catch (const Json::exception&) {
+    const nlohmann::json json = parse_json(text);
+    return SequenceReader(json, file).read();
+  } catch (const nlohmann::json::exception&) {
     throw InputError({file, 0}, "is no plan with configurations",
                      "plan.json or route.json as posewright writes them are expected");
   }

@@ -1,7 +1,7 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "posewright/outputs/report.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
 
@@ -118,8 +118,8 @@ std::string report_json(const Report& report) {
                {"version", version},
                {"title", report.title},
                {"notes", report.notes},
-               {"plan", Json::parse(report.plan_json)},
-               {"route", report.route_json.empty() ? Json(nullptr) : Json::parse(report.route_json)},
+               {"plan", parse_ordered_json(report.plan_json)},
+               {"route", report.route_json.empty() ? Json(nullptr) : parse_ordered_json(report.route_json)},
                {"frames", report.frames},
                {"bodies", bodies_json(report)}};
   json["stations"] = Json::array();
@@ -139,7 +139,7 @@ std::string report_json(const Report& report) {
   for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
   json["prefix"] = Json::array();
   for (const auto& point : report.prefix) json["prefix"].push_back(point ? curve_point_json(*point) : Json(nullptr));
-  return json.dump() + "\n";
+  return json_text(json, JsonLayout::one_line) + "\n";
 }
 
 }  // namespace posewright

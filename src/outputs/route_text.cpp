@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "posewright/outputs/route.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
 
@@ -126,7 +126,7 @@ std::string route_json(const Route& route) {
   json["unreachable"] = Json::array();
   for (const SkippedPose& skipped : route.unreachable)
     json["unreachable"].push_back({{"pose", skipped.pose}, {"reason", skipped.reason}});
-  return json.dump(1) + "\n";
+  return json_text(json);
 }
 
 std::string route_summary(const Route& route) {

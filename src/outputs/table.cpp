@@ -32,6 +32,12 @@ Shown shown_unit(const std::string& unit) {
 
 }  // namespace
 
+std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
+
+std::string searched_percent(double share) {
+  return fmt::format("{:.0f} %", std::min(100.0, std::floor(share * 1e2 + 0.05)));
+}
+
 Table::Table(std::vector<std::string> header, std::vector<Align> align) : align_(std::move(align)) {
   rows_.push_back(std::move(header));
 }

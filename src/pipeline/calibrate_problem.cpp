@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -11,14 +10,14 @@
 #include "posewright/calibration/placement.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/pipeline/measured_data.hpp"
+#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
 // Shares of a column's norm below this are rounding: the dependency is exact.
-constexpr double exact = 1e-9;
-constexpr double interval_probability = 0.95;
+constexpr double exact_dependency = 1e-9;
 // A model that chance refuses this seldom is refused: its σ are stretched to the residuals.
 constexpr double refusal = 0.01;
 // Residuals so many times the noise are no robot's.
@@ -111,7 +110,7 @@ class CalibrationRun {
       return;
     }
     IdentifiabilityOptions options;
-    if (!all.automatic) options.threshold = exact;
+    if (!all.automatic) options.threshold = exact_dependency;
     options.tiers = all.tiers;
     const Identifiability found = identifiability(blocks_of(*model_, all, fitted_, placed_), all.parameters, options);
     columns_ = subset(all, found.kept);
@@ -157,8 +156,7 @@ class CalibrationRun {
     const int freedom = result_.fit.freedom;
     if (count < result_.fit.readings || freedom < 1) return;
     result_.lack_of_fit.statistic = between / freedom;
-    const boost::math::fisher_f_distribution<double> f(freedom, double(spread_freedom_));
-    result_.lack_of_fit.probability = boost::math::cdf(boost::math::complement(f, result_.lack_of_fit.statistic));
+    result_.lack_of_fit.probability = fisher_exceeded(result_.lack_of_fit.statistic, freedom, double(spread_freedom_));
     result_.lack_of_fit.possible = true;
   }
 

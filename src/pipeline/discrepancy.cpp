@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "study.hpp"
 #include "test_points.hpp"

@@ -1,26 +1,10 @@
 #include "fitted_bias.hpp"
 
-#include <limits>
-
 #include "posewright/calibration/fit.hpp"
 #include "posewright/support/error.hpp"
 #include "virtual_truth.hpp"
 
 namespace posewright {
-namespace {
-
-/// What is hidden at q is read by nobody.
-void hide(const IdentificationModel& model, const MeasuredPose& pose, Eigen::VectorXd& y) {
-  Linearisation at;
-  if (!model.linearise(pose.q, {}, {}, at)) throw CannotDo("out of reach");
-  const int per_target = model.rows_per_target();
-  for (std::size_t t = 0; t < at.seen.size(); ++t)
-    if (at.seen[t] == 0)
-      y.segment(Eigen::Index(t) * per_target, per_target).setConstant(std::numeric_limits<double>::quiet_NaN());
-}
-
-}  // namespace
-
 std::optional<Eigen::VectorXd> fitted_bias(const PreparedVariant& fitted, const PreparedVariant& truth,
                                            const Configurations& poses, bool prior) {
   std::vector<std::vector<double>> at;
@@ -31,7 +15,7 @@ std::optional<Eigen::VectorXd> fitted_bias(const PreparedVariant& fitted, const 
     for (std::size_t i = 0; i < at.size(); ++i) {
       MeasuredPose pose{int(i) + 1, at[i], {}};
       if (!truth.model->predict(stands[i], {}, pose.y)) return std::nullopt;
-      hide(*fitted.model, pose, pose.y);
+      fitted.model->blank_hidden(pose.q, pose.y);
       measured.push_back(std::move(pose));
     }
     FitOptions options;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "posewright/calibration/rigid_fit.hpp"
+#include "posewright/model/rotation_vector.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "read_poses.hpp"
@@ -136,8 +137,7 @@ Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
   if (!q.allFinite()) return Eigen::Vector3d::Constant(not_read);
   if (std::abs(q.norm() - 1) > unit_slack)
     throw InputError({file_, line(row)}, fmt::format("the quaternion has length {:.6g}", q.norm()), "1 is expected");
-  const Eigen::AngleAxisd turn(Eigen::Quaterniond(q.normalized()));
-  return turn.angle() * turn.axis();
+  return posewright::rotation_vector(Eigen::Quaterniond(q.normalized()).toRotationMatrix());
 }
 
 Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
@@ -153,8 +153,7 @@ Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
   // The covariance of a pose is that of all its points; one of fewer would be trusted too much.
   if (body.size() < markers_.size()) return pose;
   const RigidFit fit = rigid_fit(body, measured);
-  const Eigen::AngleAxisd turn(fit.X.linear());
-  pose << fit.X.translation(), turn.angle() * turn.axis();
+  pose << fit.X.translation(), posewright::rotation_vector(fit.X.linear());
   return pose;
 }
 

@@ -14,7 +14,7 @@
 namespace posewright {
 namespace {
 
-constexpr std::uintmax_t size_limit = 1'000'000'000;
+constexpr std::uintmax_t data_size_limit = 1'000'000'000;
 
 /// One row of the file, in SI.
 struct Row {
@@ -134,7 +134,7 @@ bool held_back(const std::string& cell, const SourcePlace& place) {
 
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model) {
-  const MeasuredColumns columns(read_file(file, size_limit), file.string(), problem, model);
+  const MeasuredColumns columns(read_file(file, data_size_limit), file.string(), problem, model);
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();

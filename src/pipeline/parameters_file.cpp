@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr std::uintmax_t size_limit = 200'000'000;
+constexpr std::uintmax_t parameters_size_limit = 200'000'000;
 
 std::filesystem::path find_near(const std::string& name, const std::filesystem::path& plan) {
   std::error_code code;
@@ -52,7 +52,7 @@ ParametersFile parameters_of(const Problem& problem) {
 ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   ParametersFile stated;
   try {
-    const auto json = nlohmann::json::parse(read_file(plan, size_limit));
+    const auto json = parse_json(read_file(plan, parameters_size_limit));
     const nlohmann::json::json_pointer key("/problem/parameters");
     if (!json.is_object() || !json.contains(key)) return {};
     const auto& parameters = json.at(key);

@@ -8,6 +8,7 @@
 
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/candidates.hpp"
 

@@ -16,7 +16,7 @@
 namespace posewright {
 namespace {
 
-constexpr std::uintmax_t size_limit = 100'000'000;
+constexpr std::uintmax_t list_size_limit = 100'000'000;
 
 double in_si(const std::string& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
   const Quantity own = c.unit == "m" ? Quantity::length : Quantity::angle;
@@ -192,7 +192,7 @@ void require_inside(double value, const Coordinate& c, const SourcePlace& place)
 
 PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates,
                     const std::string& format) {
-  return read_poses_text(read_file(file, size_limit), file.string(), coordinates, format);
+  return read_poses_text(read_file(file, list_size_limit), file.string(), coordinates, format);
 }
 
 PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates,

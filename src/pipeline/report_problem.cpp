@@ -18,7 +18,6 @@
 namespace posewright {
 namespace {
 
-constexpr std::uintmax_t size_limit = 200'000'000;
 // Other numbers of poses, as shares of the plan's own.
 constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
 // Enough for a curve that shows what a few poses more bring.
@@ -47,7 +46,7 @@ class Reporting {
     // The time limit is for other numbers of poses: a shortened set of candidates would be shown as if it were whole.
     whole_.interrupted = monitor.interrupted;
     whole_.on_progress = monitor.on_progress;
-    if (!options.route.empty()) report_.route_json = read_file(options.route, size_limit);
+    if (!options.route.empty()) report_.route_json = read_file(options.route, plan_size_limit);
     report_.plan_json = std::move(plan_.text);
     // What was measured before is in the plan, wherever it came from.
     settings_.measured = [this](const std::vector<Coordinate>& coordinates) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "posewright/cell/drawing.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright {
 namespace {
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 // Between two pictures a joint turns by no more than this (rad; m), unless there would be too many of them.
 constexpr double turn_step = 0.15, slide_step = 0.05;
 constexpr double most_keyframes = 600;
-constexpr double same_pose = 1e-9;  // rad, m
+constexpr double same_stop = 1e-9;  // rad, m
 
 /// One overload a shape.
 struct Fill {
@@ -87,7 +87,7 @@ class Film {
     const std::vector<double>& q = base(poses, id);
     std::size_t k = 0;
     for (std::size_t i = 0; i < coordinates_.size(); ++i)
-      if (!coordinates_[i].choice() && !(std::abs(stop.at("configuration").at(k++).get<double>() - q[i]) < same_pose))
+      if (!coordinates_[i].choice() && !(std::abs(stop.at("configuration").at(k++).get<double>() - q[i]) < same_stop))
         throw std::invalid_argument("pose " + std::to_string(id) + " is elsewhere");
   }
 
@@ -169,7 +169,7 @@ void fill_scene(Report& report, const Problem& problem, const Cell& cell,
     return;
   }
   try {
-    film.play(Json::parse(report.route_json), poses);
+    film.play(parse_json(report.route_json), poses);
   } catch (const Json::exception&) {
     throw InputError({route_file.string(), 0}, "is no route", "route.json as posewright writes it");
   } catch (const std::invalid_argument& error) {

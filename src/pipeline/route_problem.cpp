@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "fill_plan.hpp"
 #include "motions.hpp"
@@ -11,11 +10,12 @@
 #include "posewright/route/tour.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
+#include "written_plan.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr std::size_t size_limit = 200'000'000;
 // What a motion that does not exist costs in a tour, s.
 constexpr double no_way = 1e7;
 
@@ -268,9 +268,9 @@ class Router {
 };
 
 nlohmann::json read_plan(const std::filesystem::path& plan) {
-  const std::string text = read_file(plan, size_limit);
+  const std::string text = read_file(plan, plan_size_limit);
   try {
-    return nlohmann::json::parse(text);
+    return parse_json(text);
   } catch (const nlohmann::json::exception&) {
     throw InputError({plan.string(), 0}, "names no problem file", "a plan.json of a problem, or --problem FILE");
   }

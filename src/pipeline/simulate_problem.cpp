@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "effects.hpp"
 #include "posewright/pipeline/measured_data.hpp"
@@ -80,17 +79,13 @@ class Simulating {
     result_.plan = list.name;
     result_.notes = list.notes;
     Linearisation out;
-    const int per_target = fitted_.model->rows_per_target();
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       MeasuredPose pose{list.ids.empty() ? int(i) + 1 : list.ids[i], list.configurations[i],
                         Eigen::VectorXd::Zero(Eigen::Index(fitted_.model->readings().size()))};
       note_infeasible(pose);
       if (!fitted_.model->linearise(pose.q, {}, {}, out))
         throw CannotDo(fmt::format("pose {} of {} is out of reach", pose.id, list.name));
-      for (std::size_t t = 0; t < out.seen.size(); ++t)
-        if (out.seen[t] == 0)
-          pose.y.segment(Eigen::Index(t) * per_target, per_target)
-              .setConstant(std::numeric_limits<double>::quiet_NaN());
+      fitted_.model->blank_hidden(pose.q, pose.y);
       const int hidden = int(pose.y.array().isNaN().count());
       result_.hidden += hidden;
       result_.readings += int(pose.y.size()) - hidden;

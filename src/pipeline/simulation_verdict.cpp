@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/calibration/residual_statistics.hpp"
+
 namespace posewright {
 namespace {
 
@@ -21,7 +23,7 @@ class Verdict {
     for (const SimulatedParameter& p : s_.parameters) {
       if (!p.errors) continue;
       if (differs(p.errors->observed / p.predicted)) wrong_sigma_.push_back(&p);
-      if (beyond(p.errors->coverage - 0.95, coverage_margin, s_.summary.coverage_error)) wrong_coverage_.push_back(&p);
+      if (beyond(uncovered(p), coverage_margin, s_.summary.coverage_error)) wrong_coverage_.push_back(&p);
       if (beyond(p.errors->bias, bias_margin * p.predicted, p.errors->bias_error)) biased_.push_back(&p);
     }
   }
@@ -65,7 +67,7 @@ class Verdict {
   }
 
   static double excess(const SimulatedParameter& p) { return p.errors->observed / p.predicted - 1; }
-  static double uncovered(const SimulatedParameter& p) { return p.errors->coverage - 0.95; }
+  static double uncovered(const SimulatedParameter& p) { return p.errors->coverage - interval_probability; }
   static double bias(const SimulatedParameter& p) { return p.errors->bias / p.predicted; }
 
   template <class Figure>

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {

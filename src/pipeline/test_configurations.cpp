@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/workspace/candidates.hpp"

@@ -1,18 +1,16 @@
 #include "written_plan.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::uintmax_t size_limit = 200'000'000;
 
 [[noreturn]] void throw_no_plan(const std::filesystem::path& file) {
   throw InputError({file.string(), 0}, "is no plan of a robot", "plan.json as posewright plan writes it");
@@ -43,9 +41,9 @@ PlanOptions options_of(const Json& plan) {
 WrittenPlan read_written_plan(const std::filesystem::path& file) {
   WrittenPlan plan;
   plan.file = file;
-  plan.text = read_file(file, size_limit);
+  plan.text = read_file(file, plan_size_limit);
   try {
-    const Json json = Json::parse(plan.text);
+    const Json json = parse_json(plan.text);
     if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())
       throw_no_plan(file);
     plan.options = options_of(json);

@@ -7,6 +7,9 @@
 
 namespace posewright {
 
+/// Bytes of the largest plan or route that is read.
+inline constexpr std::size_t plan_size_limit = 200'000'000;
+
 /// What a plan.json says of itself, so that its search can be set up again.
 struct WrittenPlan {
   std::filesystem::path file;

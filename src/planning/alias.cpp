@@ -2,13 +2,14 @@
 
 #include <stdexcept>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
 // Pivots of unit columns below this mean that double precision cannot tell a column from the others.
-constexpr double rank_tolerance = 1e-11;
+constexpr double alias_rank_tolerance = 1e-11;
 
 }  // namespace
 
@@ -26,7 +27,7 @@ AliasFit fit_aliases(const BlockArray& blocks, int own, const Eigen::VectorXd& k
   const Eigen::VectorXd length = fitted.colwise().norm();
   if (fitted.rows() < m || !(length.minCoeff() > 0)) throw CannotDo("alias: the poses do not determine what is fitted");
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fitted * length.cwiseInverse().asDiagonal());
-  if (!(qr.matrixQR().diagonal().cwiseAbs().minCoeff() > rank_tolerance))
+  if (!(qr.matrixQR().diagonal().cwiseAbs().minCoeff() > alias_rank_tolerance))
     throw CannotDo("alias: the poses do not determine what is fitted");
   const Eigen::MatrixXd taken = length.cwiseInverse().asDiagonal() * qr.solve(left_out);
   left_out.noalias() -= fitted * taken;

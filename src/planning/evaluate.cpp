@@ -1,9 +1,9 @@
 #include "posewright/planning/evaluate.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -1,9 +1,9 @@
 #include "posewright/planning/power.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
 #include <stdexcept>
+
+#include "posewright/support/distributions.hpp"
 
 namespace posewright {
 namespace {
@@ -17,13 +17,11 @@ constexpr double certain = 40.0;
 double chi_square_power(double lambda, double degrees_of_freedom, double level) {
   if (!(lambda >= 0) || !(degrees_of_freedom > 0) || !(level > 0 && level < 1))
     throw std::invalid_argument("chi_square_power: numbers out of range");
-  const boost::math::chi_squared central(degrees_of_freedom);
-  const double threshold = boost::math::quantile(boost::math::complement(central, level));
+  const double threshold = chi_square_upper_quantile(level, degrees_of_freedom);
   if (lambda == 0) return level;
   const double mean = degrees_of_freedom + lambda, deviation = std::sqrt(2 * (degrees_of_freedom + 2 * lambda));
   if (threshold < mean - certain * deviation) return 1.0;
-  const boost::math::non_central_chi_squared shifted(degrees_of_freedom, lambda);
-  return boost::math::cdf(boost::math::complement(shifted, threshold));
+  return noncentral_chi_square_exceeded(threshold, degrees_of_freedom, lambda);
 }
 
 namespace {

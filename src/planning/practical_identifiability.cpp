@@ -7,6 +7,7 @@
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/planning/approximate_design.hpp"
 #include "posewright/planning/whiten.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "posewright/support/dense.hpp"
+
 namespace posewright {
 namespace {
 

@@ -10,7 +10,7 @@
 namespace posewright {
 namespace {
 
-constexpr std::size_t size_limit = 10'000'000;
+constexpr std::size_t parameters_size_limit = 10'000'000;
 
 /// {value: …, unit: …}; what else stands there is for people.
 ParameterEntry read_entry(const yaml::Entry& entry) {
@@ -32,14 +32,14 @@ CalibratedParameters read_calibrated_parameters(const std::filesystem::path& fil
   std::error_code code;
   if (std::filesystem::is_character_file(file, code) || std::filesystem::is_block_file(file, code))
     throw InputError({file.string(), 0}, "is a device", "a file is needed");
-  return parse_calibrated_parameters(read_file(file, size_limit), file);
+  return parse_calibrated_parameters(read_file(file, parameters_size_limit), file);
 }
 
 CalibratedParameters parse_calibrated_parameters(const std::string& text, const std::filesystem::path& file) {
   const std::string name = file.string();
-  if (text.size() > size_limit)
+  if (text.size() > parameters_size_limit)
     throw InputError({name, 0}, fmt::format("has {} bytes", text.size()),
-                     fmt::format("at most {} are read", size_limit));
+                     fmt::format("at most {} are read", parameters_size_limit));
   require_text(text, name);
   const yaml::Section root(yaml::Value(yaml::load_document(text, name), 1, "", name));
   const yaml::Value& version = root.at("posewright_parameters");

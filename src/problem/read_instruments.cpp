@@ -8,7 +8,7 @@ using yaml::Sign;
 using yaml::Value;
 
 // Beyond this a block's covariance alone takes megabytes and tells nothing new.
-constexpr int most_points = 500;
+constexpr int most_anchors = 500;
 
 /// {type: isotropic, noise}: one sigma.
 Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quantities) {
@@ -76,8 +76,8 @@ CameraMeasurement read_camera(const Section& section) {
   camera.columns = board.at("columns").integer(1, 100);
   if (camera.rows * camera.columns < 3 || camera.rows < 2 || camera.columns < 2)
     board.value().fail("has too few points", "at least 2 rows and 2 columns are needed");
-  if (camera.rows * camera.columns > most_points)
-    board.value().fail("has too many points", "at most " + std::to_string(most_points) + " are allowed");
+  if (camera.rows * camera.columns > most_anchors)
+    board.value().fail("has too many points", "at most " + std::to_string(most_anchors) + " are allowed");
   camera.spacing = board.at("spacing").number(Quantity::length, Sign::positive);
   camera.board = placement(board);
   camera.sigma = read_isotropic(section.at("device"), {Quantity::number}).value;

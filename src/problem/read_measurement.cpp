@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <span>
 
+#include "posewright/support/dense.hpp"
 #include "sections.hpp"
 #include "text.hpp"
 
@@ -128,7 +127,7 @@ PoseMeasurement read_pose(const Section& section) {
     for (std::size_t i = 0; i < pose.photogrammetry.size(); ++i)
       points.col(Eigen::Index(i)) = pose.photogrammetry[i].position;
     const Eigen::Matrix3Xd spread = points.colwise() - points.rowwise().mean();
-    const Eigen::Vector3d extent = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread * spread.transpose())
+    const Eigen::Vector3d extent = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread * spread.transpose())
                                        .eigenvalues()
                                        .cwiseMax(0.0)
                                        .cwiseSqrt();

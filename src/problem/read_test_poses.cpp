@@ -7,7 +7,7 @@ using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
 
-constexpr int most_points = 100000;
+constexpr int most_grid_points = 100000;
 
 void read_list(const Section& section, const Value& at, TestPosesSpec& spec) {
   for (const Value& pose : at.items("a list of configurations is expected")) {
@@ -30,7 +30,7 @@ TestPosesSpec::Grid read_grid(const Value& value) {
   if ((grid.upper - grid.lower).minCoeff() < 0) value.fail("has an upper corner below its lower one", "lower ≤ upper");
   const std::vector<Value> counts = section.at("counts").items(3, "three numbers of points are expected");
   for (std::size_t k = 0; k < 3; ++k) grid.counts[k] = counts[k].integer(1, 1000);
-  if (long(grid.counts[0]) * grid.counts[1] * grid.counts[2] > most_points)
+  if (long(grid.counts[0]) * grid.counts[1] * grid.counts[2] > most_grid_points)
     value.fail("has too many points", "at most 100000");
   return grid;
 }
@@ -47,7 +47,7 @@ TestPosesSpec read_test_poses(const Value& value, const std::filesystem::path& f
   if (ways != 1) value.fail("needs one of at, random, file, grid", "configurations, a number, a CSV file or a box");
   if (const Value* weights = section.find("weights"); weights != nullptr && !section.has("at"))
     weights->fail("is for a list of configurations", "in a file, a column 'weight'");
-  if (const Value* random = section.find("random")) spec.random = random->integer(1, most_points);
+  if (const Value* random = section.find("random")) spec.random = random->integer(1, most_grid_points);
   if (const Value* at = section.find("at")) read_list(section, *at, spec);
   if (const Value* file = section.find("file")) spec.file = folder / file->text("a file name is expected");
   if (const Value* grid = section.find("grid")) spec.grid = read_grid(*grid);

@@ -1,6 +1,6 @@
-#include <Eigen/SVD>
 
 #include "checks.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

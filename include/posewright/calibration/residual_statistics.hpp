@@ -36,8 +36,8 @@ struct ResidualTests {
 
 ResidualTests test_residuals(const Fit& result);
 
-/// Chance that χ² of `freedom` is as large as this or larger.
-double chi_square_exceeded(double value, double freedom);
+/// What every stated interval holds the truth with.
+inline constexpr double interval_probability = 0.95;
 
 /// How far ±1σ must be stretched to hold the truth with this probability: normal, or Student's t of `freedom` where the
 /// residuals told the noise.

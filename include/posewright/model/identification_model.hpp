@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <memory>
 #include <optional>
 #include <span>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -85,6 +85,8 @@ class IdentificationModel {
   int rows() const { return rows_; }
   /// Those of them that are read at q: the rows of targets that can be seen.
   int visible_rows(std::span<const double> q) const;
+  /// Readings of targets that are hidden at q become NaN: nobody reads them.
+  void blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const;
   /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +8,9 @@
 #include "posewright/model/tip_model.hpp"
 
 namespace posewright {
+
+/// Prior 1σ of a target's coordinates where nothing else is said, m.
+inline constexpr double default_target_tolerance = 1e-3;
 
 /// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
 /// stations, lens). Members are const and may run in several threads at once.

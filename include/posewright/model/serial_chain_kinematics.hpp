@@ -22,6 +22,9 @@ struct ChainJoint {
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< m, frame of the moved joint
 };
 
+/// Moving joints of the longest chain that is accepted.
+inline constexpr std::size_t max_joints = 64;
+
 /// A serial chain from base to tip.
 struct ChainDescription {
   Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();

@@ -18,6 +18,12 @@ class Table {
   std::vector<Align> align_;
 };
 
+/// "97.86 %" for 0.97869: rounded down, because what is stated as reached must be.
+std::string percent(double share);
+
+/// "97 %": the same to the digits that a search gives on any processor. Half a thousandth is what the search stops at.
+std::string searched_percent(double share);
+
 /// "0.0123 mm", "0.0045 deg": a value in SI for people, by its SI unit ("m", "rad", "1").
 std::string shown_value(double value, const std::string& unit);
 

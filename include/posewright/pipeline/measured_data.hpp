@@ -16,8 +16,9 @@ struct MeasuredData {
   int rows = 0;                     ///< of the file
   double repeats = 1.0;             ///< rows per pose, harmonic mean
   std::vector<double> spread;       ///< standard deviation of each reading within a pose; empty without repeats
-  int spread_freedom = 0;           ///< degrees of freedom of all spreads together: rows that were read less poses, summed over readings
-  std::vector<std::string> notes;   ///< what the user must know of how it was read
+  int spread_freedom =
+      0;  ///< degrees of freedom of all spreads together: rows that were read less poses, summed over readings
+  std::vector<std::string> notes;  ///< what the user must know of how it was read
 };
 
 /// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every

@@ -57,6 +57,14 @@ struct WorkspaceSpec {
 
 /// A whole problem file.
 struct Problem {
+  // Out of line: copying a problem is much code, and many sources hold one.
+  Problem();
+  Problem(const Problem&);
+  Problem(Problem&&) noexcept;
+  Problem& operator=(const Problem&);
+  Problem& operator=(Problem&&) noexcept;
+  ~Problem();
+
   std::filesystem::path file;
   std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
   RobotSpec robot;

@@ -11,7 +11,7 @@
 namespace posewright::formats {
 namespace {
 
-const ProgramRules rules = {
+const ProgramRules rapid_rules = {
     .format = "abb-rapid",
     .default_name = "CalPoses",
     .longest_name = 32,
@@ -29,14 +29,14 @@ const ProgramRules rules = {
 std::string values(const RobotProgram& program, const ProgramPoint& point, std::size_t first) {
   std::string text;
   for (std::size_t k = first; k < first + 6; ++k) {
-    const auto at = std::find(program.axes.begin(), program.axes.end(), rules.axes[k]) - program.axes.begin();
+    const auto at = std::find(program.axes.begin(), program.axes.end(), rapid_rules.axes[k]) - program.axes.begin();
     text += text.empty() ? "" : ",";
     text += std::size_t(at) < program.axes.size() ? short_fixed(point.axes[std::size_t(at)], program.decimals) : "9E9";
   }
   return text;
 }
 
-std::string measure_lines(const RobotProgram& program, const std::string& output, const std::string& input) {
+std::string rapid_measure_lines(const RobotProgram& program, const std::string& output, const std::string& input) {
   std::string text = fmt::format("    WaitRob\\ZeroSpeed;\n    WaitTime {};\n    SetDO {},1;\n",
                                  short_fixed(program.settle, 2), output);
   text += program.wait ? fmt::format("    WaitTime {};\n", short_fixed(*program.wait, 2))
@@ -46,8 +46,8 @@ std::string measure_lines(const RobotProgram& program, const std::string& output
   return text;
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, rapid_rules);
   const std::string output = signal_name(options.digital_output, "--digital-output", "doMeasure");
   const std::string input = signal_name(options.digital_input, "--digital-input", "diMeasured");
   std::string text = fmt::format("MODULE {}\n  ! {}\n", program.name, export_mark);
@@ -59,7 +59,7 @@ Exported write(const PoseSequence& sequence, const ExportOptions& options) {
     if (!step.comment.empty()) text += "    ! " + program_text(step.comment, 200) + "\n";
     if (step.kind == ProgramStep::Kind::move)
       text += fmt::format("    MoveAbsJ {}\\NoEOffs,v1000,fine,tool0;\n", program.points[step.point].name);
-    if (step.kind == ProgramStep::Kind::measure) text += measure_lines(program, output, input);
+    if (step.kind == ProgramStep::Kind::measure) text += rapid_measure_lines(program, output, input);
     for (const std::string& message : step.messages)
       text += fmt::format("    TPWrite \"{}\";\n", program_text(message, 70));
     if (step.kind == ProgramStep::Kind::stop) text += "    Stop;\n";
@@ -82,7 +82,7 @@ PoseFormat abb_rapid() {
           {"name", "speed", "settle", "wait", "digital-output", "digital-input", "coupling", "controller"},
           true,
           false,
-          write,
+          write_rapid,
           nullptr};
 }
 

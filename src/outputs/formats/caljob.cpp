@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_caljob(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = yaml_head("poses for caljob_creator") + "---\nposes:\n";
   for (const SequencePose& pose : sequence.poses) {
@@ -20,7 +20,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("caljob_poses.yaml", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_caljob(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     if (!root.IsMap()) yaml.fail(root, "is no mapping", "poses: or scenes:");
@@ -44,8 +44,8 @@ PoseFormat caljob() {
           {},
           false,
           false,
-          write,
-          read};
+          write_caljob,
+          read_caljob};
 }
 
 }  // namespace posewright::formats

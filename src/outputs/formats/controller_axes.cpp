@@ -75,7 +75,7 @@ void Axes::name_axes() {
     if (std::find(rules_.axes.begin(), rules_.axes.end(), name) == rules_.axes.end() ||
         std::count(sorted.begin(), sorted.end(), name) > 1)
       throw InputError({settings_.file, settings_.lines.count("axes") > 0 ? settings_.lines.at("axes") : 0},
-                       "axes has " + quoted(name), fmt::format("each once of {}", fmt::join(rules_.axes, ", ")));
+                       "axes has " + in_quotes(name), fmt::format("each once of {}", fmt::join(rules_.axes, ", ")));
 }
 
 void Axes::require_joints() const {
@@ -91,7 +91,7 @@ void Axes::require_joints() const {
     else if (sequence_.units[std::size_t(index_of(rules_.axes[i]))] != "rad")
       throw CannotDo(
           fmt::format("{}: axis {} turns, joint {} slides{}", rules_.format, rules_.axes[i],
-                      quoted(sequence_.names[std::size_t(index_of(rules_.axes[i]))]),
+                      in_quotes(sequence_.names[std::size_t(index_of(rules_.axes[i]))]),
                       rules_.axes.size() > turning_axes ? "; name external axes in --controller FILE (axes)" : ""));
 }
 

@@ -14,7 +14,7 @@
 namespace posewright::formats {
 namespace {
 
-constexpr std::size_t pose_numbers = 6;
+constexpr std::size_t tag_numbers = 6;
 
 /// X, Y, Z, roll, pitch, yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
 std::vector<double> tag(const Eigen::Isometry3d& X) {
@@ -29,7 +29,7 @@ std::vector<double> tag(const Eigen::Isometry3d& X) {
           to_degrees(std::atan2(R(1, 0), R(0, 0)))};
 }
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_delmia(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = fmt::format("Tag ({})\tX [mm]\tY [mm]\tZ [mm]\tRoll [deg]\tPitch [deg]\tYaw [deg]", export_mark);
   for (std::size_t i = 0; i < sequence.names.size(); ++i) text += fmt::format("\tJ{}", i + 1);
@@ -49,13 +49,13 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.txt", text, notes);
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_delmia(const std::string& bytes, const std::string& file) {
   PoseTable table;
   for (const NumberRow& numbers : read_number_rows(bytes, file, '\t', true, 1)) {
-    if (numbers.values.size() <= pose_numbers)
+    if (numbers.values.size() <= tag_numbers)
       throw InputError({file, numbers.line}, fmt::format("has {} numbers", numbers.values.size()),
                        "tag, X, Y, Z, roll, pitch, yaw, then the joints");
-    table.rows.push_back({numbers.line, {numbers.values.begin() + pose_numbers, numbers.values.end()}});
+    table.rows.push_back({numbers.line, {numbers.values.begin() + tag_numbers, numbers.values.end()}});
   }
   table.units.assign(table.rows.front().cells.size(), degrees_or_millimetres);
   return table;
@@ -64,9 +64,16 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat delmia() {
-  PoseFormat format = {
-      "delmia", "tag table between tabs, mm and deg", "DELMIA Auto ID", ".txt", "tool poses", {}, false, false, write,
-      read};
+  PoseFormat format = {"delmia",
+                       "tag table between tabs, mm and deg",
+                       "DELMIA Auto ID",
+                       ".txt",
+                       "tool poses",
+                       {},
+                       false,
+                       false,
+                       write_delmia,
+                       read_delmia};
   format.to_be_filled = true;
   return format;
 }

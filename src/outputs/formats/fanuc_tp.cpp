@@ -11,7 +11,7 @@
 namespace posewright::formats {
 namespace {
 
-const ProgramRules rules = {
+const ProgramRules tp_rules = {
     .format = "fanuc-tp",
     .longest_name = 36,
     .capitals = true,
@@ -25,7 +25,7 @@ const ProgramRules rules = {
 constexpr std::size_t most_lines = 9999;
 constexpr std::size_t longest_remark = 32, longest_message = 24;
 
-std::vector<std::string> measure_lines(const RobotProgram& program, int output, int input) {
+std::vector<std::string> tp_measure_lines(const RobotProgram& program, int output, int input) {
   std::vector<std::string> lines = {fmt::format("  WAIT {:>6}(sec) ;", fixed(program.settle, 2)),
                                     fmt::format("  DO[{}]=ON ;", output)};
   lines.push_back(program.wait ? fmt::format("  WAIT {:>6}(sec) ;", fixed(*program.wait, 2))
@@ -47,7 +47,7 @@ std::vector<std::string> main_lines(const RobotProgram& program, const ExportOpt
     if (step.kind == ProgramStep::Kind::move)
       lines.push_back(fmt::format("J P[{}] {}% FINE    ;", step.point + 1, short_fixed(program.speed, 0)));
     if (step.kind == ProgramStep::Kind::measure)
-      for (std::string& line : measure_lines(program, output, input)) lines.push_back(std::move(line));
+      for (std::string& line : tp_measure_lines(program, output, input)) lines.push_back(std::move(line));
     for (const std::string& message : step.messages)
       lines.push_back(fmt::format("  MESSAGE[{}] ;", program_text(message, longest_message)));
     if (step.kind == ProgramStep::Kind::stop) lines.push_back("  PAUSE ;");
@@ -59,7 +59,7 @@ std::vector<std::string> main_lines(const RobotProgram& program, const ExportOpt
 
 std::string position(const RobotProgram& program, std::size_t k, int frame, int tool) {
   std::vector<std::string> cells;
-  for (const std::string& axis : rules.axes)
+  for (const std::string& axis : tp_rules.axes)
     for (std::size_t i = 0; i < program.axes.size(); ++i)
       if (program.axes[i] == axis)
         cells.push_back(fmt::format("{}={:>{}} deg", axis, fixed(program.points[k].axes[i], program.decimals),
@@ -68,8 +68,8 @@ std::string position(const RobotProgram& program, std::size_t k, int frame, int 
                      tool, cells[0], cells[1], cells[2], cells[3], cells[4], cells[5]);
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, tp_rules);
   const std::vector<std::string> lines = main_lines(program, options);
   std::string text = fmt::format(
       "/PROG  {}\n/ATTR\nOWNER\t\t= MNEDITOR;\nCOMMENT\t\t= \"CALIBRATION\";\nPROG_SIZE\t= 0;\n"
@@ -99,7 +99,7 @@ PoseFormat fanuc_tp() {
       {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling", "controller"},
       true,
       false,
-      write,
+      write_tp,
       nullptr};
 }
 

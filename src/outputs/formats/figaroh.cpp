@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_figaroh(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = yaml_head("configurations for FIGAROH");
   text += fmt::format("calibration_joint_names: {}\ncalibration_joint_configurations:\n", yaml_texts(sequence.names));
@@ -18,7 +18,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.yaml", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_figaroh(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     table.names = yaml.texts(yaml.at(root, "calibration_joint_names"), "calibration_joint_names");
@@ -33,7 +33,8 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat figaroh() {
-  return {"figaroh", "joint names and configurations", "FIGAROH", ".yaml", "", {}, false, false, write, read};
+  return {"figaroh",   "joint names and configurations", "FIGAROH", ".yaml", "", {}, false, false, write_figaroh,
+          read_figaroh};
 }
 
 }  // namespace posewright::formats

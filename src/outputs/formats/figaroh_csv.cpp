@@ -28,7 +28,7 @@ std::vector<std::string> markers(const PoseSequence& sequence) {
   return names;
 }
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_figaroh_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   const std::vector<std::string> names = markers(sequence);
   const std::size_t count = std::max<std::size_t>(names.size(), 1);
@@ -66,7 +66,7 @@ PoseFormat figaroh_csv() {
                        {},
                        false,
                        false,
-                       write,
+                       write_figaroh_csv,
                        read_csv_table};
   format.to_be_filled = true;
   return format;

@@ -16,7 +16,7 @@ namespace posewright::formats {
 namespace {
 
 const std::array<const char*, 6> coordinates = {"x", "y", "z", "rx", "ry", "rz"};
-const std::array<const char*, 6> axes = {"X", "Y", "Z", "U", "V", "W"};
+const std::array<const char*, 6> hexapod_axes = {"X", "Y", "Z", "U", "V", "W"};
 constexpr int decimals = 4;
 // Rotations below this are none, rad.
 constexpr double no_rotation = 1e-12;
@@ -60,11 +60,11 @@ bool turns(const PoseSequence& sequence) {
 std::string move(const std::vector<double>& q) {
   std::string text = "MOV";
   const auto values = commanded(q);
-  for (std::size_t k = 0; k < 6; ++k) text += fmt::format(" {} {}", axes[k], fixed(values[k], decimals));
+  for (std::size_t k = 0; k < 6; ++k) text += fmt::format(" {} {}", hexapod_axes[k], fixed(values[k], decimals));
   return text + "\nONT?\n";
 }
 
-Exported write(const PoseSequence& all, const ExportOptions& options) {
+Exported write_hexapod_gcs(const PoseSequence& all, const ExportOptions& options) {
   const PoseSequence sequence = to_measure(all);
   require_platform(sequence);
   allow_settings(options.controller, "hexapod-gcs", {"pivot_mm"});
@@ -109,7 +109,7 @@ PoseFormat hexapod_gcs() {
                        {"speed", "controller"},
                        true,
                        false,
-                       write,
+                       write_hexapod_gcs,
                        nullptr};
   format.any_coordinates = true;
   return format;

@@ -11,7 +11,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_industrial_calibration(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = yaml_head("measurements for industrial_calibration") +
                      "# pose: camera to target, m, as measured; replace every .nan\n";
@@ -29,7 +29,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("measurements.yaml", text, notes);
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_industrial_calibration(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     if (!root.IsMap()) yaml.fail(root, "is no mapping of measurements", "id: {camera_joints, pose, target_joints}");
@@ -55,8 +55,8 @@ PoseFormat industrial_calibration() {
                        {},
                        false,
                        false,
-                       write,
-                       read};
+                       write_industrial_calibration,
+                       read_industrial_calibration};
   format.to_be_filled = true;
   return format;
 }

@@ -15,8 +15,8 @@
 namespace posewright::formats {
 namespace {
 
-constexpr double first_arrival = 5.0, default_settle = 2.0, default_wait = 5.0;  // s
-constexpr double full_turn_rate = std::numbers::pi, full_speed = 1.0;            // rad/s, m/s; --speed is a part of it
+constexpr double first_arrival = 5.0, default_wait = 5.0;              // s
+constexpr double full_turn_rate = std::numbers::pi, full_speed = 1.0;  // rad/s, m/s; --speed is a part of it
 // Between points at rest a cubic is 1.5 times as fast as its mean.
 constexpr double cubic_peak = 1.5;
 
@@ -81,7 +81,7 @@ class Writer {
   std::string text_;
 };
 
-Exported write(const PoseSequence& all, const ExportOptions& options) {
+Exported write_joint_trajectory(const PoseSequence& all, const ExportOptions& options) {
   const PoseSequence sequence = to_measure(all);
   if (has_changes(sequence))
     throw CannotDo(
@@ -97,7 +97,7 @@ Exported write(const PoseSequence& all, const ExportOptions& options) {
 }
 
 /// Poses are held: points that stand twice (four times: two equal poses); where none does, every point is one.
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_joint_trajectory(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     table.names = yaml.texts(yaml.at(root, "joint_names"), "joint_names");
@@ -125,8 +125,8 @@ PoseFormat joint_trajectory() {
           {"speed", "settle", "wait"},
           false,
           false,
-          write,
-          read};
+          write_joint_trajectory,
+          read_joint_trajectory};
 }
 
 }  // namespace posewright::formats

@@ -9,20 +9,20 @@
 namespace posewright::formats {
 namespace {
 
-const ProgramRules rules = {.format = "kuka-krl",
-                            .longest_name = 24,
-                            .axes = {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
-                            .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
-                            .decimals = 5,
-                            .pose = "XP",
-                            .via = "XV",
-                            .home = "XPHOME"};
+const ProgramRules krl_rules = {.format = "kuka-krl",
+                                .longest_name = 24,
+                                .axes = {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
+                                .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
+                                .decimals = 5,
+                                .pose = "XP",
+                                .via = "XV",
+                                .home = "XPHOME"};
 
 struct Signals {
   int output, input;
 };
 
-std::string measure_lines(const RobotProgram& program, const Signals& signals) {
+std::string krl_measure_lines(const RobotProgram& program, const Signals& signals) {
   std::string text = fmt::format("WAIT SEC {}\n$OUT[{}]=TRUE\n", fixed(program.settle, 2), signals.output);
   text += program.wait ? fmt::format("WAIT SEC {}\n", fixed(*program.wait, 2))
                        : fmt::format("WAIT FOR $IN[{}]\n", signals.input);
@@ -39,7 +39,7 @@ std::string source(const RobotProgram& program, const Signals& signals, int tool
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) text += ";" + program_text(step.comment, 200) + "\n";
     if (step.kind == ProgramStep::Kind::move) text += fmt::format("PTP {}\n", program.points[step.point].name);
-    if (step.kind == ProgramStep::Kind::measure) text += measure_lines(program, signals);
+    if (step.kind == ProgramStep::Kind::measure) text += krl_measure_lines(program, signals);
     for (const std::string& message : step.messages) text += ";STOP: " + program_text(message, 200) + "\n";
     if (step.kind == ProgramStep::Kind::stop) text += "HALT\n";
   }
@@ -54,7 +54,7 @@ std::string data(const RobotProgram& program) {
     // In the controller's order, whatever the plan's is; axes that the robot has not are left out: a written 0 moves
     // them.
     std::string values;
-    for (const std::string& axis : rules.axes)
+    for (const std::string& axis : krl_rules.axes)
       for (std::size_t i = 0; i < program.axes.size(); ++i)
         if (program.axes[i] == axis)
           values += fmt::format("{}{} {}", values.empty() ? "" : ",", axis, fixed(point.axes[i], program.decimals));
@@ -63,8 +63,8 @@ std::string data(const RobotProgram& program) {
   return text + "ENDDAT\n";
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_krl(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, krl_rules);
   const Signals signals{signal_number(options.digital_output, "--digital-output", 1, 8192, 1),
                         signal_number(options.digital_input, "--digital-input", 1, 8192, 1)};
   return {
@@ -85,7 +85,7 @@ PoseFormat kuka_krl() {
       {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling", "controller"},
       true,
       true,
-      write,
+      write_krl,
       nullptr};
 }
 

@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_lt_irb120(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text;
   for (const SequencePose& pose : sequence.poses)
@@ -20,16 +20,23 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("generated_joints.txt", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_lt_irb120(const std::string& bytes, const std::string& file) {
   return number_table(bytes, file, ' ', false, degrees_or_millimetres);
 }
 
 }  // namespace
 
 PoseFormat lt_irb120() {
-  return {
-      "lt-irb120", "joint values, deg, between blanks", "LT-IRB120, numpy.loadtxt", ".txt", "", {}, false, false, write,
-      read};
+  return {"lt-irb120",
+          "joint values, deg, between blanks",
+          "LT-IRB120, numpy.loadtxt",
+          ".txt",
+          "",
+          {},
+          false,
+          false,
+          write_lt_irb120,
+          read_lt_irb120};
 }
 
 }  // namespace posewright::formats

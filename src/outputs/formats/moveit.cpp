@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_moveit(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = yaml_head("joint states for MoveIt Calibration") + "joint_names:\n";
   for (const std::string& name : sequence.names) text += fmt::format("  - {}\n", yaml_text(name));
@@ -22,7 +22,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.yaml", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_moveit(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     table.names = yaml.texts(yaml.at(root, "joint_names"), "joint_names");
@@ -36,7 +36,8 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat moveit() {
-  return {"moveit", "joint states", "MoveIt Calibration", ".yaml", "", {}, false, false, write, read, true};
+  return {"moveit", "joint states", "MoveIt Calibration", ".yaml",     "",  {},
+          false,    false,          write_moveit,         read_moveit, true};
 }
 
 }  // namespace posewright::formats

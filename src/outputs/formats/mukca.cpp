@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_mukca(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text;
   for (const SequencePose& pose : sequence.poses)
@@ -19,12 +19,15 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("hole_0.csv", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) { return number_table(bytes, file, ',', false); }
+PoseTable read_mukca(const std::string& bytes, const std::string& file) {
+  return number_table(bytes, file, ',', false);
+}
 
 }  // namespace
 
 PoseFormat mukca() {
-  return {"mukca", "joint values, rad and m, no header", "MUKCa", ".csv", "", {}, false, false, write, read};
+  return {"mukca",   "joint values, rad and m, no header", "MUKCa", ".csv", "", {}, false, false, write_mukca,
+          read_mukca};
 }
 
 }  // namespace posewright::formats

@@ -13,7 +13,7 @@
 namespace posewright {
 namespace {
 
-std::string trimmed(std::string text) {
+std::string trimmed_cell(std::string text) {
   const auto blank = [](unsigned char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!text.empty() && blank(static_cast<unsigned char>(text.back()))) text.pop_back();
   while (!text.empty() && blank(static_cast<unsigned char>(text.front()))) text.erase(text.begin());
@@ -24,10 +24,10 @@ std::string trimmed(std::string text) {
 std::pair<std::string, std::string> name_and_unit(const std::string& header) {
   const auto open = header.rfind('[');
   if (open == std::string::npos || header.back() != ']') return {header, ""};
-  return {trimmed(header.substr(0, open)), header.substr(open + 1, header.size() - open - 2)};
+  return {trimmed_cell(header.substr(0, open)), header.substr(open + 1, header.size() - open - 2)};
 }
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_plain_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = formats::to_measure(all);
   std::string text = "pose";
   for (std::size_t i = 0; i < sequence.names.size(); ++i)
@@ -56,7 +56,7 @@ std::vector<std::string> csv_cells(const std::string& line) {
     else if (c == ',' && !quoted) cells.emplace_back();
     else cells.back() += c;
   }
-  for (std::string& cell : cells) cell = trimmed(cell);
+  for (std::string& cell : cells) cell = trimmed_cell(cell);
   return cells;
 }
 
@@ -65,7 +65,7 @@ PoseTable read_csv_table(const std::string& bytes, const std::string& file) {
   std::istringstream lines(bytes);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    line = trimmed(line);
+    line = trimmed_cell(line);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string> cells = csv_cells(line);
     if (table.names.empty()) {
@@ -97,7 +97,7 @@ PoseFormat plain_csv() {
                        {},
                        false,
                        false,
-                       write,
+                       write_plain_csv,
                        read_csv_table};
   format.any_coordinates = true;
   return format;

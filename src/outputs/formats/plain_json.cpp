@@ -1,6 +1,6 @@
-#include <nlohmann/json.hpp>
 
 #include "formats.hpp"
+#include "posewright/support/json.hpp"
 #include "program.hpp"
 
 // Schema posewright/poses/1.
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_plain_json(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   Json json = {{"schema", "posewright/poses/1"}, {"names", sequence.names}, {"units", sequence.units}};
   json["poses"] = Json::array();
@@ -20,10 +20,12 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
     if (!pose.station.empty()) entry["station"] = pose.station;
     json["poses"].push_back(entry);
   }
-  return one_file("poses.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return one_file("poses.json", lenient_json_text(json));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) { return table_of(parse_sequence(bytes, file)); }
+PoseTable read_plain_json(const std::string& bytes, const std::string& file) {
+  return table_of(parse_sequence(bytes, file));
+}
 
 }  // namespace
 
@@ -36,8 +38,8 @@ PoseFormat plain_json() {
                        {},
                        false,
                        false,
-                       write,
-                       read};
+                       write_plain_json,
+                       read_plain_json};
   format.any_coordinates = true;
   return format;
 }

@@ -13,7 +13,6 @@
 namespace posewright::formats {
 namespace {
 
-constexpr double default_settle = 2.0;  // s
 constexpr double default_speed = 10.0;  // percent
 
 bool is_identifier(const std::string& text) {
@@ -26,7 +25,7 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   std::string name = given.empty() ? rules.default_name : given;
   if (!is_identifier(name) || name.size() > rules.longest_name)
     throw InputError(
-        {}, fmt::format("{} is no name of a {} program", quoted(name), rules.format),
+        {}, fmt::format("{} is no name of a {} program", in_quotes(name), rules.format),
         fmt::format("a letter, then letters, digits and _, at most {} in all (--name)", rules.longest_name));
   if (rules.capitals)
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
@@ -132,7 +131,7 @@ int signal_number(const std::string& text, const char* option, int first, int la
   int number = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (code != std::errc() || end != text.data() + text.size() || number < first || number > last)
-    throw InputError({}, fmt::format("{} {}", option, quoted(text)),
+    throw InputError({}, fmt::format("{} {}", option, in_quotes(text)),
                      fmt::format("a whole number from {} to {} is allowed", first, last));
   return number;
 }
@@ -140,7 +139,7 @@ int signal_number(const std::string& text, const char* option, int first, int la
 std::string signal_name(const std::string& text, const char* option, const char* otherwise) {
   if (text.empty()) return otherwise;
   if (!is_identifier(text) || text.size() > 32)
-    throw InputError({}, fmt::format("{} {}", option, quoted(text)),
+    throw InputError({}, fmt::format("{} {}", option, in_quotes(text)),
                      "the name of a signal of the controller is expected");
   return text;
 }

@@ -9,6 +9,9 @@
 /// them.
 namespace posewright::formats {
 
+/// Seconds that a robot stands before it is measured, where nobody says otherwise.
+inline constexpr double default_settle = 2.0;
+
 /// What differs between controllers.
 struct ProgramRules {
   const char* format = "";

@@ -11,9 +11,9 @@
 namespace posewright::formats {
 namespace {
 
-constexpr std::size_t pose_numbers = 16;
+constexpr std::size_t matrix_numbers = 16;
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_pybotics_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text =
       fmt::format("# {}: joints[:{}] in deg (mm), pose[-16:] predicted, in mm\n", export_mark, sequence.names.size());
@@ -34,15 +34,15 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.csv", text, notes);
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_pybotics_csv(const std::string& bytes, const std::string& file) {
   PoseTable table;
   for (const NumberRow& numbers : read_number_rows(bytes, file, ',', false)) {
-    if (numbers.values.size() <= pose_numbers)
+    if (numbers.values.size() <= matrix_numbers)
       throw InputError({file, numbers.line}, fmt::format("has {} numbers", numbers.values.size()),
                        "joints, then the 16 numbers of a pose");
     PoseRow row;
     row.line = numbers.line;
-    row.cells.assign(numbers.values.begin(), numbers.values.end() - pose_numbers);
+    row.cells.assign(numbers.values.begin(), numbers.values.end() - matrix_numbers);
     table.rows.push_back(std::move(row));
   }
   table.units.assign(table.rows.front().cells.size(), degrees_or_millimetres);
@@ -52,11 +52,16 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat pybotics_csv() {
-  PoseFormat format = {"pybotics-csv", "joint values and tool poses, deg and mm",
-                       "pybotics",     ".csv",
-                       "tool poses",   {},
-                       false,          false,
-                       write,          read};
+  PoseFormat format = {"pybotics-csv",
+                       "joint values and tool poses, deg and mm",
+                       "pybotics",
+                       ".csv",
+                       "tool poses",
+                       {},
+                       false,
+                       false,
+                       write_pybotics_csv,
+                       read_pybotics_csv};
   format.to_be_filled = true;
   return format;
 }

@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_pybotics_npy(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
                                    sequence.poses.size(), sequence.names.size());
@@ -36,7 +36,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.npy", bytes, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_pybotics_npy(const std::string& bytes, const std::string& file) {
   const BlockArray array = parse_npy(bytes, 1, {file, 0});
   PoseTable table;
   for (std::size_t i = 0; i < array.count(); ++i) {
@@ -51,8 +51,16 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat pybotics_npy() {
-  return {
-      "pybotics-npy", "array of joint values, rad and m", "pybotics, NumPy", ".npy", "", {}, false, false, write, read};
+  return {"pybotics-npy",
+          "array of joint values, rad and m",
+          "pybotics, NumPy",
+          ".npy",
+          "",
+          {},
+          false,
+          false,
+          write_pybotics_npy,
+          read_pybotics_npy};
 }
 
 }  // namespace posewright::formats

@@ -45,7 +45,8 @@ const PoseFormat& find(const std::string& name, bool readable) {
     if (format.name == name) return format;
     names += (names.empty() ? "" : ", ") + format.name;
   }
-  throw InputError({}, fmt::format("{} is no format that is {}", formats::quoted(name), readable ? "read" : "written"),
+  throw InputError({},
+                   fmt::format("{} is no format that is {}", formats::in_quotes(name), readable ? "read" : "written"),
                    "allowed: " + names);
 }
 

@@ -10,7 +10,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_robodk_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text;
   for (std::size_t i = 0; i < sequence.names.size(); ++i) text += fmt::format("{}J{}", i > 0 ? "," : "", i + 1);
@@ -24,14 +24,23 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("joints.csv", text, notes);
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_robodk_csv(const std::string& bytes, const std::string& file) {
   return number_table(bytes, file, ',', true, degrees_or_millimetres);
 }
 
 }  // namespace
 
 PoseFormat robodk_csv() {
-  return {"robodk-csv", "joint values, deg (columns are a guess)", "RoboDK", ".csv", "", {}, false, false, write, read};
+  return {"robodk-csv",
+          "joint values, deg (columns are a guess)",
+          "RoboDK",
+          ".csv",
+          "",
+          {},
+          false,
+          false,
+          write_robodk_csv,
+          read_robodk_csv};
 }
 
 }  // namespace posewright::formats

@@ -12,7 +12,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions&) {
+Exported write_robot_calibration(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
   std::string text = yaml_head("poses for robot_calibration");
   for (const SequencePose& pose : sequence.poses)
@@ -21,7 +21,7 @@ Exported write(const PoseSequence& all, const ExportOptions&) {
   return one_file("calposes.yaml", text, list_notes(sequence));
 }
 
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_robot_calibration(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
     for (const YAML::Node& item : yaml.items(root, "the file")) {
@@ -58,8 +58,8 @@ PoseFormat robot_calibration() {
           {},
           false,
           false,
-          write,
-          read,
+          write_robot_calibration,
+          read_robot_calibration,
           true};
 }
 

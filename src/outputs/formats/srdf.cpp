@@ -14,7 +14,7 @@
 namespace posewright::formats {
 namespace {
 
-Exported write(const PoseSequence& all, const ExportOptions& options) {
+Exported write_srdf(const PoseSequence& all, const ExportOptions& options) {
   const PoseSequence sequence = to_measure(all);
   const std::string group = xml_escaped(options.group.empty() ? "manipulator" : options.group);
   std::string text = fmt::format("<?xml version=\"1.0\"?>\n<!-- {} -->\n<robot name=\"{}\">\n", export_mark,
@@ -60,7 +60,7 @@ PoseRow read_state(const tinyxml2::XMLElement& state, const std::string& file, P
 }
 
 /// The states of the first group that has one.
-PoseTable read(const std::string& bytes, const std::string& file) {
+PoseTable read_srdf(const std::string& bytes, const std::string& file) {
   tinyxml2::XMLDocument document;
   if (document.Parse(bytes.c_str(), bytes.size()) != tinyxml2::XML_SUCCESS)
     throw InputError({file, document.ErrorLineNum()}, "is no valid XML", "an SRDF is expected");
@@ -82,7 +82,7 @@ PoseTable read(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat srdf() {
-  return {"srdf", "group states", "MoveIt", ".srdf", "", {"name", "group"}, false, false, write, read};
+  return {"srdf", "group states", "MoveIt", ".srdf", "", {"name", "group"}, false, false, write_srdf, read_srdf};
 }
 
 }  // namespace posewright::formats

@@ -9,10 +9,10 @@
 namespace posewright::formats {
 namespace {
 
-const ProgramRules rules = {.format = "staubli-val3",
-                            .longest_name = 32,
-                            .axes = {"j1", "j2", "j3", "j4", "j5", "j6"},
-                            .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"}};
+const ProgramRules val3_rules = {.format = "staubli-val3",
+                                 .longest_name = 32,
+                                 .axes = {"j1", "j2", "j3", "j4", "j5", "j6"},
+                                 .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"}};
 
 constexpr const char* xml = "<?xml version=\"1.0\" encoding=\"utf-8\" ?>\n";
 
@@ -24,7 +24,7 @@ std::string data_file(const RobotProgram& program, const std::string& output, co
       xml, export_mark, program.points.size());
   for (std::size_t k = 0; k < program.points.size(); ++k) {
     text += fmt::format("      <Value key=\"{}\"", k);
-    for (const std::string& axis : rules.axes)
+    for (const std::string& axis : val3_rules.axes)
       for (std::size_t i = 0; i < program.axes.size(); ++i)
         if (program.axes[i] == axis)
           text += fmt::format(" {}=\"{}\"", axis, fixed(program.points[k].axes[i], program.decimals));
@@ -79,8 +79,8 @@ std::string measure_code(const RobotProgram& program, const std::string& output,
   return program.wait ? code : code + fmt::format("  wait({}==false)\n", input);
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_val3(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, val3_rules);
   const std::string output = signal_name(options.digital_output, "--digital-output", "doMeasure");
   const std::string input = signal_name(options.digital_input, "--digital-input", "diMeasured");
   const std::string& name = program.name;
@@ -110,7 +110,7 @@ PoseFormat staubli_val3() {
           {"name", "speed", "settle", "wait", "digital-output", "digital-input", "coupling", "controller"},
           true,
           true,
-          write,
+          write_val3,
           nullptr};
 }
 

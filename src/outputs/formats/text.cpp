@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
+
+#include "posewright/support/json.hpp"
 
 namespace posewright::formats {
 namespace {
@@ -93,8 +94,7 @@ std::string yaml_number(double value) {
 std::string yaml_numbers(const std::vector<double>& values) { return list(values, yaml_number); }
 
 std::string yaml_text(const std::string& text) {
-  return is_plain_yaml(text) ? text
-                             : nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return is_plain_yaml(text) ? text : lenient_json_text(text, JsonLayout::one_line);
 }
 
 std::string yaml_texts(const std::vector<std::string>& texts) { return list(texts, yaml_text); }
@@ -141,7 +141,7 @@ std::string csv_cell(const std::string& text) {
   return result + "\"";
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   const std::string plain_text = ascii(text.substr(0, 200));
   return "'" + plain_text.substr(0, 40) + (plain_text.size() > 40 ? "..." : "") + "'";
 }

@@ -34,6 +34,6 @@ std::string xml_escaped(const std::string& text);
 /// Quoted where it has a comma or a quote (RFC 4180).
 std::string csv_cell(const std::string& text);
 /// For a message: ASCII in quotes, cut.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace posewright::formats

@@ -13,12 +13,12 @@
 namespace posewright::formats {
 namespace {
 
-const ProgramRules rules = {.format = "urscript",
-                            .default_name = "calposes",
-                            .longest_name = 64,
-                            .axes = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"},
-                            .settings = {"sign", "zero_deg", "axes", "decimals"},
-                            .decimals = 6};
+const ProgramRules urscript_rules = {.format = "urscript",
+                                     .default_name = "calposes",
+                                     .longest_name = 64,
+                                     .axes = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"},
+                                     .settings = {"sign", "zero_deg", "axes", "decimals"},
+                                     .decimals = 6};
 
 constexpr double full_speed = 3.0;    // rad/s, what --speed is a part of
 constexpr double acceleration = 0.5;  // rad/s²
@@ -26,7 +26,7 @@ constexpr double rounding = 1e-6;     // rad
 
 std::string joints(const RobotProgram& program, const ProgramPoint& point) {
   std::string text;
-  for (const std::string& axis : rules.axes)
+  for (const std::string& axis : urscript_rules.axes)
     for (std::size_t i = 0; i < program.axes.size(); ++i)
       if (program.axes[i] == axis) {
         const double value = point.axes[i] * (std::numbers::pi / 180);
@@ -38,7 +38,7 @@ std::string joints(const RobotProgram& program, const ProgramPoint& point) {
   return text;
 }
 
-std::string measure_lines(const RobotProgram& program, int output, int input) {
+std::string urscript_measure_lines(const RobotProgram& program, int output, int input) {
   const auto wait_while = [&](const char* state) {
     return fmt::format("  while (get_standard_digital_in({}) == {}):\n    sync()\n  end\n", input, state);
   };
@@ -49,8 +49,8 @@ std::string measure_lines(const RobotProgram& program, int output, int input) {
   return program.wait ? text : text + wait_while("True");
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_urscript(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, urscript_rules);
   const int output = signal_number(options.digital_output, "--digital-output", 0, 7, 0);
   const int input = signal_number(options.digital_input, "--digital-input", 0, 7, 0);
   std::string text =
@@ -60,7 +60,7 @@ Exported write(const PoseSequence& sequence, const ExportOptions& options) {
     if (step.kind == ProgramStep::Kind::move)
       text += fmt::format("  movej([{}], a={}, v={})\n", joints(program, program.points[step.point]),
                           short_fixed(acceleration, 3), short_fixed(full_speed * program.speed / 100, 4));
-    if (step.kind == ProgramStep::Kind::measure) text += measure_lines(program, output, input);
+    if (step.kind == ProgramStep::Kind::measure) text += urscript_measure_lines(program, output, input);
     std::string message;
     for (const std::string& line : step.messages) message += (message.empty() ? "" : ", ") + program_text(line, 100);
     if (step.kind == ProgramStep::Kind::stop)
@@ -80,7 +80,7 @@ PoseFormat urscript() {
           {"name", "speed", "settle", "wait", "digital-output", "digital-input", "controller"},
           true,
           false,
-          write,
+          write_urscript,
           nullptr};
 }
 

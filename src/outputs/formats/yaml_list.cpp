@@ -57,7 +57,7 @@ double YamlList::number(const YAML::Node& node, const std::string& what) const {
   double value = 0;
   const auto [end, code] = std::from_chars(begin, written.data() + written.size(), value);
   if (written.empty() || code != std::errc() || end != written.data() + written.size() || !std::isfinite(value))
-    fail(node, fmt::format("{}: {} is no number", what, quoted(written)), "a finite number is expected");
+    fail(node, fmt::format("{}: {} is no number", what, in_quotes(written)), "a finite number is expected");
   return value == 0 ? 0.0 : value;
 }
 

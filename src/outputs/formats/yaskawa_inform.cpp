@@ -16,29 +16,29 @@ constexpr const char* why =
     "pulses, directions and zeros are parameters of each robot (controller parameter files); the wrong ones are a "
     "collision";
 
-const ProgramRules rules = {.format = "yaskawa-inform",
-                            .longest_name = 32,
-                            .capitals = true,
-                            .axes = {"S", "L", "U", "R", "B", "T"},
-                            .settings = {"sign", "zero_deg", "pulses_per_degree", "coupling", "axes"},
-                            .coupling_needed =
-                                "some arms count U from the horizontal (F such that U = U - F*L of a URDF), "
-                                "others (0) do not; the wrong one is a collision",
-                            .signs_needed = why};
+const ProgramRules inform_rules = {.format = "yaskawa-inform",
+                                   .longest_name = 32,
+                                   .capitals = true,
+                                   .axes = {"S", "L", "U", "R", "B", "T"},
+                                   .settings = {"sign", "zero_deg", "pulses_per_degree", "coupling", "axes"},
+                                   .coupling_needed =
+                                       "some arms count U from the horizontal (F such that U = U - F*L of a URDF), "
+                                       "others (0) do not; the wrong one is a collision",
+                                   .signs_needed = why};
 
 constexpr std::size_t longest_comment = 32;
 constexpr std::size_t usual_lines = 2000;
 
 std::string pulses(const RobotProgram& program, const ProgramPoint& point, const std::vector<double>& per_degree) {
   std::string text;
-  for (const std::string& axis : rules.axes)
+  for (const std::string& axis : inform_rules.axes)
     for (std::size_t i = 0; i < program.axes.size(); ++i)
       if (program.axes[i] == axis)
         text += (text.empty() ? "" : ",") + fmt::format("{}", std::llround(point.axes[i] * per_degree[i]));
   return text;
 }
 
-std::string measure_lines(const RobotProgram& program, int output, int input) {
+std::string inform_measure_lines(const RobotProgram& program, int output, int input) {
   std::string text = fmt::format("TIMER T={}\nDOUT OT#({}) ON\n", fixed(program.settle, 2), output);
   text += program.wait ? fmt::format("TIMER T={}\n", fixed(*program.wait, 2)) : fmt::format("WAIT IN#({})=ON\n", input);
   text += fmt::format("DOUT OT#({}) OFF\n", output);
@@ -53,7 +53,7 @@ std::string instructions(const RobotProgram& program, const ExportOptions& optio
     if (!step.comment.empty()) text += "'" + program_text(step.comment, longest_comment) + "\n";
     if (step.kind == ProgramStep::Kind::move)
       text += fmt::format("MOVJ C{:05} VJ={} PL=0\n", step.point, fixed(program.speed, 2));
-    if (step.kind == ProgramStep::Kind::measure) text += measure_lines(program, output, input);
+    if (step.kind == ProgramStep::Kind::measure) text += inform_measure_lines(program, output, input);
     for (const std::string& message : step.messages)
       text += fmt::format("MSG \"{}\"\n", program_text(message, longest_comment));
     if (step.kind == ProgramStep::Kind::stop) text += "PAUSE\n";
@@ -61,8 +61,8 @@ std::string instructions(const RobotProgram& program, const ExportOptions& optio
   return text;
 }
 
-Exported write(const PoseSequence& sequence, const ExportOptions& options) {
-  RobotProgram program = make_program(sequence, options, rules);
+Exported write_inform(const PoseSequence& sequence, const ExportOptions& options) {
+  RobotProgram program = make_program(sequence, options, inform_rules);
   std::string text =
       fmt::format("/JOB\n//NAME {}\n//POS\n///NPOS {},0,0,0,0,0\n///TOOL {}\n///POSTYPE PULSE\n///PULSE\n",
                   program.name, program.points.size(), options.tool.value_or(0));
@@ -90,7 +90,7 @@ PoseFormat yaskawa_inform() {
           {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling", "controller"},
           true,
           false,
-          write,
+          write_inform,
           nullptr};
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+namespace posewright {
+
+/// Probability functions, by Boost.Math behind one source: its templates take a compiler seconds wherever they are met.
+/// All throw std::domain_error where degrees of freedom are not positive or a probability is outside (0, 1).
+
+/// Chance that a χ² of `freedom` degrees is larger than `value`.
+double chi_square_exceeded(double value, double freedom);
+/// What a χ² of `freedom` degrees stays below with this probability.
+double chi_square_quantile(double probability, double freedom);
+/// What it exceeds with the probability `tail`.
+double chi_square_upper_quantile(double tail, double freedom);
+/// The same as chi_square_exceeded, where the mean of the summed squares is not 0: noncentrality λ.
+double noncentral_chi_square_exceeded(double value, double freedom, double noncentrality);
+/// Chance that Fisher's F of these degrees of freedom is larger than `value`.
+double fisher_exceeded(double value, double numerator_freedom, double denominator_freedom);
+/// Chance that a standard normal number is larger than `value`.
+double normal_exceeded(double value);
+/// What a standard normal number exceeds with the probability `tail`.
+double normal_upper_quantile(double tail);
+/// What Student's t of `freedom` degrees exceeds with the probability `tail`.
+double student_upper_quantile(double tail, double freedom);
+
+}  // namespace posewright

@@ -1,0 +1,3 @@
+#include "posewright/support/dense.hpp"
+
+POSEWRIGHT_DENSE_INSTANCES()

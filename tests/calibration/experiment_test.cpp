@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A variant of an example at random poses, its own truth.
-struct Case {
+struct ExperimentCase {
   std::unique_ptr<IdentificationModel> model;
   VirtualExperiment experiment;
 
-  Case(const std::string& file, const std::string& variant, int count, int draws) {
+  ExperimentCase(const std::string& file, const std::string& variant, int count, int draws) {
     const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file);
     const VariantSpec& spec = find_variant(problem, variant);
     model = make_model(problem, spec);
@@ -65,17 +65,17 @@ struct Case {
   }
 };
 
-struct Named {
+struct ExperimentExample {
   const char *file, *variant;
   int poses;
 };
-void PrintTo(const Named& named, std::ostream* out) { *out << named.file << ' ' << named.variant; }
+void PrintTo(const ExperimentExample& named, std::ostream* out) { *out << named.file << ' ' << named.variant; }
 
-class EveryVirtualRobot : public testing::TestWithParam<Named> {};
+class EveryVirtualRobot : public testing::TestWithParam<ExperimentExample> {};
 
 TEST_P(EveryVirtualRobot, HasThePredictedSigmaAndIntervalsThatCoverAndTestsThatKeepTheirLevel) {
   constexpr int draws = 300;
-  Case c(GetParam().file, GetParam().variant, GetParam().poses, draws);
+  ExperimentCase c(GetParam().file, GetParam().variant, GetParam().poses, draws);
   c.experiment.options.exact = true;
   const ExperimentSummary summary = c.run();
   ASSERT_EQ(summary.fitted, draws) << summary.first_failure;
@@ -96,13 +96,14 @@ TEST_P(EveryVirtualRobot, HasThePredictedSigmaAndIntervalsThatCoverAndTestsThatK
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryVirtualRobot,
-                         testing::Values(Named{"kr270/problem.yaml", "", 18}, Named{"kr270/elastostatic.yaml", "", 20},
-                                         Named{"telescope/problem.yaml", "linear", 20},
-                                         Named{"gough/problem.yaml", "", 20}),
+                         testing::Values(ExperimentExample{"kr270/problem.yaml", "", 18},
+                                         ExperimentExample{"kr270/elastostatic.yaml", "", 20},
+                                         ExperimentExample{"telescope/problem.yaml", "linear", 20},
+                                         ExperimentExample{"gough/problem.yaml", "", 20}),
                          [](const auto& row) { return std::string("Robot") + std::to_string(row.index); });
 
 TEST(Experiment, GivesTheSameOnAnyNumberOfThreads) {
-  Case c("kr270/problem.yaml", "", 18, 12);
+  ExperimentCase c("kr270/problem.yaml", "", 18, 12);
   c.experiment.options.missing = 0.1;
   c.experiment.options.outliers = 0.1;
   c.experiment.options.threads = 1;
@@ -121,7 +122,7 @@ TEST(Experiment, GivesTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Experiment, NoiseIsTheSameWhateverElseIsDrawn) {
-  Case c("kr270/problem.yaml", "", 8, 1);
+  ExperimentCase c("kr270/problem.yaml", "", 8, 1);
   std::vector<double> truth;
   c.experiment.options.exact = true;
   const std::vector<MeasuredPose> plain = draw_readings(c.experiment, 4, truth);
@@ -137,7 +138,7 @@ TEST(Experiment, NoiseIsTheSameWhateverElseIsDrawn) {
 }
 
 TEST(Experiment, WhatIsHiddenIsNeverRead) {
-  Case c("kr270/problem.yaml", "", 8, 1);
+  ExperimentCase c("kr270/problem.yaml", "", 8, 1);
   c.experiment.poses[2].y.segment<3>(3).setConstant(std::numeric_limits<double>::quiet_NaN());
   c.experiment.poses[5].y.setConstant(std::numeric_limits<double>::quiet_NaN());
   std::vector<double> truth;
@@ -148,7 +149,7 @@ TEST(Experiment, WhatIsHiddenIsNeverRead) {
 }
 
 TEST(Experiment, OutliersSpoilWeightedFitsAndNotRobustOnes) {
-  Case c("kr270/problem.yaml", "", 24, 60);
+  ExperimentCase c("kr270/problem.yaml", "", 24, 60);
   const double clean = c.mean_ratio(c.run());
   c.experiment.options.outliers = 0.05;
   const ExperimentSummary spoiled = c.run();
@@ -161,7 +162,7 @@ TEST(Experiment, OutliersSpoilWeightedFitsAndNotRobustOnes) {
 }
 
 TEST(Experiment, MissingTargetsRaiseSigmaAsMuchAsTheyTakeInformation) {
-  Case c("kr270/problem.yaml", "", 40, 200);
+  ExperimentCase c("kr270/problem.yaml", "", 40, 200);
   c.experiment.options.exact = true;
   const double all = c.mean_ratio(c.run());
   c.experiment.options.missing = 0.3;
@@ -169,14 +170,14 @@ TEST(Experiment, MissingTargetsRaiseSigmaAsMuchAsTheyTakeInformation) {
 }
 
 TEST(Experiment, EndsWithWhatIsDoneAndSaysWhyNothingIs) {
-  Case c("kr270/problem.yaml", "", 18, 8);
+  ExperimentCase c("kr270/problem.yaml", "", 18, 8);
   std::atomic<bool> stop{true};
   Monitor monitor;
   monitor.interrupted = &stop;
   const std::vector<VirtualCalibration> none = run_experiment(c.experiment, monitor);
   EXPECT_EQ(none[7].end, VirtualCalibration::End::not_run);
   EXPECT_THROW(summarise(c.experiment, none), CannotDo);
-  Case few("kr270/problem.yaml", "", 18, 2);
+  ExperimentCase few("kr270/problem.yaml", "", 18, 2);
   few.experiment.options.missing = 0.99;
   const std::vector<VirtualCalibration> failed = run_experiment(few.experiment, Monitor{});
   EXPECT_EQ(failed[0].end, VirtualCalibration::End::failed);

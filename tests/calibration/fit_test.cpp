@@ -14,6 +14,7 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/virtual_data.hpp"
 
 namespace posewright {
@@ -29,7 +30,7 @@ struct Case {
   Random random{3, 1};
 
   Case(const std::string& file, const std::string& variant, int count) {
-    const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file);
+    const Problem problem = example(file);
     const VariantSpec& spec = find_variant(problem, variant);
     model = make_model(problem, spec);
     poses = random_poses(*model, count, random);
@@ -42,16 +43,16 @@ struct Case {
   void read(const std::vector<double>& truth, double noise) { read_poses_of(*model, truth, noise, random, poses); }
 };
 
-struct Named {
+struct FitExample {
   const char *file, *variant;
   int poses;
   /// Of what the problem states: the legs' directions are told so badly that only little noise leaves the problem
   /// linear.
   double noise = 1.0;
 };
-void PrintTo(const Named& named, std::ostream* out) { *out << named.file << ' ' << named.variant; }
+void PrintTo(const FitExample& named, std::ostream* out) { *out << named.file << ' ' << named.variant; }
 
-class EveryRobot : public testing::TestWithParam<Named> {};
+class EveryRobot : public testing::TestWithParam<FitExample> {};
 
 TEST_P(EveryRobot, TheTruthComesBackFromReadingsWithoutNoise) {
   Case c(GetParam().file, GetParam().variant, GetParam().poses);
@@ -92,20 +93,17 @@ TEST_P(EveryRobot, ChiSquareOverFreedomIsOneAndErrorsAreAsLargeAsPredicted) {
 
 INSTANTIATE_TEST_SUITE_P(
     Examples, EveryRobot,
-    testing::Values(Named{"kr270/problem.yaml", "", 18}, Named{"kr270/elastostatic.yaml", "", 30},
-                    Named{"kr270/compensator.yaml", "", 30}, Named{"kr270/compensator_geometry.yaml", "", 10},
-                    Named{"telescope/problem.yaml", "rigid", 20, 0.005}, Named{"telescope/problem.yaml", "linear", 20},
-                    Named{"telescope/problem.yaml", "matrix", 20}, Named{"gough/problem.yaml", "", 25},
-                    Named{"delta/problem.yaml", "", 25}, Named{"five_bar/problem.yaml", "", 25},
-                    Named{"instruments/ball_bar.yaml", "", 60}, Named{"instruments/cables.yaml", "", 30},
-                    Named{"instruments/camera_on_hand.yaml", "", 20}, Named{"instruments/photogrammetry.yaml", "", 20},
-                    Named{"instruments/tracker_two_stations.yaml", "", 25}),
-    [](const auto& row) {
-      std::string name = std::string(row.param.file) + "_" + row.param.variant;
-      for (char& c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-      return name;
-    });
+    testing::Values(FitExample{"kr270/problem.yaml", "", 18}, FitExample{"kr270/elastostatic.yaml", "", 30},
+                    FitExample{"kr270/compensator.yaml", "", 30}, FitExample{"kr270/compensator_geometry.yaml", "", 10},
+                    FitExample{"telescope/problem.yaml", "rigid", 20, 0.005},
+                    FitExample{"telescope/problem.yaml", "linear", 20},
+                    FitExample{"telescope/problem.yaml", "matrix", 20}, FitExample{"gough/problem.yaml", "", 25},
+                    FitExample{"delta/problem.yaml", "", 25}, FitExample{"five_bar/problem.yaml", "", 25},
+                    FitExample{"instruments/ball_bar.yaml", "", 60}, FitExample{"instruments/cables.yaml", "", 30},
+                    FitExample{"instruments/camera_on_hand.yaml", "", 20},
+                    FitExample{"instruments/photogrammetry.yaml", "", 20},
+                    FitExample{"instruments/tracker_two_stations.yaml", "", 25}),
+    [](const auto& row) { return test_name(std::string(row.param.file) + "_" + row.param.variant); });
 
 TEST(Fit, TargetsThatWereNotReadAreLeftOut) {
   Case c("kr270/problem.yaml", "", 18);
@@ -209,7 +207,7 @@ TEST(Fit, SaysWhereThePredictedIntervalsCannotHold) {
 
 TEST(Fit, DependentColumnsAreRefused) {
   Case c("telescope/problem.yaml", "rigid", 20);
-  const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/telescope/problem.yaml");
+  const Problem problem = example("telescope/problem.yaml");
   VariantColumns columns = c.columns;
   columns.selected.push_back(columns.selected.back());
   columns.parameters.push_back(columns.parameters.back());

@@ -9,6 +9,7 @@
 #include "posewright/calibration/fit.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/virtual_data.hpp"
 
 namespace posewright {
@@ -42,7 +43,7 @@ struct Named {
 class AgainstCeres : public testing::TestWithParam<Named> {};
 
 TEST_P(AgainstCeres, SameMinimumSameCovariance) {
-  const Problem problem = read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / GetParam().file);
+  const Problem problem = example(GetParam().file);
   const VariantSpec& spec = find_variant(problem, GetParam().variant);
   const auto model = make_model(problem, spec);
   const VariantColumns columns = select_columns(*model, problem, spec);
@@ -94,12 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, AgainstCeres,
                                          Named{"kr270/elastostatic.yaml", "", 30},
                                          Named{"telescope/problem.yaml", "linear", 20},
                                          Named{"kr270/compensator_geometry.yaml", "", 12}),
-                         [](const auto& row) {
-                           std::string name = row.param.file;
-                           for (char& c : name)
-                             if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-                           return name;
-                         });
+                         [](const auto& row) { return test_name(row.param.file); });
 
 }  // namespace
 }  // namespace posewright

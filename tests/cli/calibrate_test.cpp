@@ -17,12 +17,12 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kr270 = std::string(POSEWRIGHT_SOURCE_DIR) + "/examples/kr270/problem.yaml";
+const std::string kr270_problem = std::string(POSEWRIGHT_SOURCE_DIR) + "/examples/kr270/problem.yaml";
 
 class CalibrateCommand : public testing::Test {
  protected:
   void SetUp() override {
-    const Problem problem = read_problem(kr270);
+    const Problem problem = read_problem(kr270_problem);
     const auto model = make_model(problem);
     Random random(2, 1);
     std::vector<MeasuredPose> poses = random_poses(*model, 40, random);
@@ -32,7 +32,7 @@ class CalibrateCommand : public testing::Test {
     folder_.write("data.csv", measured_data_csv(*model, poses));
   }
   ProgramRun run(const std::vector<std::string>& more) const {
-    std::vector<std::string> words = {"calibrate", kr270, "data.csv"};
+    std::vector<std::string> words = {"calibrate", kr270_problem, "data.csv"};
     words.insert(words.end(), more.begin(), more.end());
     return run_program(folder_.path(), words);
   }
@@ -91,7 +91,7 @@ TEST_F(CalibrateCommand, GivesTheRobotToItsUsers) {
 }
 
 TEST_F(CalibrateCommand, SaysWhatIsWrong) {
-  EXPECT_THAT(run_program(folder_.path(), {"calibrate", kr270}).err, HasSubstr("DATA.csv is missing"));
+  EXPECT_THAT(run_program(folder_.path(), {"calibrate", kr270_problem}).err, HasSubstr("DATA.csv is missing"));
   const ProgramRun words = run({"--weights", "best"});
   EXPECT_EQ(words.exit_code, 2);
   EXPECT_THAT(words.err, HasSubstr("--weights best; allowed: ols, wls, robust"));

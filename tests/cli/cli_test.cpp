@@ -84,7 +84,7 @@ TEST(CommandLine, ObservePrintsRankSpectrumIndicesAndEquations) {
     EXPECT_THAT(run.out, HasSubstr(text));
 }
 
-struct Bad {
+struct BadCommand {
   std::vector<std::string> words;
   int exit_code;
   const char* expected;
@@ -95,13 +95,11 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
   const std::string blocks = inputs.write("b.csv", csv_blocks(20, 2, 4)).string();
   const std::string broken =
       inputs.write("broken.yaml", "posewright: 1\nrobot: {urdf: x.urdf, colour: red}\n").string();
-  const std::vector<Bad> table = {
+  const std::vector<BadCommand> table = {
       {{"paln", telescope}, 2, "unknown command 'paln'; commands of this version: observe, plan, select"},
       {{"plan"}, 2, "PROBLEM is missing"},
       {{"plan", telescope, "another"}, 2, "unexpected argument 'another'"},
-      {{"plan", telescope, "--pose", "4"},
-       2,
-       "unrecognised option '--pose' (--poses?); see posewright help plan"},
+      {{"plan", telescope, "--pose", "4"}, 2, "unrecognised option '--pose' (--poses?); see posewright help plan"},
       {{"plan", telescope, "--criteron", "o1"}, 2, "(--criterion?); see posewright help plan"},
       {{"plan", telescope, "--poses"}, 2, "--poses"},
       {{"plan", telescope, "--poses", "many"}, 2, "--poses many; a whole number from 1"},
@@ -134,7 +132,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"observe", telescope, "--variant", "none"}, 2, "has no variant 'none'"},
       {{"observe", telescope, "--restarts", "4"}, 2, "unrecognised option"},
   };
-  for (const Bad& bad : table) {
+  for (const BadCommand& bad : table) {
     const ProgramRun run = run_program(folder.path(), bad.words);
     const std::string words = testing::PrintToString(bad.words);
     EXPECT_EQ(run.exit_code, bad.exit_code) << words << run.err;

@@ -15,12 +15,12 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string telescope = std::string(POSEWRIGHT_SOURCE_DIR) + "/examples/telescope/problem.yaml";
+const std::string telescope_problem = std::string(POSEWRIGHT_SOURCE_DIR) + "/examples/telescope/problem.yaml";
 
 TEST(CompareCommand, TablesNameVariantsPlansBiasAndWhatPays) {
   const TemporaryFolder folder;
   // All diagonal elements together are kappa.
-  std::string text = read_file(telescope);
+  std::string text = read_file(telescope_problem);
   text.insert(text.find("  # To see what"), "  both: {parameters: [kappa, K_11, K_22, K_33, K_44, K_55, K_66]}\n");
   folder.write("both.yaml", text);
   const ProgramRun run = run_program(folder.path(), {"compare", "both.yaml", "--variant", "rigid,matrix", "--variant",
@@ -37,12 +37,12 @@ TEST(CompareCommand, TablesNameVariantsPlansBiasAndWhatPays) {
 
 TEST(CompareCommand, TruthShowsEveryParameterAndPlansThatAreGivenAreJudged) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder.path(), {"plan", telescope, "--candidates", "200", "--restarts", "1", "--method",
+  ASSERT_EQ(run_program(folder.path(), {"plan", telescope_problem, "--candidates", "200", "--restarts", "1", "--method",
                                         "exchange", "--poses", "20"})
                 .exit_code,
             0);
-  const std::vector<std::string> words = {"compare", telescope, "plan.json", "poses.csv",    "--variant",
-                                          "linear",  "--truth", "rigid",     "--candidates", "200"};
+  const std::vector<std::string> words = {"compare", telescope_problem, "plan.json", "poses.csv",    "--variant",
+                                          "linear",  "--truth",         "rigid",     "--candidates", "200"};
   const ProgramRun run = run_program(folder.path(), words);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("linear fitted with poses.csv while rigid is the case: 0 nominal values differ, 12 "));
@@ -67,16 +67,17 @@ TEST(CompareCommand, BadUsageIsToldInOneLine) {
   };
   for (const Bad& bad : {
            Bad{{"compare"}, "PROBLEM is missing"},
-           Bad{{"compare", telescope, "--variant", "rigid,"}, "--variant rigid, has an empty name"},
-           Bad{{"compare", telescope, "--variant", "rigid", "--variant", "rigid"}, "'rigid' is named twice"},
-           Bad{{"compare", telescope, "--variant", "soft"}, "has no variant 'soft'"},
-           Bad{{"compare", telescope, "--truth", "soft"}, "has no variant 'soft'"},
-           Bad{{"compare", telescope, "poses.csv", "--poses", "20"}, "--poses is for plans that are searched"},
-           Bad{{"compare", telescope, "poses.csv", "--method", "tabu"}, "--method is for plans that are searched"},
-           Bad{{"compare", telescope, "--from", "csv"}, "--from"},
-           Bad{{"compare", telescope, "--method", "none"}, "unknown method 'none'"},
-           Bad{{"compare", telescope, "poses.csv", "--candidates", "50"}, "poses.csv:1: has no column 'rz'"},
-           Bad{{"compare", telescope, "absent.csv", "--candidates", "50"}, "absent.csv"},
+           Bad{{"compare", telescope_problem, "--variant", "rigid,"}, "--variant rigid, has an empty name"},
+           Bad{{"compare", telescope_problem, "--variant", "rigid", "--variant", "rigid"}, "'rigid' is named twice"},
+           Bad{{"compare", telescope_problem, "--variant", "soft"}, "has no variant 'soft'"},
+           Bad{{"compare", telescope_problem, "--truth", "soft"}, "has no variant 'soft'"},
+           Bad{{"compare", telescope_problem, "poses.csv", "--poses", "20"}, "--poses is for plans that are searched"},
+           Bad{{"compare", telescope_problem, "poses.csv", "--method", "tabu"},
+               "--method is for plans that are searched"},
+           Bad{{"compare", telescope_problem, "--from", "csv"}, "--from"},
+           Bad{{"compare", telescope_problem, "--method", "none"}, "unknown method 'none'"},
+           Bad{{"compare", telescope_problem, "poses.csv", "--candidates", "50"}, "poses.csv:1: has no column 'rz'"},
+           Bad{{"compare", telescope_problem, "absent.csv", "--candidates", "50"}, "absent.csv"},
        }) {
     const ProgramRun run = run_program(folder.path(), bad.words);
     EXPECT_EQ(run.exit_code, 2) << bad.message;
@@ -89,7 +90,8 @@ TEST(CompareCommand, BadUsageIsToldInOneLine) {
 TEST(CompareCommand, InterruptedItPrintsNothing) {
   const TemporaryFolder folder;
   const ProgramRun run = run_program(
-      folder.path(), {"compare", telescope, "--candidates", "20000", "--restarts", "1000", "--variant", "rigid"}, 1.0);
+      folder.path(),
+      {"compare", telescope_problem, "--candidates", "20000", "--restarts", "1000", "--variant", "rigid"}, 1.0);
   EXPECT_EQ(run.exit_code, 130);
   EXPECT_EQ(run.out, "");
 }

@@ -18,24 +18,25 @@
 namespace posewright {
 namespace {
 
-constexpr int m = 8;
+constexpr int change_columns = 8;
 
 CriterionData data_of(int nuisance) {
-  CriterionData data{Eigen::MatrixXd::Identity(m, m), Eigen::VectorXd::LinSpaced(m, 0.5, 2.0), nuisance};
-  const BlockArray points = random_blocks(3, 3, m, 31);
+  CriterionData data{Eigen::MatrixXd::Identity(change_columns, change_columns),
+                     Eigen::VectorXd::LinSpaced(change_columns, 0.5, 2.0), nuisance};
+  const BlockArray points = random_blocks(3, 3, change_columns, 31);
   for (std::size_t t = 0; t < 3; ++t) {
     Eigen::MatrixXd A = points.block(t);
     A.leftCols(nuisance).setZero();
     data.test_points.push_back({A, 1.0 + double(t)});
   }
-  data.effects = {2, random_blocks(1, 2, 3, 95).block(0), random_blocks(1, 3, m - 2, 94).block(0),
+  data.effects = {2, random_blocks(1, 2, 3, 95).block(0), random_blocks(1, 3, change_columns - 2, 94).block(0),
                   random_blocks(1, 3, 3, 93).block(0)};
   data.variants = {{0, 4, nuisance, 1.0, 2.0}, {4, 4, 1, 3.0, 4.0}};
   return data;
 }
 
 Eigen::MatrixXd information(const BlockArray& blocks, const std::vector<int>& members) {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(change_columns, change_columns);
   for (const int i : members) M += blocks.block(std::size_t(i)).transpose() * blocks.block(std::size_t(i));
   return M;
 }
@@ -51,7 +52,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 class Changes : public testing::TestWithParam<Case> {
  protected:
   Changes()
-      : blocks(random_blocks(40, GetParam().rows, m, 5)),
+      : blocks(random_blocks(40, GetParam().rows, change_columns, 5)),
         criterion(make_criterion(GetParam().criterion, data_of(GetParam().nuisance))),
         view{&blocks, GetParam().nuisance, 1} {
     for (int i = 0; i < 14; ++i) start.push_back(2 * i);
@@ -168,7 +169,7 @@ TEST_P(Changes, GradientIsTheDerivativeAndTheExpansionIsItsFactor) {
   // Homogeneity: Φ(cM) = Φ(M) + h ln c, and Σ w d = h.
   EXPECT_NEAR(function.value(3 * M), function.value(M) + function.degree() * std::log(3.0), 1e-10);
   EXPECT_NEAR((S * M).trace(), function.degree(), 1e-9);
-  BlockArray::RowMatrix rows(10 * blocks.rows(), m);
+  BlockArray::RowMatrix rows(10 * blocks.rows(), change_columns);
   for (int i = 0; i < 10; ++i) rows.middleRows(i * blocks.rows(), blocks.rows()) = blocks.block(std::size_t(i));
   Eigen::MatrixXd H;
   expansion->curvature(rows, blocks.rows(), H);

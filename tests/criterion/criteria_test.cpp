@@ -17,7 +17,7 @@
 namespace posewright {
 namespace {
 
-constexpr int m = 7, effects = 2, fitted = m - effects;
+constexpr int criteria_columns = 7, criteria_effects = 2, criteria_fitted = criteria_columns - criteria_effects;
 
 /// Raw blocks of unequal units, and the same whitened.
 struct Fixture {
@@ -25,29 +25,29 @@ struct Fixture {
   CriterionData data;
 
   Fixture(int rows, int nuisance, std::uint64_t seed, std::size_t count = 40)
-      : raw(random_blocks(count, rows, m, seed)) {
+      : raw(random_blocks(count, rows, criteria_columns, seed)) {
     for (std::size_t i = 0; i < raw.count(); ++i)
-      for (int j = 0; j < m; ++j) raw.block(i).col(j) *= std::pow(3.0, j - 3);
+      for (int j = 0; j < criteria_columns; ++j) raw.block(i).col(j) *= std::pow(3.0, j - 3);
     std::vector<int> all(raw.count());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = int(i);
     white = raw.subset(all);
     data.R = whiten(white).R;
-    data.scale = Eigen::VectorXd::LinSpaced(m, 0.5, 3.0);
+    data.scale = Eigen::VectorXd::LinSpaced(criteria_columns, 0.5, 3.0);
     data.nuisance = nuisance;
-    const BlockArray points = random_blocks(3, 3, m, 77);
+    const BlockArray points = random_blocks(3, 3, criteria_columns, 77);
     for (std::size_t t = 0; t < 3; ++t) {
       Eigen::MatrixXd A = points.block(t);
       A.leftCols(nuisance).setZero();
       data.test_points.push_back({A, double(t + 1)});
     }
-    data.effects = {effects, random_blocks(1, effects, 3, 78).block(0), random_blocks(1, 4, fitted, 79).block(0),
-                    random_blocks(1, 4, 3, 80).block(0)};
+    data.effects = {criteria_effects, random_blocks(1, criteria_effects, 3, 78).block(0),
+                    random_blocks(1, 4, criteria_fitted, 79).block(0), random_blocks(1, 4, 3, 80).block(0)};
   }
 
   /// The same for criteria with a truth: residuals and errors of least squares, effect by effect.
   double definition_with_truth(const std::string& name, const std::vector<int>& members) const {
-    const Eigen::MatrixXd X = raw.subset(members).all(), A = X.leftCols(fitted);
-    const Eigen::MatrixXd E = X.rightCols(effects) * data.effects.mix;
+    const Eigen::MatrixXd X = raw.subset(members).all(), A = X.leftCols(criteria_fitted);
+    const Eigen::MatrixXd E = X.rightCols(criteria_effects) * data.effects.mix;
     const Eigen::MatrixXd taken = A.colPivHouseholderQr().solve(E);
     if (name == "discriminate") return std::log((E - A * taken).squaredNorm());
     const Eigen::MatrixXd &L = data.effects.error_rows, covariance = (A.transpose() * A).inverse();
@@ -57,10 +57,10 @@ struct Fixture {
   /// Φ of raw blocks by its definition, nothing shared with the product.
   double definition(const std::string& name, const std::vector<int>& members) const {
     if (find_criterion(name)->needs_truth) return definition_with_truth(name, members);
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(criteria_columns, criteria_columns);
     for (const int i : members) M += raw.block(std::size_t(i)).transpose() * raw.block(std::size_t(i));
     const Eigen::MatrixXd covariance = M.inverse();
-    const int s = m - data.nuisance;
+    const int s = criteria_columns - data.nuisance;
     const Eigen::VectorXd unit = data.scale.tail(s).cwiseInverse();
     const Eigen::MatrixXd interest = unit.asDiagonal() * covariance.bottomRightCorner(s, s) * unit.asDiagonal();
     // Singular values of the scaled G with nuisance eliminated: λ(interest covariance)^{-1/2}.

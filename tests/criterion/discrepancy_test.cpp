@@ -15,19 +15,19 @@
 namespace posewright {
 namespace {
 
-constexpr int fitted = 4, more = 3, m = fitted + more;
+constexpr int fitted_columns = 4, more_columns = 3, all_columns = fitted_columns + more_columns;
 
 Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
   return random_blocks(1, rows, columns, seed).block(0);
 }
 
 Eigen::MatrixXd random_information(std::uint64_t seed) {
-  const Eigen::MatrixXd X = random_matrix(20, m, seed);
+  const Eigen::MatrixXd X = random_matrix(20, all_columns, seed);
   return X.transpose() * X;
 }
 
 Eigen::MatrixXd symmetric_direction(std::uint64_t seed) {
-  const Eigen::MatrixXd D = random_matrix(m, m, seed);
+  const Eigen::MatrixXd D = random_matrix(all_columns, all_columns, seed);
   return D + D.transpose();
 }
 
@@ -41,18 +41,18 @@ void expect_gradient_of(const InformationFunction& function) {
 }
 
 TEST(Discriminate, DerivativeAgreesWithDifferences) {
-  expect_gradient_of(DiscriminateFunction(fitted, random_matrix(more, 5, 3)));
-  expect_gradient_of(DiscriminateFunction(fitted, random_matrix(more, 1, 4)));
+  expect_gradient_of(DiscriminateFunction(fitted_columns, random_matrix(more_columns, 5, 3)));
+  expect_gradient_of(DiscriminateFunction(fitted_columns, random_matrix(more_columns, 1, 4)));
 }
 
 TEST(Bias, DerivativeAgreesWithDifferences) {
   for (const int rows : {2, 40})
-    expect_gradient_of(
-        BiasFunction(random_matrix(rows, fitted, 3), random_matrix(more, 5, 4), random_matrix(rows, 5, 6)));
+    expect_gradient_of(BiasFunction(random_matrix(rows, fitted_columns, 3), random_matrix(more_columns, 5, 4),
+                                    random_matrix(rows, 5, 6)));
 }
 
 TEST(Discriminate, CurvatureAgreesWithDifferencesOfTheDerivative) {
-  const DiscriminateFunction function(fitted, random_matrix(more, 2, 3));
+  const DiscriminateFunction function(fitted_columns, random_matrix(more_columns, 2, 3));
   const Eigen::MatrixXd M = random_information(2);
   const auto expansion = function.expand(M);
   ASSERT_NE(expansion, nullptr);
@@ -60,7 +60,7 @@ TEST(Discriminate, CurvatureAgreesWithDifferencesOfTheDerivative) {
   EXPECT_TRUE(expansion->factor.isUpperTriangular());
   EXPECT_LT((expansion->factor * expansion->factor.transpose() - function.gradient(M)).norm(), 1e-12);
   for (const int r : {1, 3}) {
-    const BlockArray blocks = random_blocks(5, r, m, 9);
+    const BlockArray blocks = random_blocks(5, r, all_columns, 9);
     Eigen::MatrixXd H;
     expansion->curvature(blocks.all(), r, H);
     for (std::size_t i = 0; i < 5; ++i)
@@ -75,7 +75,7 @@ TEST(Discriminate, CurvatureAgreesWithDifferencesOfTheDerivative) {
 }
 
 TEST(Discriminate, IsConcaveAndOfDegreeOne) {
-  const DiscriminateFunction function(fitted, random_matrix(more, 2, 3));
+  const DiscriminateFunction function(fitted_columns, random_matrix(more_columns, 2, 3));
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     const Eigen::MatrixXd M = random_information(seed), N = random_information(seed + 100);
     EXPECT_GE(std::exp(function.value(0.3 * M + 0.7 * N)),
@@ -86,24 +86,26 @@ TEST(Discriminate, IsConcaveAndOfDegreeOne) {
 }
 
 TEST(Discriminate, WithoutAReadingToSpareThereIsNothingToTellBy) {
-  const DiscriminateFunction function(fitted, random_matrix(more, 2, 3));
-  for (const int rows : {fitted - 1, fitted}) {
-    const Eigen::MatrixXd X = random_matrix(rows, m, 8);
+  const DiscriminateFunction function(fitted_columns, random_matrix(more_columns, 2, 3));
+  for (const int rows : {fitted_columns - 1, fitted_columns}) {
+    const Eigen::MatrixXd X = random_matrix(rows, all_columns, 8);
     EXPECT_EQ(function.value(X.transpose() * X), -std::numeric_limits<double>::infinity()) << rows;
   }
-  const Eigen::MatrixXd X = random_matrix(fitted + 1, m, 8);
+  const Eigen::MatrixXd X = random_matrix(fitted_columns + 1, all_columns, 8);
   EXPECT_TRUE(std::isfinite(function.value(X.transpose() * X)));
 }
 
 TEST(Bias, WithoutEffectsItIsTestPose) {
-  CriterionData data{Eigen::MatrixXd::Identity(fitted, fitted), Eigen::VectorXd::Ones(fitted), 0};
-  for (int t = 0; t < 3; ++t) data.test_points.push_back({random_matrix(3, fitted, 60 + std::uint64_t(t)), 1.0 + t});
+  CriterionData data{Eigen::MatrixXd::Identity(fitted_columns, fitted_columns), Eigen::VectorXd::Ones(fitted_columns),
+                     0};
+  for (int t = 0; t < 3; ++t)
+    data.test_points.push_back({random_matrix(3, fitted_columns, 60 + std::uint64_t(t)), 1.0 + t});
   const Eigen::MatrixXd rows = test_point_rows(data);
-  const BiasFunction bias(rows, Eigen::MatrixXd::Zero(more, 2), Eigen::MatrixXd::Zero(rows.rows(), 2));
+  const BiasFunction bias(rows, Eigen::MatrixXd::Zero(more_columns, 2), Eigen::MatrixXd::Zero(rows.rows(), 2));
   const TraceFunction test_pose(rows);
   for (std::uint64_t seed = 1; seed < 9; ++seed) {
     const Eigen::MatrixXd M = random_information(seed);
-    EXPECT_NEAR(bias.value(M), test_pose.value(M.topLeftCorner(fitted, fitted)), 1e-12);
+    EXPECT_NEAR(bias.value(M), test_pose.value(M.topLeftCorner(fitted_columns, fitted_columns)), 1e-12);
   }
 }
 

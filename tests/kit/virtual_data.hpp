@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -9,14 +11,20 @@
 /// Readings of a robot whose parameters are known, for tests.
 namespace posewright {
 
+inline std::vector<double> random_configuration(const IdentificationModel& model, Random& random) {
+  std::vector<double> q;
+  for (const Coordinate& c : model.coordinates())
+    q.push_back(c.discrete() ? c.values[std::size_t(random.uniform(0, double(c.values.size())))]
+                             : random.uniform(c.lower, c.upper));
+  return q;
+}
+
 /// Measurable random configurations with nothing read yet.
 inline std::vector<MeasuredPose> random_poses(const IdentificationModel& model, int count, Random& random) {
   std::vector<MeasuredPose> poses;
   while (int(poses.size()) < count) {
     MeasuredPose pose;
-    for (const Coordinate& c : model.coordinates())
-      pose.q.push_back(c.discrete() ? c.values[std::size_t(random.uniform(0, double(c.values.size())))]
-                                    : random.uniform(c.lower, c.upper));
+    pose.q = random_configuration(model, random);
     Eigen::VectorXd y;
     std::vector<double> actuators(model.actuators().size());
     if (!model.measurable(pose.q) || !model.predict(pose.q, {}, y) || !model.actuator_values(pose.q, actuators))

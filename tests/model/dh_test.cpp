@@ -26,7 +26,7 @@ MeasurementSpec full_pose() {
   return spec;
 }
 
-ChainDescription read(const TemporaryFolder& folder, const NamedChain& chain) {
+ChainDescription read_arm(const TemporaryFolder& folder, const NamedChain& chain) {
   SerialArmSpec arm;
   arm.urdf = folder.write(std::string(chain.name) + ".urdf", urdf_text(chain.joints));
   arm.placement.position = {0.3, -0.2, 0.1};
@@ -39,7 +39,7 @@ constexpr DhConvention conventions[] = {DhConvention::distal, DhConvention::prox
 TEST(DenavitHartenberg, ChainHasTheSameTipAsTheUrdfEverywhere) {
   const TemporaryFolder folder;
   for (const NamedChain& named : named_chains()) {
-    const ChainDescription chain = read(folder, named);
+    const ChainDescription chain = read_arm(folder, named);
     const SerialChain frames(chain);
     for (const DhConvention convention : conventions) {
       const DhChain dh(denavit_hartenberg(chain, convention));
@@ -63,7 +63,7 @@ TEST(DenavitHartenberg, ColumnsEqualAutomaticDifferentiation) {
       PointsMeasurement{{{"A", {0.1, 0.2, -0.3}, 0}}, GaussianNoise{1e-8 * Eigen::Matrix3d::Identity()}, {}, {0, 1, 2}};
   for (const NamedChain& named : named_chains())
     for (const DhConvention convention : conventions) {
-      const DhDescription dh = denavit_hartenberg(read(folder, named), convention);
+      const DhDescription dh = denavit_hartenberg(read_arm(folder, named), convention);
       const ExplicitModel model(std::make_unique<DhChain>(dh), make_measurement(points));
       const auto oracle = [&](const std::vector<double>& q, const std::vector<Jet>& d) {
         std::vector<Jet> all(d.begin(), d.end() - 3);
@@ -116,7 +116,7 @@ TEST(Conventions, NumberOfIdentifiableParametersIs4RPlus2PPlus6InEveryOne) {
     ++chains;
     with_prismatic +=
         std::any_of(named.joints.begin(), named.joints.end(), [](const auto& j) { return j.kind == 'P'; });
-    const auto models = models_of(read(folder, named));
+    const auto models = models_of(read_arm(folder, named));
     for (const auto& model : models)
       EXPECT_EQ(identified(*model, 200, labels).rank, expected + (model == models.front() ? 0 : named.dh_deficit))
           << named.name;
@@ -141,7 +141,7 @@ TEST(Conventions, SpecialGeometryIsExplainedByEquations) {
   };
   std::vector<Parameter> labels;
   // Parallel axes: a shift along the next joint's axis is one along the joint's own.
-  const ChainDescription parallel = read(folder, find("anthropomorphic_6R"));
+  const ChainDescription parallel = read_arm(folder, find("anthropomorphic_6R"));
   Identifiability found = identified(*models_of(parallel).front(), 200, labels);
   for (const char* pair : {"j3.y j2.y", "j3.ry j3.offset", "j5.ry j5.offset"}) {
     const std::string text = pair, dropped = text.substr(0, text.find(' ')), kept = text.substr(text.find(' ') + 1);
@@ -150,7 +150,7 @@ TEST(Conventions, SpecialGeometryIsExplainedByEquations) {
     EXPECT_TRUE(either) << equation_of(found, labels, dropped) << "; " << equation_of(found, labels, kept);
   }
   // Coaxial joints: the offsets of both and a turn of the base are one and the same.
-  found = identified(*models_of(read(folder, find("coaxial_pair_RRR"))).front(), 200, labels);
+  found = identified(*models_of(read_arm(folder, find("coaxial_pair_RRR"))).front(), 200, labels);
   std::string text = equation_of(found, labels, "j2.offset") + "; " + equation_of(found, labels, "j1.offset");
   EXPECT_NE(text.find("j1.offset = base.r"), std::string::npos) << text;
   EXPECT_NE(text.find("j2.offset = base.r"), std::string::npos) << text;
@@ -158,7 +158,7 @@ TEST(Conventions, SpecialGeometryIsExplainedByEquations) {
 
 TEST(DenavitHartenberg, ParallelAxesGetHayatisAngleInPlaceOfAnOffset) {
   const TemporaryFolder folder;
-  const DhDescription dh = denavit_hartenberg(read(folder, named_chains()[1]), DhConvention::distal);
+  const DhDescription dh = denavit_hartenberg(read_arm(folder, named_chains()[1]), DhConvention::distal);
   std::vector<std::string> names;
   for (const ElementaryMotion& motion : dh.motions) names.push_back(motion.name);
   // Joints 2 and 3 of the anthropomorphic arm are parallel.
@@ -179,7 +179,7 @@ TEST(DenavitHartenberg, AlmostParallelAxesOfARoundedUrdfAreParallel) {
   const TemporaryFolder folder;
   NamedChain rounded = named_chains()[1];
   rounded.joints[2].rpy = "3.14159 0 0.000003";  // axis 3 against axis 2, as five digits of π have it
-  const ChainDescription chain = read(folder, rounded);
+  const ChainDescription chain = read_arm(folder, rounded);
   for (const DhConvention convention : conventions) {
     const DhDescription dh = denavit_hartenberg(chain, convention);
     for (const ElementaryMotion& motion : dh.motions) EXPECT_LT(std::abs(motion.nominal), 7) << motion.name;

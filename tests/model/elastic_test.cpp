@@ -106,7 +106,7 @@ TEST(ElasticChain, TorquesAreTheDerivativeOfTheLoadsWork) {
   }
 }
 
-PointsMeasurement points() {
+PointsMeasurement elastic_points() {
   PointsMeasurement p;
   p.targets = {{"A", {0.1, 0.2, -0.3}, 0}, {"B", {-0.2, 0.05, 0.4}, 0}};
   p.noise = GaussianNoise{1e-8 * Eigen::Matrix3d::Identity()};
@@ -115,7 +115,7 @@ PointsMeasurement points() {
 
 MeasurementSpec measurement() {
   MeasurementSpec spec;
-  spec.instrument = points();
+  spec.instrument = elastic_points();
   return spec;
 }
 
@@ -149,7 +149,7 @@ std::vector<Jet> loaded_points(const ChainDescription& chain, const Elastostatic
   }
   const Frame<Jet> tip = tip_pose<Jet>(chain, layout, q.data(), correction.data());
   std::vector<Jet> rows;
-  const PointsMeasurement p = points();
+  const PointsMeasurement p = elastic_points();
   for (std::size_t t = 0; t < 2; ++t) {
     Eigen::Matrix<Jet, 3, 1> target = p.targets[t].position.cast<Jet>();
     for (int k = 0; k < 3; ++k) target[k] += d[next + 3 * t + std::size_t(k)];

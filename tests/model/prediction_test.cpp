@@ -13,28 +13,13 @@
 #include "posewright/model/six_legs.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/random.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/virtual_data.hpp"
 
 namespace posewright {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> example_files() {
-  std::vector<std::string> files;
-  const fs::path folder = fs::path(POSEWRIGHT_SOURCE_DIR) / "examples";
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".yaml") files.push_back(fs::relative(entry.path(), folder).string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-std::vector<double> random_configuration(const IdentificationModel& model, Random& random) {
-  std::vector<double> q;
-  for (const Coordinate& c : model.coordinates())
-    q.push_back(c.discrete() ? c.values[std::size_t(random.uniform(0, double(c.values.size())))]
-                             : random.uniform(c.lower, c.upper));
-  return q;
-}
 
 /// Random corrections of the size of a fraction of the tolerances.
 std::vector<double> random_corrections(const IdentificationModel& model, double fraction, Random& random) {
@@ -76,7 +61,7 @@ double worst_column(const IdentificationModel& model, const std::vector<double>&
 class Predictions : public testing::TestWithParam<std::string> {};
 
 TEST_P(Predictions, ChangeAsTheLinearisationSays) {
-  const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / GetParam());
+  const Problem problem = example(GetParam());
   for (const VariantSpec& variant : problem.variants) {
     const auto model = make_model(problem, variant);
     ASSERT_EQ(int(model->readings().size()), model->rows());
@@ -94,15 +79,11 @@ TEST_P(Predictions, ChangeAsTheLinearisationSays) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Predictions, testing::ValuesIn(example_files()), [](const auto& row) {
-  std::string name = row.param;
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Files, Predictions, testing::ValuesIn(example_files()),
+                         [](const auto& row) { return test_name(row.param); });
 
 TEST(Prediction, AParallelRobotSettlesWhereItsActuatorsHoldIt) {
-  const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/telescope/problem.yaml");
+  const Problem problem = example("telescope/problem.yaml");
   const auto model = make_model(problem, problem.variants.front());
   // A longer first leg pushes the platform away; the readings say so although the actuators are where they were.
   std::vector<double> correction(model->parameters().size(), 0.0);
@@ -121,8 +102,7 @@ TEST(Prediction, AParallelRobotSettlesWhereItsActuatorsHoldIt) {
 }
 
 TEST(Prediction, OrientationsDifferByTheRotationBetweenThem) {
-  const Problem problem =
-      read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/instruments/photogrammetry.yaml");
+  const Problem problem = example("instruments/photogrammetry.yaml");
   const auto model = make_model(problem, problem.variants.front());
   const Eigen::AngleAxisd a(3.0, Eigen::Vector3d::UnitX()), b(0.3, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd sum(b * a);  // 3.3 rad about x: the other way round it is 2π − 3.3

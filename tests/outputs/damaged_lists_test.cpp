@@ -17,13 +17,13 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Bad {
+struct DamagedList {
   const char* format;
   std::string text, message;
 };
 
 TEST(PoseLists, BadListsNameTheLineAndWhatIsAllowed) {
-  for (const Bad& bad : std::vector<Bad>{
+  for (const DamagedList& bad : std::vector<DamagedList>{
            {"robot-calibration", "- joints: [a, b]\n  positions: [1]\n",
             "f:2: positions has 1 numbers; 2 joints are named"},
            {"robot-calibration", "- joints: [a]\n  positions: [1]\n- joints: [c]\n  positions: [1]\n",

@@ -97,7 +97,7 @@ TEST(ExportCommand, KeepsWhatWasMeasuredAndPutIntoAFile) {
   }
 }
 
-struct Bad {
+struct BadExport {
   std::vector<std::string> words;
   int exit_code;
   const char* expected;
@@ -109,7 +109,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
       inputs.write("blocks.json", R"({"schema": "posewright/plan/1", "poses": [{"id": 1}]})").string();
   const std::string text = inputs.write("poses.csv", "a,b\n1,2\n").string();
   const std::string settings = inputs.write("r.yaml", "colour: red\n").string();
-  const std::vector<Bad> table = {
+  const std::vector<BadExport> table = {
       {{plan, "--to", "excel"}, 2, "'excel' is no format that is written; allowed: kuka-krl, abb-rapid, fanuc-tp"},
       {{"--to", "csv"}, 2, "PLAN is missing"},
       {{plan, "another", "--to", "csv"}, 2, "unexpected argument 'another'"},
@@ -134,7 +134,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
       {{plan, "--to", "csv", "-o", plan}, 2, "is an input"},
       {{plan, "--to", "csv", "-o", "no/such/poses.csv"}, 1, "cannot be written"},
   };
-  for (const Bad& bad : table) {
+  for (const BadExport& bad : table) {
     std::vector<std::string> words = bad.words;
     words.insert(words.begin(), "export");
     const ProgramRun run = run_program(folder.path(), words);

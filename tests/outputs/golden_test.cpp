@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path golden = fs::path(POSEWRIGHT_SOURCE_DIR) / "tests/outputs/golden";
+const fs::path golden_folder = fs::path(POSEWRIGHT_SOURCE_DIR) / "tests/outputs/golden";
 const std::set<std::string> inputs = {
     "commands.txt", "pivot.yaml", "plan.json", "platform.json", "route.json", "route_one_station.json", "yaskawa.yaml"};
 
@@ -29,8 +29,8 @@ std::set<std::string> files_in(const fs::path& folder) {
 
 TEST(GoldenExports, AreWrittenAgainByteForByte) {
   const TemporaryFolder folder;
-  for (const std::string& name : inputs) fs::copy_file(golden / name, folder / name);
-  std::istringstream lines(read_file(golden / "commands.txt"));
+  for (const std::string& name : inputs) fs::copy_file(golden_folder / name, folder / name);
+  std::istringstream lines(read_file(golden_folder / "commands.txt"));
   for (std::string line; std::getline(lines, line);) {
     if (line.empty() || line.front() == '#') continue;
     std::istringstream stream("export " + line);
@@ -39,9 +39,10 @@ TEST(GoldenExports, AreWrittenAgainByteForByte) {
     const ProgramRun run = run_program(folder.path(), words);
     ASSERT_EQ(run.exit_code, 0) << line << "\n" << run.err;
   }
-  EXPECT_EQ(files_in(folder.path()), files_in(golden)) << "every golden file is made by a command, and nothing else is";
-  for (const std::string& name : files_in(golden))
-    EXPECT_EQ(read_file(folder / name), read_file(golden / name)) << name;
+  EXPECT_EQ(files_in(folder.path()), files_in(golden_folder))
+      << "every golden file is made by a command, and nothing else is";
+  for (const std::string& name : files_in(golden_folder))
+    EXPECT_EQ(read_file(folder / name), read_file(golden_folder / name)) << name;
 }
 
 }  // namespace

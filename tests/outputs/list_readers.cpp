@@ -19,22 +19,6 @@ using testing::HasSubstr;
 
 Rows rows_of(const YAML::Node& node) { return node.as<Rows>(); }
 
-/// Cells between separators, numbers only; `skip` cells in front of each line are passed over.
-Rows table(const std::string& text, char separator, int lines, std::size_t skip) {
-  std::istringstream stream(text);
-  Rows rows;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    if (number++ < lines) continue;
-    std::istringstream cells(line);
-    rows.emplace_back();
-    std::size_t k = 0;
-    for (std::string cell; std::getline(cells, cell, separator);)
-      if (k++ >= skip) rows.back().push_back(std::stod(cell));
-  }
-  return rows;
-}
-
 Rows in_radians(Rows rows) {
   for (auto& row : rows)
     for (double& x : row) x *= std::numbers::pi / 180;
@@ -156,6 +140,21 @@ std::map<std::string, std::function<List(const std::string&, std::size_t)>> make
 }
 
 }  // namespace
+
+Rows table(const std::string& text, char separator, int lines, std::size_t skip) {
+  std::istringstream stream(text);
+  Rows rows;
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    if (number++ < lines) continue;
+    std::istringstream cells(line);
+    rows.emplace_back();
+    std::size_t k = 0;
+    for (std::string cell; std::getline(cells, cell, separator);)
+      if (k++ >= skip) rows.back().push_back(std::stod(cell));
+  }
+  return rows;
+}
 
 const std::map<std::string, std::function<List(const std::string& bytes, std::size_t joints)>>& list_readers() {
   static const auto readers = make_readers();

@@ -13,6 +13,9 @@ struct List {
   std::vector<std::vector<double>> rows;  ///< rad, m
 };
 
+/// Cells between separators, numbers only, from line `lines` on; `skip` cells in front of each line are passed over.
+std::vector<std::vector<double>> table(const std::string& text, char separator, int lines, std::size_t skip);
+
 /// By the names of the formats; the number of joints is what a format that does not tell it needs.
 const std::map<std::string, std::function<List(const std::string& bytes, std::size_t joints)>>& list_readers();
 

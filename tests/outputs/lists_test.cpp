@@ -26,22 +26,6 @@ void expect_near(const Rows& found, const Rows& wanted, double limit, const std:
   }
 }
 
-/// Cells between separators, numbers only; `skip` cells in front of each line are passed over.
-Rows table(const std::string& text, char separator, int lines, std::size_t skip) {
-  std::istringstream stream(text);
-  Rows rows;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    if (number++ < lines) continue;
-    std::istringstream cells(line);
-    rows.emplace_back();
-    std::size_t k = 0;
-    for (std::string cell; std::getline(cells, cell, separator);)
-      if (k++ >= skip) rows.back().push_back(std::stod(cell));
-  }
-  return rows;
-}
-
 TEST(PoseLists, EveryFormatOfATableHasAReaderHere) {
   const auto readers = readers::list_readers();
   for (const PoseFormat& format : pose_formats())
@@ -165,8 +149,8 @@ TEST(PoseLists, MeasurementCsvSaysThatPositionsArePredictedAndHidesHiddenOnes) {
 
 TEST(PoseLists, TagPosesAreThoseOfThePlan) {
   const PoseSequence sequence = random_sequence(6, 6, 2);
-  const Rows rows = table(text_in("delmia", sequence), '\t', 1, 1);
-  const Rows matrices = table(text_in("pybotics-csv", sequence), ',', 1, 0);
+  const Rows rows = readers::table(text_in("delmia", sequence), '\t', 1, 1);
+  const Rows matrices = readers::table(text_in("pybotics-csv", sequence), ',', 1, 0);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     using Eigen::AngleAxisd, Eigen::Vector3d;
     const double r = std::numbers::pi / 180;

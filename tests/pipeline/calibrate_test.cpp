@@ -13,6 +13,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/mutate.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/virtual_data.hpp"
@@ -22,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-Problem example(const std::string& file) { return read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file); }
 
 /// Readings of an example's robot as a file.
 struct VirtualFile {

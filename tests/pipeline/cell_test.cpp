@@ -25,14 +25,14 @@ double setting(const char* name, double standard) {
   return text == nullptr ? standard : std::atof(text);
 }
 
-struct Robot {
+struct CellRobot {
   const char* name;
   const char* urdf;
   double scale;  ///< of the cell, with the arm's size
 };
-void PrintTo(const Robot& robot, std::ostream* out) { *out << robot.name; }
+void PrintTo(const CellRobot& robot, std::ostream* out) { *out << robot.name; }
 
-class CellOfRealArm : public testing::TestWithParam<Robot> {};
+class CellOfRealArm : public testing::TestWithParam<CellRobot> {};
 
 std::string cell_problem(const std::filesystem::path& urdf, double s) {
   const auto n = [s](double x) { return std::to_string(x * s); };
@@ -55,7 +55,7 @@ std::string cell_problem(const std::filesystem::path& urdf, double s) {
 TEST_P(CellOfRealArm, PosesAndMotionsHoldWhenOtherCodeLooksAtThem) {
   const std::filesystem::path robots = std::filesystem::path(POSEWRIGHT_SHARED_DIR) / "robots";
   if (!std::filesystem::exists(robots)) GTEST_SKIP() << "the folder of shared robots is absent";
-  const Robot& robot = GetParam();
+  const CellRobot& robot = GetParam();
   const std::filesystem::path urdf = robots / robot.name / robot.urdf;
   const double s = robot.scale, step = setting("POSEWRIGHT_STEP", 0.03);
   const TemporaryFolder folder;
@@ -102,17 +102,17 @@ TEST_P(CellOfRealArm, PosesAndMotionsHoldWhenOtherCodeLooksAtThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CellOfRealArm,
-                         testing::Values(Robot{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf",
-                                               2.2},
-                                         Robot{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", 0.6},
-                                         Robot{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", 1.0}),
+                         testing::Values(CellRobot{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf",
+                                                   2.2},
+                                         CellRobot{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", 0.6},
+                                         CellRobot{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", 1.0}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 Problem example_cell() {
   return read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/cell/problem.yaml");
 }
 
-PlanOptions quick(int threads) {
+PlanOptions quick_cell(int threads) {
   PlanOptions options;
   options.poses = 12;
   options.candidates = 300;
@@ -126,7 +126,7 @@ TEST(ExampleCell, PlanAndRouteAreTheSameOnAnyNumberOfThreadsAndShorterThanThePla
   Problem problem = example_cell();
   // What OMPL's roadmap says is tested by the route below; here it would take the most time.
   problem.workspace.motion.reachable = false;
-  Plan one = plan_problem(problem, quick(1), Monitor{}), two = plan_problem(problem, quick(2), Monitor{});
+  Plan one = plan_problem(problem, quick_cell(1), Monitor{}), two = plan_problem(problem, quick_cell(2), Monitor{});
   one.statistics.seconds = two.statistics.seconds = 0;
   for (Plan* plan : {&one, &two})
     for (PlanStage& stage : plan->statistics.stages) stage.seconds = 0;
@@ -154,7 +154,7 @@ TEST(ExampleCell, HomeInCollisionIsSaidWithWhatCollides) {
   Problem problem = example_cell();
   problem.workspace.motion.reachable = false;
   const TemporaryFolder folder;
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick(0), Monitor{})));
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_cell(0), Monitor{})));
   // Stretched out over the fixture and down into it.
   problem.workspace.motion.home = {{{"joint_a2", 1}, {-0.1, Quantity::angle}},
                                    {{"joint_a3", 1}, {0.4, Quantity::angle}}};
@@ -173,7 +173,7 @@ TEST(ExampleCell, APoseThatIsNoLongerFreeIsLeftOutAndNamed) {
   Problem problem = example_cell();
   problem.workspace.motion.reachable = false;
   const TemporaryFolder folder;
-  const Plan plan = plan_problem(problem, quick(0), Monitor{});
+  const Plan plan = plan_problem(problem, quick_cell(0), Monitor{});
   const auto file = folder.write("plan.json", plan_json(plan));
   // A new obstacle where the tip of pose 3 is.
   const Eigen::Vector3d p = plan.poses[2].tool_pose->translation();
@@ -197,13 +197,13 @@ TEST(Stations, ThatSeesTheReflectorsIsRankedAboveTheOneBehindTheWall) {
                                       {"front", {{3.6, -1.4, 0.5}, Eigen::Vector3d::Zero()}},
                                       {"in_the_fixture", {{1.9, 0.2, -0.4}, Eigen::Vector3d::Zero()}}};
   StationOptions options;
-  options.plan = quick(0);
+  options.plan = quick_cell(0);
   options.full = 1;
   const std::vector<StationRank> ranks = place_stations(problem, options, Monitor{});
   ASSERT_EQ(ranks.size(), 3U);
   EXPECT_EQ(ranks[0].stations.front().name, "front");
   EXPECT_TRUE(ranks[0].in_full);
-  EXPECT_DOUBLE_EQ(ranks[0].phi, plan_problem(problem, quick(0), Monitor{}).log_det);
+  EXPECT_DOUBLE_EQ(ranks[0].phi, plan_problem(problem, quick_cell(0), Monitor{}).log_det);
   for (std::size_t i = 1; i < 3; ++i) EXPECT_NE(ranks[i].why_not, "") << ranks[i].stations.front().name;
 }
 

@@ -12,15 +12,13 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/candidates.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/pose_lists.hpp"
 
 namespace posewright {
 namespace {
 
 using testing::HasSubstr;
-
-Problem example(const std::string& name) {
-  return read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / name);
-}
 
 CompareOptions quick(std::vector<std::string> variants, int poses) {
   CompareOptions options;
@@ -29,18 +27,6 @@ CompareOptions quick(std::vector<std::string> variants, int poses) {
   options.plan.restarts = 1;
   options.plan.poses = poses;
   return options;
-}
-
-/// Configurations evenly through the workspace, as a list that is given.
-std::vector<std::vector<double>> list_of(const Problem& problem, std::size_t count) {
-  const VariantModel variant = make_variant_model(problem, {}, Monitor{});
-  SamplingOptions sampling;
-  sampling.count = count;
-  sampling.seed = 7;
-  const Configurations drawn = sample_configurations(*variant.workspace, sampling, Monitor{});
-  std::vector<std::vector<double>> list;
-  for (std::size_t i = 0; i < drawn.count(); ++i) list.emplace_back(drawn[i].begin(), drawn[i].end());
-  return list;
 }
 
 CompareOptions given(std::vector<std::string> variants, const std::vector<std::vector<double>>& list) {

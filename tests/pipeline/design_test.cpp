@@ -65,7 +65,7 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
 
 INSTANTIATE_TEST_SUITE_P(Links, PlanarChain, testing::Values(2, 3));
 
-std::filesystem::path example(const std::string& name) {
+std::filesystem::path example_file(const std::string& name) {
   return std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / name;
 }
 
@@ -78,7 +78,7 @@ PlanOptions quick(int candidates = 400) {
 }
 
 TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
-  const Problem problem = read_problem(example("telescope/problem.yaml"));
+  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
   PlanOptions options = quick(2000);
   const Plan exchange = plan_problem(problem, options, Monitor{});
   options.method = "auto";
@@ -91,7 +91,7 @@ TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
 
 TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example("telescope/problem.yaml"));
+  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
   PlanOptions options = quick();
   options.poses = 20;
   const Plan first = plan_problem(problem, options, Monitor{});
@@ -110,7 +110,7 @@ TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
 }
 
 TEST(Design, ReservePlanLosesLessWithItsWorstPose) {
-  const Problem problem = read_problem(example("gough/problem.yaml"));
+  const Problem problem = read_problem(example_file("gough/problem.yaml"));
   PlanOptions options = quick(300);
   options.poses = 10;
   const auto least = [](const Plan& plan) {
@@ -127,7 +127,7 @@ TEST(Design, ReservePlanLosesLessWithItsWorstPose) {
 }
 
 TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
-  Problem problem = read_problem(example("kr270/problem.yaml"));
+  Problem problem = read_problem(example_file("kr270/problem.yaml"));
   problem.design.minimum_distance = DesignSpec::MinimumDistance{40 * std::numbers::pi / 180, 0.0};
   for (const char* method : {"exchange", "auto"}) {
     PlanOptions options = quick(200);
@@ -186,7 +186,7 @@ TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
 }
 
 TEST(Design, PlansForSeveralVariantsServeEachAndMaximinTheWorstBest) {
-  Problem problem = read_problem(example("telescope/problem.yaml"));
+  Problem problem = read_problem(example_file("telescope/problem.yaml"));
   problem.design.variants = {{{"rigid", 0}, 1.0}, {{"linear", 0}, 1.0}};
   PlanOptions options = quick(300);
   std::map<std::string, Plan> plans;
@@ -250,7 +250,7 @@ TEST(Design, TestPosesFromAFileAreThoseWrittenInTheProblem) {
 
 TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example("telescope/problem.yaml"));
+  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
   const Plan plan = plan_problem(problem, quick(), Monitor{});
   EvaluateOptions options;
   options.plan = quick();
@@ -282,7 +282,7 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
 
 TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnce) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example("five_bar/problem.yaml"));
+  const Problem problem = read_problem(example_file("five_bar/problem.yaml"));
   EvaluateOptions options;
   options.plan = quick(200);
   const auto file = folder.write("four.csv", "x [mm],y [mm]\n0,300\n100,300\n-100,300\n0,400\n");
@@ -295,7 +295,7 @@ TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnc
 
 TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example("five_bar/problem.yaml"));
+  const Problem problem = read_problem(example_file("five_bar/problem.yaml"));
   PlanOptions options = quick(200);
   options.poses = 10;
   const Plan first = plan_problem(problem, options, Monitor{});

@@ -10,6 +10,7 @@
 #include "posewright/pipeline/observe_problem.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/recompute.hpp"
 
 namespace posewright {
@@ -17,19 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> example_files() {
-  std::vector<std::string> files;
-  const fs::path folder = fs::path(POSEWRIGHT_SOURCE_DIR) / "examples";
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".yaml") files.push_back(fs::relative(entry.path(), folder).string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 class Examples : public testing::TestWithParam<std::string> {};
 
 TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
-  const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / GetParam());
+  const Problem problem = example(GetParam());
   PlanOptions options;
   options.candidates = 400;
   options.restarts = 1;
@@ -53,7 +45,7 @@ TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
 }
 
 TEST_P(Examples, AreObserved) {
-  const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / GetParam());
+  const Problem problem = example(GetParam());
   ObserveOptions options;
   options.candidates = 300;
   for (const Observation& o : observe_problem(problem, options, Monitor{})) {
@@ -64,14 +56,8 @@ TEST_P(Examples, AreObserved) {
   }
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Examples, testing::ValuesIn(example_files()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, Examples, testing::ValuesIn(example_files()),
+                         [](const auto& row) { return test_name(row.param); });
 
 Observation observed(const std::string& file, const std::string& variant) {
   ObserveOptions options;
@@ -184,8 +170,7 @@ TEST(ListedPositions, OnePoseForEachSuffices) {
   PlanOptions options;
   options.candidates = 1000;
   options.poses = 5;
-  const Plan plan = plan_problem(read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/kr270/elastostatic.yaml"),
-                                 options, Monitor{});
+  const Plan plan = plan_problem(example("kr270/elastostatic.yaml"), options, Monitor{});
   std::vector<double> second;
   for (const PlannedPose& pose : plan.poses) second.push_back(pose.configuration[1].value);
   std::sort(second.begin(), second.end());
@@ -236,7 +221,7 @@ TEST(Refusals, AnAutomaticVariantWithNothingLeftSaysWhy) {
 }
 
 TEST(BallBar, BothEndsCarryTheSameLoad) {
-  Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/instruments/ball_bar.yaml");
+  Problem problem = example("instruments/ball_bar.yaml");
   ElastostaticSpec springs;
   LoadCaseSpec light, heavy;
   light.name = "light", heavy.name = "heavy", heavy.mass = 100;

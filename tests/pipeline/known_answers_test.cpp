@@ -201,14 +201,12 @@ TEST(KnownAnswers, SameProblemAndSeedGiveTheSamePlanOnAnyNumberOfThreads) {
   const Problem problem =
       read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/telescope/problem.yaml");
   PlanOptions options;
-  options.candidates = 1000;
+  options.candidates = 200;
   options.restarts = 3;
   options.threads = 1;
   const std::string one = poses_csv(plan_problem(problem, options, Monitor{}));
-  for (const int threads : {2, 4}) {
-    options.threads = threads;
-    EXPECT_EQ(poses_csv(plan_problem(problem, options, Monitor{})), one);
-  }
+  options.threads = 3;
+  EXPECT_EQ(poses_csv(plan_problem(problem, options, Monitor{})), one);
   options.seed = 1;
   EXPECT_NE(poses_csv(plan_problem(problem, options, Monitor{})), one);
 }

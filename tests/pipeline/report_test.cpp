@@ -64,7 +64,7 @@ Made make_report(const Problem& problem, const PlanOptions& options, const Tempo
   return made;
 }
 
-PlanOptions quick(int poses, int candidates) {
+PlanOptions quick_report(int poses, int candidates) {
   PlanOptions options;
   options.poses = poses;
   options.candidates = candidates;
@@ -76,7 +76,7 @@ PlanOptions quick(int poses, int candidates) {
 TEST(Report, MatricesGiveThePlansLogDetAndWhatTheLossOfAPoseCosts) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
-  const auto [plan, report] = make_report(problem, quick(18, 400), folder, {});
+  const auto [plan, report] = make_report(problem, quick_report(18, 400), folder, {});
   EXPECT_NEAR(interest_log_det(report), plan.log_det, 1e-9 * std::abs(plan.log_det));
   double interest = 0;
   for (const json& column : report["columns"]) interest += column["role"] == "interest";
@@ -88,7 +88,7 @@ TEST(Report, MatricesGiveThePlansLogDetAndWhatTheLossOfAPoseCosts) {
 TEST(Report, SaysWhatCandidatesAndOtherNumbersOfPosesBring) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "telescope" / "problem.yaml");
-  const auto [plan, report] = make_report(problem, quick(20, 300), folder, {});
+  const auto [plan, report] = make_report(problem, quick_report(20, 300), folder, {});
   const json& candidates = report["candidates"];
   ASSERT_EQ(candidates["sensitivity"].size(), 300U);
   EXPECT_EQ(candidates["positions"].size(), 900U);
@@ -116,7 +116,7 @@ TEST(Report, AccuracyFollowsFromTheMatricesOfTestPoses) {
       folder.write("problem.yaml", read_file(examples / "kr270" / "problem.yaml") + "  test_poses: {random: 12}\n"));
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
-  const auto [plan, report] = make_report(problem, quick(18, 300), folder, brief);
+  const auto [plan, report] = make_report(problem, quick_report(18, 300), folder, brief);
   ASSERT_EQ(report["candidates"], nullptr);
   EXPECT_TRUE(report["curve"].empty());
   ASSERT_EQ(report["information"]["test"].size(), 12U);
@@ -134,8 +134,8 @@ TEST(Report, AccuracyFollowsFromTheMatricesOfTestPoses) {
 TEST(Report, PlaysTheRouteThroughEveryPose) {
   const TemporaryFolder folder;
   Problem problem = read_problem(examples / "cell" / "problem.yaml");
-  problem.workspace.motion.reachable = false;  // the route finds out, and the test is quick
-  const Plan plan = plan_problem(problem, quick(14, 200), Monitor{});
+  problem.workspace.motion.reachable = false;  // the route finds out, and the test is quick_report
+  const Plan plan = plan_problem(problem, quick_report(14, 200), Monitor{});
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions route_options;
   route_options.from_home = route_options.closed = true;
@@ -169,7 +169,7 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
 TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
-  PlanOptions options = quick(12, 100);
+  PlanOptions options = quick_report(12, 100);
   const auto file = folder.write("plan.json", plan_json(plan_problem(problem, options, Monitor{})));
   options.seed = 5;
   const auto other = folder.write("other.json", plan_json(plan_problem(problem, options, Monitor{})));
@@ -193,7 +193,7 @@ TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
 TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
-  json plan = json::parse(plan_json(plan_problem(problem, quick(12, 60), Monitor{})));
+  json plan = json::parse(plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
   plan["poses"].erase(1);
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
@@ -207,7 +207,7 @@ TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
 TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick(12, 60), Monitor{})));
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
   Monitor late;
   late.deadline = Monitor::Clock::now();
   const Report report = report_problem(problem, file, {}, late);

@@ -13,7 +13,7 @@
 namespace posewright {
 namespace {
 
-std::vector<Parameter> labels(int count, int nuisance) {
+std::vector<Parameter> prior_labels(int count, int nuisance) {
   std::vector<Parameter> parameters;
   for (int j = 0; j < count; ++j)
     parameters.push_back(
@@ -29,7 +29,7 @@ Eigen::VectorXd tolerances(const std::vector<Parameter>& parameters) {
 
 TEST(Prior, EvaluationCountsEveryToleranceAsOneMoreMeasurement) {
   const BlockArray blocks = random_blocks(3, 2, 7, 1);  // six rows for seven parameters
-  const std::vector<Parameter> parameters = labels(7, 2);
+  const std::vector<Parameter> parameters = prior_labels(7, 2);
   Eigen::MatrixXd m = blocks.all().transpose() * blocks.all();
   m += tolerances(parameters).cwiseAbs2().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd covariance = m.inverse();
@@ -56,7 +56,7 @@ TEST(Prior, SearchFindsTheBestPlanAndTheBoundHolds) {
   for (const int nuisance : {0, 2})
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
       const BlockArray blocks = random_blocks(8, 2, 7, 50 + seed);
-      const std::vector<Parameter> parameters = labels(7, nuisance);
+      const std::vector<Parameter> parameters = prior_labels(7, nuisance);
       SearchRequest request;
       request.criterion = "o1";
       request.method = "exchange";
@@ -87,7 +87,7 @@ TEST(Prior, SearchFindsTheBestPlanAndTheBoundHolds) {
 
 TEST(PracticalIdentifiability, WithAllCandidatesChosenSigmaIsThatOfTheWholePool) {
   const BlockArray pool = random_blocks(12, 2, 6, 3);
-  const std::vector<Parameter> parameters = labels(6, 1);
+  const std::vector<Parameter> parameters = prior_labels(6, 1);
   const PracticalIdentifiability p = practical_identifiability(pool, parameters, 12, 0.1, Monitor{});
   const Evaluation e = evaluate(pool, parameters);
   for (int j = 0; j < 6; ++j) {
@@ -107,7 +107,7 @@ TEST(PracticalIdentifiability, NearCopiesAreNamedAndTheWorstIsFixedFirst) {
   const BlockArray noise = random_blocks(200, 2, 5, 5);
   for (std::size_t i = 0; i < pool.count(); ++i)
     pool.block(i).col(3) = 2 * pool.block(i).col(1) + 0.002 * noise.block(i).col(0);
-  std::vector<Parameter> parameters = labels(5, 0);
+  std::vector<Parameter> parameters = prior_labels(5, 0);
   const PracticalIdentifiability p = practical_identifiability(pool, parameters, 20, 0.1, Monitor{});
   ASSERT_EQ(p.near.size(), 2U);
   std::vector<std::string> equations;
@@ -122,7 +122,7 @@ TEST(PracticalIdentifiability, NearCopiesAreNamedAndTheWorstIsFixedFirst) {
 
 TEST(PracticalIdentifiability, NuisanceParametersAreNeverFixed) {
   const BlockArray pool = random_blocks(50, 2, 4, 6);
-  std::vector<Parameter> parameters = labels(4, 1);
+  std::vector<Parameter> parameters = prior_labels(4, 1);
   for (Parameter& p : parameters) p.tolerance = 1e-9;
   const PracticalIdentifiability p = practical_identifiability(pool, parameters, 5, 0.1, Monitor{});
   EXPECT_EQ(p.recommended, std::vector<int>{0});

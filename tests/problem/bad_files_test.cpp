@@ -118,7 +118,7 @@ const BadFile parallel_robot[] = {
     {"PolarKeyUnknown", platform, "angle: 0}", "phi: 0}", 8, "unknown key 'phi'; allowed: radius, angle, z"},
 };
 
-const BadFile measurement[] = {
+const BadFile measurements[] = {
     {"MeasurementKindUnknown", arm, "type: points", "type: theodolite", 10,
      "measurement.type is 'theodolite'; allowed: pose, points, position, distance, camera, joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
@@ -182,7 +182,7 @@ const BadFile rest[] = {
 INSTANTIATE_TEST_SUITE_P(Root, BadProblem, testing::ValuesIn(root), test_name);
 INSTANTIATE_TEST_SUITE_P(SerialRobot, BadProblem, testing::ValuesIn(serial_robot), test_name);
 INSTANTIATE_TEST_SUITE_P(ParallelRobot, BadProblem, testing::ValuesIn(parallel_robot), test_name);
-INSTANTIATE_TEST_SUITE_P(Measurement, BadProblem, testing::ValuesIn(measurement), test_name);
+INSTANTIATE_TEST_SUITE_P(Measurement, BadProblem, testing::ValuesIn(measurements), test_name);
 INSTANTIATE_TEST_SUITE_P(Rest, BadProblem, testing::ValuesIn(rest), test_name);
 
 TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string good = R"(posewright_parameters: 1
+const std::string good_parameters = R"(posewright_parameters: 1
 variant: geometric
 convention: frames
 problem: {file: problem.yaml, sha256: "0123"}
@@ -25,7 +25,7 @@ parameters:
 )";
 
 TEST(CalibratedParameters, AreReadWithTheirLines) {
-  const CalibratedParameters p = parse_calibrated_parameters(good, "cal.yaml");
+  const CalibratedParameters p = parse_calibrated_parameters(good_parameters, "cal.yaml");
   EXPECT_EQ(p.file, "cal.yaml");
   EXPECT_EQ(p.sha256.size(), 64U);
   EXPECT_EQ(p.variant.value, "geometric");
@@ -58,7 +58,7 @@ TEST(CalibratedParameters, WrongOnesNameLineAndReason) {
   };
   for (const auto& c : cases) {
     try {
-      parse_calibrated_parameters(example::replaced(good, c.from, c.to), "bad.yaml");
+      parse_calibrated_parameters(example::replaced(good_parameters, c.from, c.to), "bad.yaml");
       ADD_FAILURE() << c.to << " was accepted";
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(c.message));
@@ -71,7 +71,7 @@ TEST(FuzzCalibratedParameters, MutatedFileParsesOrGivesOneLineThatStartsWithTheF
   constexpr int cases = 3000;
   for (int i = 0; i < cases; ++i) {
     Random random(11, std::uint64_t(i));
-    const std::string text = mutated(good, random);
+    const std::string text = mutated(good_parameters, random);
     try {
       parse_calibrated_parameters(text, "fuzz.yaml");
       ++accepted;

@@ -51,38 +51,38 @@ TEST(Units, ThousandthsAreExactlyTheLiteral) {
   EXPECT_EQ(parse_value("10 um", Quantity::length), 1e-5);
 }
 
-struct Bad {
+struct BadUnit {
   const char* text;
   Quantity quantity;
   const char* message;
 };
 
 TEST(Units, WrongTextIsRefusedWithTheReason) {
-  const Bad table[] = {{"1,3 mm", Quantity::length, "decimal comma"},
-                       {"1,5", Quantity::number, "decimal comma"},
-                       {"nan", Quantity::length, "no finite number"},
-                       {"inf mm", Quantity::length, "no finite number"},
-                       {"-inf", Quantity::number, "no finite number"},
-                       {"1e400", Quantity::number, "out of range"},
-                       {"1e308 kN", Quantity::force, "out of range"},
-                       {"1e308 deg", Quantity::angle, "finite"},
-                       {"", Quantity::length, "no number"},
-                       {"  ", Quantity::length, "no number"},
-                       {"mm", Quantity::length, "no finite number"},
-                       {"+-1", Quantity::number, "no finite number"},
-                       {"+", Quantity::number, "no finite number"},
-                       {"--1", Quantity::number, "no finite number"},
-                       {"1 inch", Quantity::length, "unknown unit 'inch'; allowed: m, mm, um, nm"},
-                       {"1 MM", Quantity::length, "unknown unit 'MM'"},
-                       {"1 \xC2\xB5m", Quantity::length, "unknown unit '\xC2\xB5m'; allowed: m, mm, um, nm"},
-                       {"1 mm mm", Quantity::length, "unknown unit 'mm mm'"},
-                       {"0x10", Quantity::length, "unknown unit 'x10'"},
-                       {"5 deg", Quantity::length, "wrong unit 'deg'; allowed: m, mm, um, nm"},
-                       {"5 mm", Quantity::angle, "wrong unit 'mm'; allowed: rad, mrad, urad, deg"},
-                       {"5 mm", Quantity::force, "wrong unit 'mm'; allowed: N, kN"},
-                       {"5 mm", Quantity::number, "plain number"},
-                       {"1\nm", Quantity::length, "unknown unit '\\x0am'"}};
-  for (const Bad& row : table) {
+  const BadUnit table[] = {{"1,3 mm", Quantity::length, "decimal comma"},
+                           {"1,5", Quantity::number, "decimal comma"},
+                           {"nan", Quantity::length, "no finite number"},
+                           {"inf mm", Quantity::length, "no finite number"},
+                           {"-inf", Quantity::number, "no finite number"},
+                           {"1e400", Quantity::number, "out of range"},
+                           {"1e308 kN", Quantity::force, "out of range"},
+                           {"1e308 deg", Quantity::angle, "finite"},
+                           {"", Quantity::length, "no number"},
+                           {"  ", Quantity::length, "no number"},
+                           {"mm", Quantity::length, "no finite number"},
+                           {"+-1", Quantity::number, "no finite number"},
+                           {"+", Quantity::number, "no finite number"},
+                           {"--1", Quantity::number, "no finite number"},
+                           {"1 inch", Quantity::length, "unknown unit 'inch'; allowed: m, mm, um, nm"},
+                           {"1 MM", Quantity::length, "unknown unit 'MM'"},
+                           {"1 \xC2\xB5m", Quantity::length, "unknown unit '\xC2\xB5m'; allowed: m, mm, um, nm"},
+                           {"1 mm mm", Quantity::length, "unknown unit 'mm mm'"},
+                           {"0x10", Quantity::length, "unknown unit 'x10'"},
+                           {"5 deg", Quantity::length, "wrong unit 'deg'; allowed: m, mm, um, nm"},
+                           {"5 mm", Quantity::angle, "wrong unit 'mm'; allowed: rad, mrad, urad, deg"},
+                           {"5 mm", Quantity::force, "wrong unit 'mm'; allowed: N, kN"},
+                           {"5 mm", Quantity::number, "plain number"},
+                           {"1\nm", Quantity::length, "unknown unit '\\x0am'"}};
+  for (const BadUnit& row : table) {
     try {
       parse_value(row.text, row.quantity);
       ADD_FAILURE() << row.text << " was accepted";

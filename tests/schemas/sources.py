@@ -68,7 +68,7 @@ def good_files():
 def parameters_file():
     """The good parameters file of the tests and the changes that spoil it, with their messages."""
     source = (ROOT / "tests/problem/calibrated_parameters_test.cpp").read_text()
-    good = re.search(r'const std::string good = R"\((.*?)\)";', source, re.S)[1]
+    good = re.search(r'const std::string good_parameters = R"\((.*?)\)";', source, re.S)[1]
     literal = r'"((?:[^"\\]|\\.)*)"'
     rows = re.findall(rf'\{{{literal},\s*{literal},\s*{literal}\}}', source)
     unescaped = [[re.sub(r"\\(.)", lambda m: ESCAPES[m[1]], text) for text in row] for row in rows]

@@ -1,0 +1,45 @@
+"""Headers compile alone: check_headers.py SOURCE BUILD COMPILER [--all]. Those that the last commit changed; --all: every one, minutes."""
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+
+# Of a large change the first so many.
+MOST = 40
+
+
+def flags(build):
+    """Folders that the sources are compiled with, from the build's own list."""
+    text = (pathlib.Path(build) / "compile_commands.json").read_text()
+    return sorted(set(re.findall(r"-I[^ \"]+", text))) + [w for f in sorted(set(re.findall(r"-isystem ([^ \"]+)", text)) - {"/usr/include"}) for w in ("-isystem", f)]
+
+
+def changed(root):
+    run = subprocess.run(["git", "-C", str(root), "diff", "--name-only", "--diff-filter=d", "HEAD~1"], capture_output=True, text=True)
+    return {root / name for name in run.stdout.split()}
+
+
+def main(source, build, compiler, every=""):
+    root = pathlib.Path(source)
+    headers = sorted(p for part in ("include", "planners", "src", "tests/kit") for p in (root / part).rglob("*.hpp"))
+    assert len(headers) > 150
+    if every != "--all":
+        headers = sorted(set(headers) & changed(root))[:MOST]
+    words = [compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-x", "c++", f'-DPOSEWRIGHT_SOURCE_DIR="{root}"', *flags(build)]
+
+    def check(header):
+        run = subprocess.run([*words, "-I", str(header.parent), "-I", str(root / "src/outputs"), "-"], input=f'#include "{header}"\n',
+                             capture_output=True, text=True)
+        return header, run.stderr if run.returncode else ""
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        bad = [(h, text) for h, text in pool.map(check, headers) if text]
+    for header, text in bad:
+        print(f"{header.relative_to(root)} does not compile alone:\n{text[:1500]}")
+    sys.exit(1 if bad else 0)
+
+
+main(*sys.argv[1:])

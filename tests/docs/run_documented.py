@@ -1,0 +1,121 @@
+"""The commands of README and docs run as they are written: run_documented.py SOURCE PROGRAM [PAGE…].
+
+A page's commands are its ```sh blocks and its indented lines that begin with `posewright`, in their order, in one shell and one
+folder that holds `examples` and the files that the page's reader has by then. Commands that take long are listed here, once."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+# Searches that take more than ten seconds as they stand: what is added to their words.
+SLOW = {
+    "posewright plan examples/kr270/problem.yaml -o": "--time-limit 5",
+    "posewright plan examples/kr270/problem.yaml --poses 18": "--time-limit 5",
+    "posewright plan examples/cell/problem.yaml": "--method exchange --candidates 300 --restarts 1",
+    "posewright stations examples/cell/problem.yaml": "--candidates 60 --restarts 1 --full 1",
+    "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix": "--candidates 300 --restarts 1 --method exchange",
+    "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000": "--draws 200",
+    "posewright plan problem.yaml --parameters": "--time-limit 5",
+    "posewright select my_jacobians.npy": "--time-limit 5",
+    "posewright select blocks.npy": "--time-limit 5",
+}
+
+QUICK = "--candidates 300 --method exchange --restarts 1"
+KR270 = f"posewright plan examples/kr270/problem.yaml {QUICK}"
+TELESCOPE = f"posewright plan examples/telescope/problem.yaml {QUICK}"
+BLOCKS = "/usr/bin/python3 -c 'import numpy; numpy.save(\"{}\", numpy.random.default_rng(1).normal(size=(500, 3, 12)))'\n"
+READINGS = "posewright simulate examples/kr270/problem.yaml plan.json --draws 2 --data {}\n"
+OWN = "cp examples/kr270/* .\n"
+ROUTED = f"posewright plan examples/cell/problem.yaml {QUICK} -o plan.json\nposewright route plan.json -o route.json\n"
+
+# What the reader of a page has before its first command.
+BEFORE = {
+    "README.md": BLOCKS.format("my_jacobians.npy"),
+    "docs/calibrate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + READINGS.format("later.csv --seed 2"),
+    "docs/commands.md": OWN + BLOCKS.format("blocks.npy") + KR270 + " --poses 40\n" + READINGS.format("measured.csv")
+    + READINGS.format("more.csv --seed 2") + f"posewright plan examples/kr270/problem.yaml {QUICK} --poses 20 -o - --poses-csv data.csv\n",
+    "docs/compare.md": TELESCOPE + "\n" + TELESCOPE + " --seed 2 -o - --poses-csv mine.csv\n",
+    "docs/export.md": OWN + KR270 + "\nposewright route plan.json -o route.json\n",
+    "docs/parameters-file.md": OWN + KR270 + "\n" + READINGS.format("measured.csv")
+    + "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n",
+    "docs/report.md": ROUTED,
+    "docs/reproduction-telescope.md": "",
+    "docs/simulate.md": "",
+}
+# What a page's reader has only by then: in front of the command that begins so.
+BETWEEN = {
+    ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
+    ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
+    ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),
+    ("docs/simulate.md", "posewright simulate examples/telescope"): f"{TELESCOPE} --variant rigid -o plan.json --poses-csv - --force\n",
+}
+
+
+def commands_of(text):
+    """Whole sh blocks, and indented commands one by one."""
+    found = re.finditer(r"^```sh\n(.*?)^```$|^    (posewright [^\n]*\n)", text, re.S | re.M)
+    return [match[1] if match[1] is not None else match[2] for match in found]
+
+
+def as_tested(command, used):
+    for begin, words in SLOW.items():
+        at = command.find(begin)
+        if at >= 0:
+            used.add(begin)
+            end = re.compile(r"\s+#|\n").search(command, at).start()
+            command = f"{command[:end]} {words}{command[end:]}"
+    return command
+
+
+def run_page(root, page, path, used):
+    lines = []
+    for command in commands_of((root / page).read_text()):
+        for (where, begin), between in BETWEEN.items():
+            if where == page and command.startswith(begin):
+                lines.append(between)
+        lines.append(as_tested(command, used))
+    script = "set -e\n" + BEFORE.get(page, "") + "".join(lines)
+    script = script.replace('export PATH="$PWD/build/release/bin:$PATH"\n', "").replace("/usr/share/posewright/examples", f"{root}/examples")
+    # Said once a line, so that a failure names its command.
+    script = script.replace("set -e\n", "set -ex\n", 1)
+    with tempfile.TemporaryDirectory() as folder:
+        os.symlink(root / "examples", pathlib.Path(folder) / "examples")
+        run = subprocess.run(["sh", "-c", script], cwd=folder, env={**os.environ, "PATH": path}, capture_output=True, text=True)
+        if run.returncode != 0:
+            print(f"{page}: status {run.returncode}\n{run.stderr[-2000:]}")
+        names = sorted(str(p.relative_to(folder)) for p in pathlib.Path(folder).rglob("*") if p.is_file())
+        return run, names
+
+
+def check_getting_started(text, run, names):
+    """What the page says is printed, is; the share of the workspace, which is sought and not proved, to the digits it prints."""
+    promised = [line[4:] for line in text.splitlines() if re.match(r"    (20 poses|At least|Over the whole)", line)]
+    assert len(promised) == 3
+    for line in promised:
+        assert line in run.stdout, f"not printed: {line}"
+    assert "rank 33 of 57 parameters" in run.stdout and "Smallest number of poses: 5" in run.stdout
+    for name in ("plan.json", "poses.csv", "route.json"):
+        assert f"my_robot/{name}" in names, name
+
+
+def main(source, program, *pages):
+    root = pathlib.Path(source).resolve()
+    path = f"{pathlib.Path(program).resolve().parent}:{os.environ['PATH']}"
+    every = ["README.md"] + sorted(f"docs/{p.name}" for p in (root / "docs").glob("*.md"))
+    chosen = [page for page in every if commands_of((root / page).read_text()) and (not pages or page in pages)]
+    assert pages or len(chosen) >= 9, "the pages have lost their commands"
+    used, bad = set(), []
+    for page in chosen:
+        run, names = run_page(root, page, path, used)
+        print(f"{page}: {'failed' if run.returncode else 'as written'}", flush=True)
+        if run.returncode:
+            bad.append(page)
+        elif page == "docs/getting-started.md":
+            check_getting_started((root / page).read_text(), run, names)
+    assert pages or used == set(SLOW), f"no page has: {set(SLOW) - used}"
+    sys.exit(f"failed: {', '.join(bad)}" if bad else 0)
+
+
+main(*sys.argv[1:])

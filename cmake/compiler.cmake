@@ -6,7 +6,7 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1 -DNDEBUG")
 
-# Memory is there: collected later, it costs a tenth of the time less.
+# The compiler collects its memory later: less of its time goes there (3.6 of 38 s of one unit before).
 add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=400000>)
 
 # One compiler may take 1.5 GB: as many at once as there are processors and as memory holds.

@@ -9,7 +9,7 @@ target_include_directories(posewright_headers INTERFACE
 target_compile_features(posewright_headers INTERFACE cxx_std_20)
 target_link_libraries(posewright_headers INTERFACE Eigen3::Eigen)
 
-# What most sources read anyway, parsed once: two thirds of a second against eight for each unit. One set for each level of
+# What most sources read anyway, parsed once and not in every unit. One set for each level of
 # optimisation, because a compiler takes only what was made with its own options.
 foreach(level IN ITEMS hot cold)
   file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/parsed/${level}.cpp CONTENT "")

@@ -12,7 +12,8 @@ namespace posewright {
 
 struct WorkspaceBoundOptions {
   int starts = 32;          ///< local searches a round, from the candidates of largest d and spread ones
-  int rounds = 30;          ///< at most: new configurations enter, the weights are solved again
+  int rounds = 30;          ///< at most: new configurations enter, the weights are solved again;
+                            ///< with fewer than 1,000 candidates, a quick look, no more than 8
   double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
   int evaluations = 400;    ///< of one local search
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions

@@ -24,7 +24,7 @@ def kr270(examples):
 @pytest.fixture(scope="session")
 def small_plan(kr270):
     """Few candidates, one start: what it says must be right, not good."""
-    return pw.plan(kr270, candidates=200, restarts=1, method="exchange")
+    return pw.plan(kr270, candidates=60, restarts=1, method="exchange")
 
 
 @pytest.fixture(scope="session")

@@ -103,7 +103,7 @@ def test_arguments_that_do_not_fit_the_blocks(blocks, arguments, error, said):
 @pytest.mark.parametrize("name", ["kr270", "five_bar", "telescope", "delta"])
 def test_blocks_at_the_planned_poses_give_the_plans_figures(examples, name):
     problem = pw.Problem(examples / name / "problem.yaml")
-    plan = pw.plan(problem, candidates=200, restarts=1, method="exchange")
+    plan = pw.plan(problem, candidates=60, restarts=1, method="exchange")
     blocks = pw.blocks(problem, plan)
     rows = blocks.values.reshape(-1, blocks.shape[2])
     # Columns in units of their tolerance, so that numpy's determinant is as good as ours.
@@ -145,19 +145,19 @@ def test_whitened_blocks_are_the_jacobians_weighted_by_their_covariance(kr270, s
 
 def test_candidates_blocks_and_select_make_the_plan_of_a_variant(kr270):
     model = pw.Model(kr270, seed=5)
-    candidates = model.candidates(300, seed=5)
-    assert candidates.shape == (300, 6)
+    candidates = model.candidates(60, seed=5)
+    assert candidates.shape == (60, 6)
     chosen = pw.select(model.blocks(candidates), poses=18, restarts=2, seed=5)
-    plan = pw.plan(kr270, candidates=300, restarts=2, method="exchange", seed=5)
+    plan = pw.plan(kr270, candidates=60, restarts=2, method="exchange", seed=5)
     assert (candidates[chosen.candidates] == plan.configurations).all()
     assert chosen.log_det == pytest.approx(plan.log_det, rel=1e-12)
 
 
 def test_a_model_of_a_plan_has_the_plans_columns(kr270):
-    plan = pw.plan(kr270, variant="automatic", candidates=200, restarts=1, method="greedy")
+    plan = pw.plan(kr270, variant="automatic", candidates=60, restarts=1, method="greedy")
     model = pw.Model(kr270, plan)
     assert sorted(p.name for p in model.parameters) == sorted(p.name for p in plan.parameters if p.sigma is not None)
-    same = pw.Model(kr270, "automatic", candidates=200)
+    same = pw.Model(kr270, "automatic", candidates=60)
     assert [p.name for p in same.parameters] == [p.name for p in model.parameters]
     few = pw.Model(kr270, "geometric", ["px1", "base.x"])
     assert [p.name for p in few.parameters] == ["base.x", "px1"] and few.nuisance == 1

@@ -39,7 +39,7 @@ def test_ctrl_c_keeps_the_best_plan_and_warns(examples):
         assert [w.category for w in told] == [RuntimeWarning], told
         chosen = pw.select(np.random.default_rng(1).standard_normal((300, 2, 6)), poses=9, **long)
         assert chosen.interrupted and len(chosen) == 9
-        again = pw.plan(problem, candidates=100, restarts=1, method="exchange")
+        again = pw.plan(problem, candidates=60, restarts=1, method="exchange")
         assert not again.interrupted
         print("through")
         """)
@@ -87,7 +87,7 @@ def test_other_threads_of_python_run_during_a_search(kr270):
     thread = threading.Thread(target=tick)
     thread.start()
     try:
-        pw.plan(kr270, candidates=300, restarts=2, method="exchange", progress=count)
+        pw.plan(kr270, candidates=60, restarts=2, method="exchange", progress=count)
     finally:
         finished.set()
         thread.join()
@@ -95,11 +95,11 @@ def test_other_threads_of_python_run_during_a_search(kr270):
 
 
 def test_searches_in_several_threads_do_not_mix(kr270):
-    expected = pw.plan(kr270, candidates=100, restarts=1, seed=1, method="exchange").to_dict()["poses"]
+    expected = pw.plan(kr270, candidates=60, restarts=1, seed=1, method="exchange").to_dict()["poses"]
     plans = {}
 
     def search(i):
-        plans[i] = pw.plan(kr270, candidates=100, restarts=1, seed=1, method="exchange", threads=1).to_dict()["poses"]
+        plans[i] = pw.plan(kr270, candidates=60, restarts=1, seed=1, method="exchange", threads=1).to_dict()["poses"]
 
     threads = [threading.Thread(target=search, args=(i,)) for i in range(3)]
     for thread in threads:

@@ -11,9 +11,9 @@ from conftest import without_times
 @pytest.mark.parametrize("name, method", [("kr270", "exchange"), ("five_bar", "auto")])
 def test_the_command_line_gives_the_same_plan(program, examples, tmp_path, name, method):
     file = examples / name / "problem.yaml"
-    options = ["--candidates", 150, "--restarts", 2, "--seed", 3, "--poses", 20, "--method", method]
+    options = ["--candidates", 60, "--restarts", 2, "--seed", 3, "--poses", 20, "--method", method]
     theirs = program("plan", file, *options, "-o", "-", "--poses-csv", tmp_path / "poses.csv")
-    plan = pw.plan(pw.Problem(file), poses=20, candidates=150, restarts=2, seed=3, method=method)
+    plan = pw.plan(pw.Problem(file), poses=20, candidates=60, restarts=2, seed=3, method=method)
     assert without_times(plan.to_dict()) == without_times(theirs)
     assert plan.to_csv() == (tmp_path / "poses.csv").read_text()
 
@@ -47,7 +47,7 @@ def test_attributes_say_what_the_file_says(small_plan):
 
 
 def test_dropped_parameters_have_an_equation_and_no_sigma(kr270):
-    plan = pw.plan(kr270, variant="automatic", candidates=200, restarts=1, method="greedy")
+    plan = pw.plan(kr270, variant="automatic", candidates=60, restarts=1, method="greedy")
     dropped = [p for p in plan.parameters if p.dropped_because]
     assert dropped and all(p.sigma is None and p.worth_identifying is None for p in dropped)
     assert np.isnan(plan.sigma).sum() == len(dropped)
@@ -56,18 +56,18 @@ def test_dropped_parameters_have_an_equation_and_no_sigma(kr270):
 @pytest.mark.parametrize("name, method", [("kr270", "exchange"), ("five_bar", "auto")])
 def test_threads_do_not_change_the_plan(examples, name, method):
     problem = pw.Problem(examples / name / "problem.yaml")
-    settings = dict(candidates=150, restarts=3, method=method)
+    settings = dict(candidates=60, restarts=3, method=method)
     one, two = (without_times(pw.plan(problem, threads=n, **settings).to_dict()) for n in (1, 2))
     assert one == two
 
 
 def test_criteria_without_a_bound_have_no_certificate(kr270):
-    assert pw.plan(kr270, criterion="o3", candidates=100, restarts=1, method="greedy").certificate is None
+    assert pw.plan(kr270, criterion="o3", candidates=60, restarts=1, method="greedy").certificate is None
 
 
 def test_poses_measured_already_come_from_plans_files_and_arrays(kr270, small_plan, tmp_path):
     small_plan.save(tmp_path / "measured.csv")
-    settings = dict(poses=4, candidates=150, restarts=1, method="exchange")
+    settings = dict(poses=4, candidates=60, restarts=1, method="exchange")
     plans = [
         without_times(pw.plan(kr270, measured=measured, **settings).to_dict())
         for measured in (small_plan, tmp_path / "measured.csv", small_plan.configurations)
@@ -80,7 +80,7 @@ def test_poses_measured_already_come_from_plans_files_and_arrays(kr270, small_pl
 
 def test_progress_is_told_and_what_it_raises_comes_out(kr270):
     seen = []
-    pw.plan(kr270, candidates=300, restarts=2, method="exchange", progress=seen.append)
+    pw.plan(kr270, candidates=60, restarts=2, method="exchange", progress=seen.append)
     assert {"candidates"} < {p.stage for p in seen}
     assert all(p.total == 0 or 0 <= p.done <= p.total for p in seen)
     assert "Progress" in repr(seen[0])
@@ -89,7 +89,7 @@ def test_progress_is_told_and_what_it_raises_comes_out(kr270):
         raise KeyError(progress.stage)
 
     with pytest.raises(KeyError, match="candidates"):
-        pw.plan(kr270, candidates=300, progress=fail)
+        pw.plan(kr270, candidates=60, progress=fail)
 
 
 def test_a_time_limit_ends_the_search_with_the_best_plan(kr270):
@@ -130,7 +130,7 @@ def test_arguments_of_another_type_are_type_errors(kr270, arguments):
 
 def test_what_cannot_be_done_is_a_runtime_error(kr270):
     with pytest.raises(RuntimeError) as error:
-        pw.plan(kr270, poses=2, candidates=300)
+        pw.plan(kr270, poses=2, candidates=60)
     assert isinstance(error.value, pw.CannotDo)
     assert "at least" in str(error.value)
     assert not isinstance(error.value, ValueError)

@@ -16,7 +16,7 @@ def as_dictionary(file):
 @pytest.mark.parametrize("name", ["kr270", "five_bar", "telescope"])
 def test_a_dictionary_gives_the_plan_of_the_file_bit_for_bit(examples, name):
     file = examples / name / "problem.yaml"
-    settings = dict(candidates=100, restarts=1, method="exchange")
+    settings = dict(candidates=60, restarts=1, method="exchange")
     by_file = without_times(pw.plan(pw.Problem(file), **settings).to_dict())
     by_dictionary = without_times(pw.plan(pw.Problem(as_dictionary(file), base=file.parent), **settings).to_dict())
     by_file.pop("problem"), by_dictionary.pop("problem")
@@ -45,7 +45,7 @@ def test_words_for_yes_and_no_are_true_and_false(examples):
     given = as_dictionary(examples / "kr270" / "problem.yaml")
     for reserve in (True, False):
         given["design"]["reserve"] = reserve
-        plan = pw.plan(pw.Problem(given, base=examples / "kr270"), candidates=100, restarts=1, method="greedy")
+        plan = pw.plan(pw.Problem(given, base=examples / "kr270"), candidates=60, restarts=1, method="greedy")
         assert plan.reserve is reserve
 
 
@@ -68,7 +68,7 @@ def test_what_is_wrong_in_a_dictionary_is_named_by_its_keys(examples, path, valu
         place = place[key]
     place[path[-1]] = value
     with pytest.raises(pw.InputError) as error:
-        pw.plan(pw.Problem(given, base=examples / "kr270"), candidates=100)
+        pw.plan(pw.Problem(given, base=examples / "kr270"), candidates=60)
     assert said in str(error.value)
     assert "problem:" in str(error.value)
 

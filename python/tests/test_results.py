@@ -15,7 +15,7 @@ def cell(examples):
 @pytest.fixture(scope="module")
 def reached(cell):
     """Ten feasible configurations of the cell."""
-    return pw.Model(cell, candidates=100).candidates(10)
+    return pw.Model(cell, candidates=60).candidates(10)
 
 
 @pytest.fixture
@@ -29,19 +29,19 @@ def pose_list(cell, reached, tmp_path):
 
 
 def test_observe_says_what_the_command_line_says(program, kr270):
-    theirs = program("observe", kr270.file, "--candidates", 300)
-    mine = pw.observe(kr270, candidates=300)
+    theirs = program("observe", kr270.file, "--candidates", 60)
+    mine = pw.observe(kr270, candidates=60)
     assert list(mine) == kr270.variants
     assert [o.to_dict() for o in mine.values()] == theirs["variants"]
-    one = pw.observe(kr270, "automatic", candidates=300)
+    one = pw.observe(kr270, "automatic", candidates=60)
     assert list(one) == ["automatic"] and one["automatic"].to_dict() == mine["automatic"].to_dict()
 
 
 def test_an_observation_is_consistent(kr270):
-    o = pw.observe(kr270, "automatic", candidates=300)["automatic"]
+    o = pw.observe(kr270, "automatic", candidates=60)["automatic"]
     assert o.rank == len(o.kept) == len(o.singular_values) - len(o.dependencies)
     assert len(o.parameters) == o.rank + len(o.dependencies)
-    assert o.configurations == 300 and o.smallest_poses > 1
+    assert o.configurations == 60 and o.smallest_poses > 1
     assert (np.diff(o.singular_values) <= 0).all()
     for d in o.dependencies:
         assert d.dropped not in o.kept and set(d.terms) <= set(o.kept) and d.dropped in d.equation
@@ -52,10 +52,10 @@ def test_an_observation_is_consistent(kr270):
 
 def test_evaluate_says_what_the_command_line_says(program, kr270, small_plan, tmp_path):
     small_plan.save(tmp_path / "plan.json")
-    settings = ["--candidates", 200, "--restarts", 1, "--method", "exchange"]
+    settings = ["--candidates", 60, "--restarts", 1, "--method", "exchange"]
     theirs = program("evaluate", kr270.file, tmp_path / "plan.json", "--drop", 2, "--add", 1, *settings)
     for poses in (small_plan, small_plan.configurations, tmp_path / "plan.json"):
-        mine = pw.evaluate(kr270, poses, drop=2, add=1, candidates=200, restarts=1, method="exchange")
+        mine = pw.evaluate(kr270, poses, drop=2, add=1, candidates=60, restarts=1, method="exchange")
         assert without_times(mine.to_dict()) == without_times(theirs)
     assert json.loads(mine.to_json())["schema"] == "posewright/evaluation/1"
     assert mine.plan.log_det == pytest.approx(small_plan.log_det, rel=1e-12)
@@ -65,7 +65,7 @@ def test_evaluate_says_what_the_command_line_says(program, kr270, small_plan, tm
     assert "Drop first" in mine.summary() and mine._repr_html_()
     for shown in (mine, mine.add, mine.drop, mine.scores["o1"]):
         assert repr(shown).startswith("<" + type(shown).__name__)
-    plain = pw.evaluate(kr270, small_plan, candidates=200)
+    plain = pw.evaluate(kr270, small_plan, candidates=60)
     assert plain.drop is None and plain.add is None
 
 
@@ -73,12 +73,12 @@ def test_poses_that_are_not_feasible_are_named(cell, reached):
     inside = reached.copy()
     inside[4, :6] = [1.8, -0.4, 0.6, 0, 0, 0]  # into the wall
     with pytest.raises(pw.InputError, match="configurations: pose 5 is not feasible"):
-        pw.evaluate(cell, inside, candidates=100)
+        pw.evaluate(cell, inside, candidates=60)
 
 
 def test_a_choice_is_a_number_in_arrays_and_a_label_in_plans(examples):
     problem = pw.Problem(examples / "instruments" / "tracker_two_stations.yaml")
-    plan = pw.plan(problem, candidates=200, restarts=1, method="exchange")
+    plan = pw.plan(problem, candidates=60, restarts=1, method="exchange")
     assert len(set(plan.stations)) == 2
     model = pw.Model(problem, plan)
     configurations = model.configurations(plan)
@@ -137,7 +137,7 @@ def test_bad_arguments_of_a_route(kr270, small_plan):
 def test_lists_that_other_programs_wrote_are_read_by_their_format(kr270, small_plan, tmp_path):
     file = tmp_path / "poses.npy"
     np.save(file, small_plan.configurations)
-    settings = dict(candidates=100, restarts=1, method="exchange")
+    settings = dict(candidates=60, restarts=1, method="exchange")
     by_file = pw.evaluate(kr270, file, format="pybotics-npy", **settings)
     assert without_times(by_file.to_dict()) == without_times(pw.evaluate(kr270, small_plan, **settings).to_dict())
     with pytest.raises(pw.InputError, match="it belongs to the name of a pose list"):

@@ -44,8 +44,8 @@ TEST(CommandLine, HelpAndVersionAreEverywhere) {
 
 TEST(CommandLine, PlanWritesBothFilesAndASummary) {
   const TemporaryFolder folder;
-  const ProgramRun run =
-      run_program(folder.path(), {"plan", telescope, "--candidates", "800", "-o", "p.json", "--poses-csv", "p.csv"});
+  const ProgramRun run = run_program(folder.path(), {"plan", telescope, "--candidates", "400", "--method", "exchange",
+                                                     "-o", "p.json", "--poses-csv", "p.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("40 poses for variant rigid: 42 parameters"));
   EXPECT_THAT(run.out, HasSubstr("as informative as any plan of 40 of these"));
@@ -65,8 +65,8 @@ TEST(CommandLine, PlanWritesBothFilesAndASummary) {
 
 TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   const TemporaryFolder folder;
-  const ProgramRun plan =
-      run_program(folder.path(), {"plan", telescope, "--candidates", "500", "--json", "-o", "-", "--poses-csv", "-"});
+  const ProgramRun plan = run_program(folder.path(), {"plan", telescope, "--candidates", "200", "--method", "exchange",
+                                                      "--json", "-o", "-", "--poses-csv", "-"});
   EXPECT_EQ(nlohmann::json::parse(plan.out)["poses"].size(), 40U);
   EXPECT_EQ(folder.count_files(), 0U);
   const ProgramRun observe = run_program(folder.path(), {"observe", telescope, "--candidates", "300", "--json"});
@@ -146,7 +146,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
 TEST(CommandLine, FilesOfOthersAreNotReplacedUnlessForced) {
   const TemporaryFolder folder;
   folder.write("plan.json", "my notes");
-  const std::vector<std::string> words = {"plan", telescope, "--candidates", "300"};
+  const std::vector<std::string> words = {"plan", telescope, "--candidates", "100", "--method", "exchange"};
   const ProgramRun refused = run_program(folder.path(), words);
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("plan.json exists and was not written by posewright; --force replaces it"));

@@ -127,19 +127,21 @@ std::string CellVerifier::violation(const std::map<std::string, double>& joints,
   }
   for (std::size_t i = 0; i < own.links.size(); ++i) {
     if (moving[i] == 0) continue;
-    for (const Wall& wall : own.walls)
+    for (const Wall& wall : own.walls) {
+      // The wall in the mesh's frame, so that its many corners stay where they are.
+      const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(wall.normal).normalized();
+      const Eigen::Vector3d along = X[i].linear().transpose() * normal;
+      const double origin = normal.dot(X[i].translation() - Eigen::Map<const Eigen::Vector3d>(wall.at));
       for (const auto& corner : own.links[i].corners)
-        if (Eigen::Map<const Eigen::Vector3d>(wall.normal)
-                .normalized()
-                .dot(X[i] * corner - Eigen::Map<const Eigen::Vector3d>(wall.at)) < clearance)
-          return own.links[i].name + " at the wall";
+        if (along.dot(corner) + origin < clearance) return own.links[i].name + " at the wall";
+    }
     for (const auto& [box, X_box] : own.boxes) {
-      fcl::CollisionObjectd a(own.links[i].mesh, X[i]), b(box, X_box);
       fcl::DistanceRequestd request(false);
       request.distance_tolerance = 1e-9;
       request.gjk_solver_type = fcl::GST_LIBCCD;
       fcl::DistanceResultd result(clearance);  // what is farther does not matter
-      fcl::distance(&a, &b, request, result);
+      // Of geometries: a collision object goes through all vertices when it is made.
+      fcl::distance<double>(own.links[i].mesh.get(), X[i], box.get(), X_box, request, result);
       if (result.min_distance < clearance - 1e-6) return own.links[i].name + " at a box";
     }
     for (std::size_t j = 0; j < i; ++j) {
@@ -147,10 +149,10 @@ std::string CellVerifier::violation(const std::map<std::string, double>& joints,
       if (own.adjacent(own.links[i], own.links[j]) || own.skipped.count(one + " and " + other) > 0 ||
           own.skipped.count(other + " and " + one) > 0)
         continue;
-      fcl::CollisionObjectd a(own.links[i].mesh, X[i]), b(own.links[j].mesh, X[j]);
       fcl::CollisionRequestd request;
       fcl::CollisionResultd result;
-      if (fcl::collide(&a, &b, request, result) > 0) return one + " and " + other;
+      if (fcl::collide<double>(own.links[i].mesh.get(), X[i], own.links[j].mesh.get(), X[j], request, result) > 0)
+        return one + " and " + other;
     }
   }
   return {};

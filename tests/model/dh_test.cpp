@@ -46,7 +46,7 @@ TEST(DenavitHartenberg, ChainHasTheSameTipAsTheUrdfEverywhere) {
       Random random(1, 0);
       Eigen::Isometry3d X, Y;
       Twists none;
-      for (int i = 0; i < 50; ++i) {
+      for (int i = 0; i < 20; ++i) {
         const std::vector<double> q = random_configuration(chain.coordinates, random);
         frames.linearise(q, {}, {}, X, none, nullptr);
         dh.linearise(q, {}, {}, Y, none, nullptr);

@@ -98,7 +98,7 @@ TEST(ElasticChain, TorquesAreTheDerivativeOfTheLoadsWork) {
   const ElastostaticSpec spec = springs();
   const ElasticChain model(chain, spec, {});
   Random random(2, 0);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 20; ++i) {
     std::vector<double> q = random_configuration(model.coordinates(), random), torque(6);
     model.torques(q, int(q.back()), torque);
     const std::vector<double> expected = torques_by_definition(chain, spec, int(q.back()), q);

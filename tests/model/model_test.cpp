@@ -8,18 +8,15 @@
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
+#include "tests/kit/example_problems.hpp"
 
 namespace posewright {
 namespace {
 
 using testing::HasSubstr;
 
-Problem example_folder_problem(const std::string& name) {
-  return read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / name / "problem.yaml");
-}
-
 TEST(Whitening, BlockTransposedTimesBlockIsGWeightedByTheInverseCovariance) {
-  const Problem problem = example_folder_problem("telescope");
+  const Problem problem = example("telescope/problem.yaml");
   const auto model = make_model(problem);
   const std::vector<int> selected = {0, 1, 3, 8, 20, 53};
   const std::vector<double> q = {1e-3, -5e-4, 1e-4, 2e-3, -1e-3, 3e-3};
@@ -36,7 +33,7 @@ TEST(Whitening, BlockTransposedTimesBlockIsGWeightedByTheInverseCovariance) {
 }
 
 TEST(Whitening, RepeatsDivideTheReadingNoiseButNotWhatStaysAtAPose) {
-  Problem problem = example_folder_problem("kr270");
+  Problem problem = example("kr270/problem.yaml");
   problem.measurement.repeats = 4;
   problem.measurement.repeatability = 3e-5;
   const auto model = make_model(problem);
@@ -47,7 +44,7 @@ TEST(Whitening, RepeatsDivideTheReadingNoiseButNotWhatStaysAtAPose) {
 }
 
 TEST(Whitening, EncoderNoiseEntersThroughTheJointTwists) {
-  Problem problem = example_folder_problem("kr270");
+  Problem problem = example("kr270/problem.yaml");
   std::get<SerialArmSpec>(problem.robot).encoder_noise = 1e-5;
   const auto model = make_model(problem);
   std::vector<int> offsets;
@@ -63,7 +60,7 @@ TEST(Whitening, EncoderNoiseEntersThroughTheJointTwists) {
 }
 
 TEST(Variant, GlobsNamesRolesAndTolerancesAreResolved) {
-  const Problem problem = example_folder_problem("kr270");
+  const Problem problem = example("kr270/problem.yaml");
   const auto model = make_model(problem);
   const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
   EXPECT_EQ(columns.nuisance, 15);
@@ -85,7 +82,7 @@ std::string complaint(Problem problem, const std::function<void(VariantSpec&)>& 
 }
 
 TEST(Variant, BadPatternsNameWhatExists) {
-  const Problem problem = example_folder_problem("kr270");
+  const Problem problem = example("kr270/problem.yaml");
   EXPECT_THAT(complaint(problem,
                         [](VariantSpec& v) {
                           v.parameters = {{"joint_9.*", 7}};
@@ -104,7 +101,7 @@ TEST(Variant, BadPatternsNameWhatExists) {
 }
 
 TEST(SixPus, PlatformAtReferenceNeedsAlmostNoActuation) {
-  const auto model = make_model(example_folder_problem("telescope"));
+  const auto model = make_model(example("telescope/problem.yaml"));
   std::vector<double> rho(6);
   ASSERT_TRUE(model->actuator_values(std::vector<double>(6, 0.0), rho));
   for (const double r : rho) EXPECT_NEAR(r, 0, 1e-5);
@@ -112,7 +109,7 @@ TEST(SixPus, PlatformAtReferenceNeedsAlmostNoActuation) {
 }
 
 TEST(IdentificationModel, WrongSizesAreRefused) {
-  const auto model = make_model(example_folder_problem("telescope"));
+  const auto model = make_model(example("telescope/problem.yaml"));
   Linearisation scratch;
   EXPECT_THROW(model->linearise(std::vector<double>(5), {}, std::vector<int>{0}, scratch), std::invalid_argument);
   EXPECT_THROW(model->linearise(std::vector<double>(6), std::vector<double>(3), std::vector<int>{0}, scratch),

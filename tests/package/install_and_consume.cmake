@@ -1,5 +1,5 @@
 # Installs the build into a scratch prefix, builds the consumer against it and runs it.
-# cmake -D BUILD=… -D SOURCE=… -D SCRATCH=… -D CONFIG=… -P install_and_consume.cmake
+# cmake -D ROOT=… -D BUILD=… -D SOURCE=… -D SCRATCH=… -D CONFIG=… -P install_and_consume.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -10,11 +10,16 @@ endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
-run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${SCRATCH}/build -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DCMAKE_CXX_FLAGS=${FLAGS})
+run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${SCRATCH}/build -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DCMAKE_CXX_FLAGS=${FLAGS} -DREADME=${ROOT}/README.md)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/consumer)
 if(NOT output MATCHES "^0.25 .*exchange")
   message(FATAL_ERROR "the consumer printed: ${output}")
+endif()
+file(COPY ${ROOT}/examples/five_bar/problem.yaml DESTINATION ${SCRATCH})
+run(${CMAKE_COMMAND} -E chdir ${SCRATCH} ${SCRATCH}/build/readme)
+if(NOT output MATCHES "poses for variant")
+  message(FATAL_ERROR "README's program printed: ${output}")
 endif()
 run(${SCRATCH}/prefix/bin/posewright --version)
 file(GLOB_RECURSE installed ${SCRATCH}/prefix/lib/*.cmake)

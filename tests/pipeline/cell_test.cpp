@@ -48,7 +48,7 @@ std::string cell_problem(const std::filesystem::path& urdf, double s) {
          ", 0.2], station: A}\n" +
          "  line_of_sight: {visible: all, range: [0.3, 20], elevation: [-60 deg, 77 deg], acceptance: 80 deg, "
          "normals: {\"*\": [0, 0, 1]}}\n" +
-         "design: {poses: 12, candidates: " + std::to_string(int(setting("POSEWRIGHT_CANDIDATES", 400))) +
+         "design: {poses: 12, candidates: " + std::to_string(int(setting("POSEWRIGHT_CANDIDATES", 150))) +
          ", restarts: 1, method: exchange}\n";
 }
 
@@ -115,7 +115,7 @@ Problem example_cell() {
 PlanOptions quick_cell(int threads) {
   PlanOptions options;
   options.poses = 12;
-  options.candidates = 300;
+  options.candidates = 100;
   options.restarts = 1;
   options.method = "exchange";
   options.threads = threads;

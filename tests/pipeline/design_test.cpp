@@ -14,6 +14,7 @@
 #include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -65,10 +66,6 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
 
 INSTANTIATE_TEST_SUITE_P(Links, PlanarChain, testing::Values(2, 3));
 
-std::filesystem::path example_file(const std::string& name) {
-  return std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / name;
-}
-
 PlanOptions quick(int candidates = 400) {
   PlanOptions options;
   options.candidates = candidates;
@@ -78,8 +75,8 @@ PlanOptions quick(int candidates = 400) {
 }
 
 TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
-  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
-  PlanOptions options = quick(2000);
+  const Problem problem = example("telescope/problem.yaml");
+  PlanOptions options = quick(500);
   const Plan exchange = plan_problem(problem, options, Monitor{});
   options.method = "auto";
   const Plan best = plan_problem(problem, options, Monitor{});
@@ -91,7 +88,7 @@ TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
 
 TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
+  const Problem problem = example("telescope/problem.yaml");
   PlanOptions options = quick();
   options.poses = 20;
   const Plan first = plan_problem(problem, options, Monitor{});
@@ -110,9 +107,9 @@ TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
 }
 
 TEST(Design, ReservePlanLosesLessWithItsWorstPose) {
-  const Problem problem = read_problem(example_file("gough/problem.yaml"));
-  PlanOptions options = quick(300);
-  options.poses = 10;
+  const Problem problem = example("delta/problem.yaml");
+  PlanOptions options = quick(200);
+  options.poses = 12;
   const auto least = [](const Plan& plan) {
     double value = 1.0;
     for (const PlannedPose& pose : plan.poses) value = std::min(value, pose.without);
@@ -127,11 +124,12 @@ TEST(Design, ReservePlanLosesLessWithItsWorstPose) {
 }
 
 TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
-  Problem problem = read_problem(example_file("kr270/problem.yaml"));
+  Problem problem = example("kr270/problem.yaml");
   problem.design.minimum_distance = DesignSpec::MinimumDistance{40 * std::numbers::pi / 180, 0.0};
   for (const char* method : {"exchange", "auto"}) {
-    PlanOptions options = quick(200);
+    PlanOptions options = quick(60);
     options.restarts = 1;
+    options.poses = 8;
     options.method = method;
     const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));
     for (std::size_t i = 0; i < poses.size(); ++i)
@@ -186,9 +184,10 @@ TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
 }
 
 TEST(Design, PlansForSeveralVariantsServeEachAndMaximinTheWorstBest) {
-  Problem problem = read_problem(example_file("telescope/problem.yaml"));
+  Problem problem = example("telescope/problem.yaml");
   problem.design.variants = {{{"rigid", 0}, 1.0}, {{"linear", 0}, 1.0}};
-  PlanOptions options = quick(300);
+  PlanOptions options = quick(60);
+  options.poses = 16;
   std::map<std::string, Plan> plans;
   for (const char* criterion : {"compound", "maximin"}) {
     options.criterion = criterion;
@@ -250,10 +249,10 @@ TEST(Design, TestPosesFromAFileAreThoseWrittenInTheProblem) {
 
 TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example_file("telescope/problem.yaml"));
-  const Plan plan = plan_problem(problem, quick(), Monitor{});
+  const Problem problem = example("telescope/problem.yaml");
+  const Plan plan = plan_problem(problem, quick(80), Monitor{});
   EvaluateOptions options;
-  options.plan = quick();
+  options.plan = quick(80);
   options.drop = 2;
   options.add = 3;
   for (const auto& file : {folder.write("p.csv", poses_csv(plan)), folder.write("p.json", plan_json(plan))}) {
@@ -282,7 +281,7 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
 
 TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnce) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example_file("five_bar/problem.yaml"));
+  const Problem problem = example("five_bar/problem.yaml");
   EvaluateOptions options;
   options.plan = quick(200);
   const auto file = folder.write("four.csv", "x [mm],y [mm]\n0,300\n100,300\n-100,300\n0,400\n");
@@ -295,7 +294,7 @@ TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnc
 
 TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
   const TemporaryFolder folder;
-  const Problem problem = read_problem(example_file("five_bar/problem.yaml"));
+  const Problem problem = example("five_bar/problem.yaml");
   PlanOptions options = quick(200);
   options.poses = 10;
   const Plan first = plan_problem(problem, options, Monitor{});

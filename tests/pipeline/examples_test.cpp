@@ -20,11 +20,20 @@ namespace fs = std::filesystem;
 
 class Examples : public testing::TestWithParam<std::string> {};
 
+/// One of every kind of robot and instrument has its poses moved between the candidates too; that takes the most time.
+bool is_moved(const std::string& file) {
+  for (const char* name : {"telescope", "delta", "five_bar", "elastostatic", "camera", "rosi"})
+    if (file.find(name) != std::string::npos) return true;
+  return false;
+}
+
 TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
   const Problem problem = example(GetParam());
   PlanOptions options;
-  options.candidates = 400;
+  options.candidates = 100;
+  if (problem.workspace.motion.reachable) options.candidates = 40;  // a way to every one of them is sought
   options.restarts = 1;
+  if (!is_moved(GetParam())) options.method = "exchange";
   const Plan plan = plan_problem(problem, options, Monitor{});
   EXPECT_EQ(int(plan.poses.size()), problem.design.poses->value);
   EXPECT_LE(plan.certificate.efficiency, 1.0);
@@ -228,7 +237,8 @@ TEST(BallBar, BothEndsCarryTheSameLoad) {
   springs.loads = {light, heavy};
   std::get<SerialArmSpec>(problem.robot).elastostatic = springs;
   PlanOptions options;
-  options.candidates = 300;
+  options.method = "exchange";
+  options.candidates = 150;
   options.restarts = 1;
   const Plan plan = plan_problem(problem, options, Monitor{});
   for (const PlannedPose& pose : plan.poses) {

@@ -40,7 +40,7 @@ export function makeReports(program, out, names = cases.map((c) => c.name), full
       const [plan, route, page] = ['plan.json', 'route.json', 'report.html'].map((name) => join(folder, name));
       const size = full
         ? ['--candidates', '3000']
-        : ['--poses', String(c.poses), '--candidates', String(c.candidates ?? 150), '--restarts', '1', '--method', 'exchange'];
+        : ['--poses', String(c.poses), '--candidates', String(c.candidates ?? 100), '--restarts', '1', '--method', 'exchange'];
       run('plan', problem, ...size, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
       if (c.route) run('route', plan, '--from-home', '--closed', '-o', route, '--force', '--quiet');
       const data = JSON.parse(

@@ -120,7 +120,7 @@ export async function checkList(page, { plan, folder, problem, data }, program) 
     lines[0],
   );
   const judged = JSON.parse(
-    execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--json', '--quiet'], {
+    execFileSync(resolve(program), ['evaluate', problem, csv, '--variant', plan.variant, '--candidates', '60', '--json', '--quiet'], {
       cwd: new URL('../../', import.meta.url),
       encoding: 'utf8',
       maxBuffer: 1e9,

@@ -36,6 +36,11 @@ async function checkCase(browser, c) {
   if (!c.route) await checkRepeat(page, c, values.program);
   check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
   await page.close();
+}
+
+/** No page is wider than its window. @param {any} browser @param {import('./make_reports.mjs').Case} c */
+async function checkSizes(browser, c) {
+  about(`${c.name} in windows`);
   for (const width of [1280, 400])
     for (const colorScheme of ['light', 'dark']) {
       const { page: sized, complaints: others } = await open(browser, c.page, {
@@ -85,6 +90,11 @@ async function takeScreenshots(browser, folder) {
 const cases = makeReports(values.program, values.out);
 const browser = await launch({ webgl: true });
 for (const c of cases) await checkCase(browser, c);
+// Software draws slowly: one page with the picture in WebGL, the others below without.
+await checkSizes(
+  browser,
+  cases.find((c) => c.route),
+);
 await checkAltered(
   browser,
   cases.find((c) => c.route),
@@ -92,6 +102,7 @@ await checkAltered(
 if (values.screenshots) await takeScreenshots(browser, values.screenshots);
 await browser.close();
 const plain = await launch({ webgl: false });
+for (const c of cases) await checkSizes(plain, c);
 for (const c of cases.filter((k) => k.name !== 'test_poses')) await checkFallback(plain, c);
 await plain.close();
 process.exitCode = verdict();

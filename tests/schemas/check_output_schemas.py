@@ -54,7 +54,7 @@ class Outputs(unittest.TestCase):
             self.check("plan", self.run_program("plan", EXAMPLES / words[0], *words[1:], "--json"))
 
     def test_plans_against_a_truth(self):
-        telescope = [EXAMPLES / "telescope/problem.yaml", "--truth", "matrix", "--poses", 20, "--candidates", 200]
+        telescope = [EXAMPLES / "telescope/problem.yaml", "--truth", "matrix", "--poses", 20, "--candidates", 60]
         for criterion in ("discriminate", "bias", "o1"):
             plan = self.run_program("plan", *telescope, "--criterion", criterion, *QUICK, "--json")
             self.assertEqual(plan["discrimination"]["truth"], "matrix")
@@ -95,7 +95,7 @@ class Outputs(unittest.TestCase):
         text = (EXAMPLES / "telescope/problem.yaml").read_text()
         both = "  both: {parameters: [kappa, K_11, K_22, K_33, K_44, K_55, K_66]}\n"
         (self.folder / "both.yaml").write_text(text.replace("  # To see what", both + "  # To see what"))
-        words = ["--variant", "rigid,matrix,both", "--candidates", 200]
+        words = ["--variant", "rigid,matrix,both", "--candidates", 60, "--method", "exchange"]
         comparison = self.run_program("compare", "both.yaml", *words, "--restarts", 1, "--poses", 16, "--json")
         self.assertEqual(len(comparison["scores"]), 2 * 3)
         self.assertTrue(comparison["variants"][2]["why_not"])
@@ -129,7 +129,7 @@ class Outputs(unittest.TestCase):
         cell = self.folder / "cell.yaml"
         text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")
         cell.write_text(text.replace("reachable: true", "reachable: false").replace("points: [3, 3, 1]", "points: [2, 1, 1]"))
-        plan = self.run_program("plan", cell, "--candidates", 150, "--poses", 8, *QUICK, "--json")
+        plan = self.run_program("plan", cell, "--candidates", 60, "--poses", 8, *QUICK, "--json")
         self.assertIn("targets", plan["poses"][0])
         self.check("plan", plan)
         self.check("route", self.run_program("route", "plan.json", "--from-home", "--closed", "--json"))

@@ -13,6 +13,9 @@ target_link_libraries(posewright_headers INTERFACE Eigen3::Eigen)
 # optimisation, because a compiler takes only what was made with its own options. The tests take the cold set,
 # so it holds their framework too if that is installed: a third set would be as large as all the rest.
 find_package(GTest 1.12 QUIET CONFIG)
+if(GTest_FOUND)
+  add_compile_definitions(GTEST_HAS_PTHREAD=1)   # as its target says: the set is of use to those alone that define the same
+endif()
 foreach(level IN ITEMS hot cold)
   file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/parsed/${level}.cpp CONTENT "")
   add_library(posewright_parsed_${level} OBJECT ${PROJECT_BINARY_DIR}/parsed/${level}.cpp)

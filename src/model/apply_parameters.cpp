@@ -36,7 +36,8 @@ void require_names(const Problem& problem, const VariantSpec& variant, const Cal
     const int i = names.index_of(entry.name.value);
     if (i < 0)
       throw InputError(parameters.at(entry.name.line),
-                       "'" + entry.name.value + "' is no parameter of variant '" + variant.name + "'", names.allowed());
+                       "'" + entry.name.value + "' is no parameter of variant '" + variant.name + "'",
+                       names.allowed(entry.name.value));
     const std::string& unit = model->parameters()[std::size_t(i)].unit;
     if (!entry.unit.empty() && entry.unit != unit)
       throw InputError(parameters.at(entry.name.line), "'" + entry.name.value + "' is in '" + entry.unit + "'",

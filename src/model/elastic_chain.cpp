@@ -1,7 +1,11 @@
 #include "posewright/model/elastic_chain.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <numbers>
+#include <set>
 
 #include "displacement.hpp"
 #include "posewright/model/gravity_compensator.hpp"
@@ -47,7 +51,21 @@ void limit_to(Coordinate& c, const ElastostaticSpec::Listed& listed, const Sourc
           place, "a listed position of '" + c.name + "' is outside its limits",
           "positions between " + std::to_string(c.lower) + " and " + std::to_string(c.upper) + " " + c.unit);
   c.values = listed.at;
+  std::sort(c.values.begin(), c.values.end());
   c.periodic = false;
+}
+
+/// "-25.2deg", "120mm": each position as it is read by people, with as many digits as tell them apart.
+std::vector<std::string> place_names(const std::vector<double>& at, bool prismatic) {
+  const double unit = prismatic ? 1e-3 : std::numbers::pi / 180;
+  std::vector<std::string> names;
+  for (int digits = 6; digits <= 17; ++digits) {
+    names.clear();
+    for (const double value : at)
+      names.push_back(fmt::format("{:.{}g}{}", value / unit, digits, prismatic ? "mm" : "deg"));
+    if (std::set<std::string>(names.begin(), names.end()).size() == names.size()) break;
+  }
+  return names;
 }
 
 }  // namespace
@@ -99,8 +117,9 @@ void ElasticChain::add_springs(const SourcePlace& place) {
       add("compensator.preload", "N", spring.free_length * spring.stiffness, 0.1 * spring.L * spring.stiffness,
           {Spring::Kind::preload, c});
     } else if (c == listed) {
-      for (int i = 0; i < int(spec_.listed->at.size()); ++i)
-        add(name + ".compliance_" + std::to_string(i + 1), unit, nominal[std::size_t(c)], compliance_tolerance,
+      const std::vector<std::string> places = place_names(spec_.listed->at, unit == "m/N");
+      for (int i = 0; i < int(places.size()); ++i)
+        add(name + ".compliance@" + places[std::size_t(i)], unit, nominal[std::size_t(c)], compliance_tolerance,
             {Spring::Kind::listed, c, i});
     } else {
       add(name + ".compliance", unit, nominal[std::size_t(c)], compliance_tolerance, {Spring::Kind::compliance, c});

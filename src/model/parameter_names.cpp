@@ -47,7 +47,7 @@ std::vector<int> ParameterNames::find(const Located<std::string>& pattern) const
       found.push_back(i);
   if (found.empty())
     throw InputError(problem_.at(pattern.line), "'" + pattern.value + "' matches no parameter of this robot",
-                     allowed());
+                     allowed(pattern.value));
   return found;
 }
 
@@ -57,10 +57,13 @@ int ParameterNames::index_of(const std::string& name) const {
   return -1;
 }
 
-std::string ParameterNames::allowed() const {
-  std::string text;
-  for (const std::string& name : shown_) text += (text.empty() ? "parameters: " : ", ") + name;
-  return text;
+std::string ParameterNames::allowed(const std::string& wanted) const {
+  std::string names;
+  for (const std::string& name : shown_) names += (names.empty() ? "parameters: " : ", ") + name;
+  // Those numbers followed the sorted positions and not the file's, so they cannot be taken for anything.
+  if (wanted.find(".compliance_") != std::string::npos)
+    return "compliances at listed positions are named by their place, no longer by a number; " + names;
+  return names;
 }
 
 }  // namespace posewright

@@ -20,7 +20,7 @@ class ParameterNames {
   /// The parameter of exactly that name; −1 where there is none.
   int index_of(const std::string& name) const;
   /// "parameters: a, b, …"
-  std::string allowed() const;
+  std::string allowed(const std::string& wanted = {}) const;
 
  private:
   const IdentificationModel& model_;

@@ -76,7 +76,7 @@ class Listing {
   void settle_on_limits(std::vector<double>& q) const {
     for (std::size_t k = 0; k < q.size(); ++k) {
       const Coordinate& c = coordinates_[k];
-      if (!c.choice() && !c.periodic && inside(q[k], c)) q[k] = std::clamp(q[k], c.lower, c.upper);
+      if (inside(q[k], c)) q[k] = as_allowed(q[k], c);
     }
   }
 

@@ -80,6 +80,14 @@ void MeasuredColumns::read_configurations(const std::string& bytes) {
     return;
   }
   configurations_ = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv").configurations;
+  for (int i = 0; i < rows(); ++i)
+    for (std::size_t k = 0; k < model_.coordinates().size(); ++k) {
+      const Coordinate& c = model_.coordinates()[k];
+      const double value = configurations_[std::size_t(i)][k];
+      if (!c.choice() && c.discrete() && !std::binary_search(c.values.begin(), c.values.end(), value))
+        throw InputError({file_, line(i)}, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
+                         fmt::format("at one of the listed positions: {:.6g}", fmt::join(c.values, ", ")));
+    }
 }
 
 /// The nominal robot with these actuators: what the model takes for the configuration.

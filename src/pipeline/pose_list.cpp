@@ -41,7 +41,7 @@ void judge_value(double& value, const Coordinate& c, const SourcePlace& place) {
     return;
   }
   require_inside(value, c, place);
-  if (!c.periodic) value = std::clamp(value, c.lower, c.upper);
+  value = as_allowed(value, c);
 }
 
 }  // namespace

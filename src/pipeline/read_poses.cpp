@@ -106,7 +106,7 @@ class Mapping {
       if (column_[k] < 0) q.push_back(c.values.front());
       else q.push_back(value_of(row.cells[std::size_t(column_[k])], unit_of(column_[k]), c, place));
       require_inside(q.back(), c, place);
-      if (!c.choice() && !c.periodic) q.back() = std::clamp(q.back(), c.lower, c.upper);
+      q.back() = as_allowed(q.back(), c);
     }
     list_.configurations.push_back(std::move(q));
     list_.measured.push_back(row.measured);
@@ -169,9 +169,14 @@ PoseTable recognised(const std::string& text, const std::string& file) {
 
 }  // namespace
 
+namespace {
+// rad or m, relative above one: what six digits of a list leave open.
+constexpr double rounding_of_lists = 1e-6;
+}  // namespace
+
 bool inside(double value, const Coordinate& c) {
   // What a controller shows has few digits: a hair beyond a limit is the limit.
-  const double slack = 1e-6 * (1 + std::abs(c.upper - c.lower));
+  const double slack = rounding_of_lists * (1 + std::abs(c.upper - c.lower));
   return c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack);
 }
 
@@ -182,6 +187,14 @@ std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates) {
       c.upper = -c.lower;
     }
   return coordinates;
+}
+
+double as_allowed(double value, const Coordinate& c) {
+  if (c.choice()) return value;
+  if (!c.discrete()) return c.periodic ? value : std::clamp(value, c.lower, c.upper);
+  const double nearest = *std::min_element(
+      c.values.begin(), c.values.end(), [&](double a, double b) { return std::abs(a - value) < std::abs(b - value); });
+  return std::abs(nearest - value) <= rounding_of_lists * (1 + std::abs(nearest)) ? nearest : value;
 }
 
 void require_inside(double value, const Coordinate& c, const SourcePlace& place) {

@@ -26,6 +26,9 @@ std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates);
 
 /// Whether a value keeps the limits of c, but for rounding.
 bool inside(double value, const Coordinate& c);
+/// A value that is inside() as the workspace takes it: at a limit that it passes by a hair, at the listed position that
+/// it means. What is neither stays.
+double as_allowed(double value, const Coordinate& c);
 /// Throws InputError for a value that is not inside().
 void require_inside(double value, const Coordinate& c, const SourcePlace& place);
 

@@ -16,6 +16,13 @@ using Json = nlohmann::json;
   throw InputError({file.string(), 0}, "is no plan of a robot", "plan.json as posewright plan writes it");
 }
 
+/// "joint_a2.compliance_3": names that are not written any more.
+bool has_number_of_place(const std::string& name) {
+  const std::string numbered = ".compliance_";
+  const auto at = name.find(numbered);
+  return at != std::string::npos && name.find_first_not_of("0123456789", at + numbered.size()) == std::string::npos;
+}
+
 PlanOptions options_of(const Json& plan) {
   PlanOptions options;
   const Json& poses = plan.at("poses");
@@ -47,6 +54,11 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
     if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())
       throw_no_plan(file);
     plan.options = options_of(json);
+    for (const Json& parameter : json.at("parameters"))
+      if (const auto name = parameter.at("name").get<std::string>(); has_number_of_place(name))
+        throw InputError({file.string(), 0},
+                         "was made when compliances at listed positions were numbered: '" + name + "'",
+                         "plan again; the numbers followed the sorted positions, so they cannot be taken over");
     plan.log_det = json.at("criterion").at("log_det").get<double>();
     plan.problem_sha256 = json.at("problem").value("sha256", "");
     if (json["problem"].contains("parameters")) {

@@ -57,9 +57,11 @@ ElastostaticSpec::Listed read_listed(const Value& value) {
     if (position.quantity != Quantity::number) listed.quantity = position.quantity;
     listed.at.push_back(position.value);
   }
-  std::sort(listed.at.begin(), listed.at.end());
   if (listed.at.empty()) section.at("at").fail("is empty", "at least one position is needed");
-  if (std::adjacent_find(listed.at.begin(), listed.at.end()) != listed.at.end())
+  // Parameters follow the file's order; only to find what stands there twice it is sorted.
+  std::vector<double> sorted = listed.at;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
     section.at("at").fail("has a position twice", "each one once");
   return listed;
 }

@@ -150,6 +150,15 @@ PointsMeasurement read_points(const Section& section, bool single) {
   return points;
 }
 
+/// m; beside a noise in pixels or angles a plain number may be meant in those, so it needs its unit.
+double read_repeatability(const Value& value, const std::string& type) {
+  const Measured given = value.measured({Quantity::length}, Sign::not_negative);
+  if (type == "camera" && given.quantity == Quantity::number && given.value > 0)
+    value.fail("is a plain number beside a noise in pixels",
+               "how far the robot stands off, with its unit: " + allowed_units({Quantity::length}));
+  return given.value;
+}
+
 }  // namespace
 
 std::vector<StationSpec> read_stations(const Value& value) {
@@ -188,7 +197,7 @@ MeasurementSpec read_measurement(const Value& value) {
   if (const Value* repeats = section.find("repeats"))
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))
-    measurement.repeatability = repeatability->number(Quantity::length, Sign::not_negative);
+    measurement.repeatability = read_repeatability(*repeatability, type);
   if (const Value* load = section.find("load"))
     measurement.loaded_minus_unloaded = load->choice({"absolute", "loaded_minus_unloaded"}) != "absolute";
   return measurement;

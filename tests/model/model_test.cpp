@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <numbers>
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
@@ -79,6 +81,40 @@ std::string complaint(Problem problem, const std::function<void(VariantSpec&)>& 
   } catch (const InputError& error) {
     return error.what();
   }
+}
+
+TEST(ListedPositions, EachHasTheParameterThatIsNamedAfterIt) {
+  // The problem's order is descending; physics alone says which compliance bends the arm where.
+  const Problem problem = example("kr270/elastostatic.yaml");
+  const auto model = make_model(problem);
+  const std::vector<std::pair<double, std::string>> places = {
+      {-0.01, "-0.01deg"}, {-25.2, "-25.2deg"}, {-56.9, "-56.9deg"}, {-99.8, "-99.8deg"}, {-140, "-140deg"}};
+  const auto& parameters = model->parameters();
+  std::vector<int> selected;
+  for (const auto& [degrees, text] : places)
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      if (parameters[i].name == "joint_a2.compliance@" + text) selected.push_back(int(i));
+  ASSERT_EQ(selected.size(), 5U);
+  EXPECT_TRUE(std::is_sorted(selected.begin(), selected.end())) << "parameters follow the file's order";
+  for (std::size_t here = 0; here < places.size(); ++here) {
+    const std::vector<double> q = {0.3, places[here].first * std::numbers::pi / 180, 0.4, 0.2, -0.5, 0.1, 1};
+    Linearisation scratch;
+    ASSERT_TRUE(model->linearise(q, {}, selected, scratch));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_EQ(scratch.G.col(Eigen::Index(i)).norm() > 0, i == here)
+          << places[i].second << " at " << places[here].second;
+  }
+}
+
+TEST(Variant, NumbersOfListedPositionsAreRefusedBecauseTheyFollowedAnotherOrder) {
+  EXPECT_THAT(
+      complaint(example("kr270/elastostatic.yaml"),
+                [](VariantSpec& v) {
+                  v.parameters = {{"joint_a2.compliance_3", 7}};
+                }),
+      testing::AllOf(HasSubstr(":7: 'joint_a2.compliance_3' matches no parameter of this robot; compliances at listed "
+                               "positions are named by their place, no longer by a number; parameters: "),
+                     HasSubstr("joint_a2.compliance@-0.01deg, joint_a2.compliance@-25.2deg")));
 }
 
 TEST(Variant, BadPatternsNameWhatExists) {

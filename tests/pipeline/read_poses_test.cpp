@@ -35,6 +35,15 @@ class ReadPoses : public testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(ReadPoses, MeetListedPositionsWithinTheirDigits) {
+  Coordinate listed{"a1", "rad", -3, 3};
+  listed.values = {-1.5, 0.5};
+  EXPECT_EQ(read("a1 [deg]\n-85.9437\n28.6479\n", "", {listed}).configurations,
+            (std::vector<std::vector<double>>{{-1.5}, {0.5}}));
+  // Another place stays what it is: the workspace says what it thinks of it.
+  EXPECT_EQ(read("a1 [deg]\n-85.9\n", "", {listed}).configurations.front().front(), -85.9 * std::numbers::pi / 180);
+}
+
 TEST_F(ReadPoses, NamesGoToTheirCoordinatesInAnyOrder) {
   const PoseList list =
       read("- joints: [a2, gripper, rail, a1]\n  positions: [0.25, 9, 0.5, -1]\n", "robot-calibration");

@@ -116,6 +116,10 @@ const Bad bad_instruments[] = {
      "{type: camera, mount: hand, camera: {focal: [9, 9], centre: [1, 1], size: [9, 9]}, board: {rows: 3, columns: 3, "
      "spacing: 1}, device: {type: isotropic, noise: 0.2 mm}}",
      "has a unit; a plain number is needed"},
+    {"CameraWithRepeatabilityInNobodyKnowsWhat",
+     "{type: camera, mount: hand, camera: {focal: [9, 9], centre: [1, 1], size: [9, 9]}, board: {rows: 3, columns: 3, "
+     "spacing: 1}, device: {type: isotropic, noise: 0.2}, repeatability: 0.1}",
+     "is a plain number beside a noise in pixels; how far the robot stands off, with its unit: m, mm, um, nm"},
     {"NoSensors", "{type: joints, sensors: [], device: {type: isotropic, noise: 1 mrad}}", "at least one sensor"},
     {"LoadWord", "{type: position, target: [0, 0, 0], load: heavy, device: {type: isotropic, noise: 1 um}}",
      "is 'heavy'; allowed: absolute, loaded_minus_unloaded"},
@@ -160,7 +164,7 @@ TEST(Elastostatic, IsReadFieldByField) {
   EXPECT_DOUBLE_EQ(spec.compliance.front().second.value, 0.6e-6);
   EXPECT_TRUE(spec.link_gravity);
   EXPECT_EQ(spec.listed->at.size(), 2U);
-  EXPECT_LT(spec.listed->at.front(), 0) << "ascending";
+  EXPECT_EQ(spec.listed->at.front(), 0) << "in the order of the file";
   EXPECT_DOUBLE_EQ(spec.compensator->stiffness, 7e6);
   ASSERT_EQ(spec.loads.size(), 3U);
   EXPECT_EQ(spec.loads[1].force.z(), -2000);

@@ -10,8 +10,9 @@ namespace posewright {
 /// arm: the difference is of second order.
 ///
 /// Configuration: the chain's, then the load case. Parameters: the chain's without tool.*; for each coordinate
-/// NAME.compliance (rad/(N·m) or m/N), or NAME.compliance_1, … for listed positions, or with a gravity compensator
-/// NAME.stiffness K2⁰ (N·m/rad), compensator.stiffness Kc (N/m) and compensator.preload s0·Kc (N), where
+/// NAME.compliance (rad/(N·m) or m/N), or NAME.compliance@-25.2deg, … for listed positions (in the order in which they
+/// are listed), or with a gravity compensator NAME.stiffness K2⁰ (N·m/rad), compensator.stiffness Kc (N/m) and
+/// compensator.preload s0·Kc (N), where
 ///   δ = (τ − M(q)) / (K2⁰ + M'(q)), M the spring's torque; then tool.*.
 class ElasticChain : public TipModel {
  public:

@@ -73,10 +73,12 @@ Plan select(const py::object& blocks, long long poses, const std::string& criter
 
 /// An evaluation together with what the value of a criterion needs beside it.
 struct Judged {
+  BlockArray blocks;
   Evaluation evaluation;
   std::vector<Parameter> parameters;
   int nuisance = 0;
   Eigen::VectorXd scale;
+  Eigen::MatrixXd prior;  // empty: none
 };
 
 Judged evaluate_blocks(const py::object& blocks, const py::object& chosen, std::optional<int> nuisance,
@@ -100,6 +102,8 @@ Judged evaluate_blocks(const py::object& blocks, const py::object& chosen, std::
   for (std::size_t j = 0; j < m; ++j) result.scale[Eigen::Index(j)] = given.parameters[j].tolerance;
   const py::gil_scoped_release release;
   result.evaluation = evaluate(given.array, given.parameters, prior, result.scale);
+  if (prior) result.prior = result.scale.array().square().inverse().matrix().asDiagonal();
+  result.blocks = std::move(given.array);
   result.parameters = std::move(given.parameters);
   result.nuisance = given.nuisance;
   return result;
@@ -168,7 +172,7 @@ void bind_judged(py::module_& m) {
       .def(
           "value",
           [](const Judged& j, const std::string& criterion) {
-            return value_of_blocks(criterion, j.evaluation, j.nuisance, j.scale);
+            return value_of_blocks(criterion, j.blocks, j.evaluation, j.nuisance, j.scale, j.prior);
           },
           py::arg("criterion"), "Value of a criterion in its own terms: o1 to o5, ds, a.")
       .def("__repr__", [](const Judged& j) {

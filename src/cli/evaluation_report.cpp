@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
@@ -16,8 +17,8 @@ using Align = Table::Align;
 
 /// Criteria that are variances in m² are shown as what people know, their root in mm.
 std::string shown_score(const CriterionScore& score, bool at_test_poses) {
-  if (score.name.starts_with("test_pose") || (score.name == "bias" && at_test_poses))
-    return shown_value(std::sqrt(-score.value), "m");
+  const CriterionEntry* entry = find_criterion(score.name);
+  if (at_test_poses && entry != nullptr && entry->accuracy) return shown_value(std::sqrt(-score.value), "m");
   return fmt::format("{:.6g}", score.value);
 }
 

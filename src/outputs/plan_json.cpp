@@ -22,14 +22,11 @@ Json criterion_json(const Plan& plan) {
           {"reserve", plan.reserve}};
 }
 
-/// Whether Φ is a log det, so that a bound of it is one of the plan's log_det.
-bool is_determinant(const Plan& plan) { return plan.criterion == "o1" || plan.criterion == "ds"; }
-
 Json certificate_json(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved) return {{"candidates", nullptr}, {"workspace", nullptr}};
   Json candidates = {{"efficiency", c.efficiency}, {"bound", c.bound}};
-  if (is_determinant(plan)) candidates["log_det_bound"] = c.bound;
+  if (plan.determinant) candidates["log_det_bound"] = c.bound;
   candidates["max_sensitivity_ratio"] = c.max_sensitivity_ratio;
   candidates["count"] = c.count;
   candidates["found"] = c.found;

@@ -37,7 +37,7 @@ std::string certificate_text(const Plan& plan) {
   if (!c.proved)
     return fmt::format("No bound is computed for criterion {}: how near the best plan this is, is not proved.\n",
                        plan.criterion);
-  const bool determinant = plan.criterion == "o1" || plan.criterion == "ds";
+  const bool determinant = plan.determinant;
   const std::string as = determinant ? "as informative as" : fmt::format("as good by criterion {} as", plan.criterion);
   const auto poses = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return !p.measured; });
   const std::string policy = c.repeats == "forbid"  ? " without repeats"
@@ -103,7 +103,7 @@ std::string stages_text(const Plan& plan) {
 std::string indices_text(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
   std::string text = fmt::format("log det {:.6f}", plan.log_det);
-  const bool bounded = plan.certificate.proved && (plan.criterion == "o1" || plan.criterion == "ds");
+  const bool bounded = plan.certificate.proved && plan.determinant;
   text += bounded ? fmt::format(" (bound {:.6f})\n", plan.certificate.bound) : "\n";
   if (plan.rho0)
     text +=
@@ -112,7 +112,7 @@ std::string indices_text(const Plan& plan) {
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
-  if (plan.criterion.starts_with("test_pose") && plan.test_errors.size() == 1)
+  if (plan.by_test_poses && plan.test_errors.size() == 1)
     text += "A single test pose: the plan crowds around it and tells little of other places; give several.\n";
   if (plan.condition > 1e6)
     text += fmt::format("Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some directions are hardly measured.\n",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "posewright/criterion/registry.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "study.hpp"
@@ -116,7 +117,7 @@ void fill_errors(Discrepancy& result, const PreparedVariant& fitted, const Eigen
 
 void require_a_residual(const Preparation& prepared, const Discrepancy& found, const Settings& settings) {
   const int rows = prepared.first().model->block_rows(found.effects.columns.selected), own = found.effects.fitted;
-  if (settings.criterion != "discriminate" || settings.poses == 0 || prepared.first().prior.size() > 0 ||
+  if (!find_criterion(settings.criterion)->needs_residual || settings.poses == 0 || prepared.first().prior.size() > 0 ||
       settings.poses * rows > own)
     return;
   throw CannotDo(fmt::format(

@@ -53,17 +53,17 @@ class ListEvaluation {
     plan.method = "given";
     fill_judgement(plan, judgement, prepared_, settings_);
     const std::vector<double> references = score_all(result, judgement);
-    const CriterionValue value = criterion_value(settings_.criterion, judgement, prepared_, references);
-    plan.criterion_value = value.shown;
+    const double phi = phi_of(*measure_, settings_.criterion, prepared_, poses_, settings_);
+    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     fill_variants(plan, judgement, prepared_, references);
     SearchResult shape;
     for (std::size_t i = 0; i < poses_.count(); ++i)
       shape.design.members.push_back(int(prepared_.configurations.count() + i));
-    shape.without = without_each(value.phi, references);
+    shape.without = without_each(phi);
     fill_poses(plan, prepared_, poses_, shape, judgement);
     fill_candidates(plan.statistics, prepared_);
-    if (options_.drop) result.drop = drop(*options_.drop, value.phi, references);
-    if (options_.add) result.add = add(*options_.add, value.phi, references);
+    if (options_.drop) result.drop = drop(*options_.drop, phi, references);
+    if (options_.add) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();
     return result;
   }
@@ -94,14 +94,14 @@ class ListEvaluation {
       if (entry.needs_truth && entry.name != settings_.criterion &&
           (prepared_.discrepancy == nullptr || prepared_.discrepancy->group.columns == 0))
         continue;
-      if (entry.name.starts_with("test_pose") && prepared_.first().test_points.empty()) continue;
+      if (entry.needs_test_poses && prepared_.first().test_points.empty()) continue;
       const bool chosen = entry.name == settings_.criterion;
       const Bound bound = bound_of(entry.name);
-      const CriterionValue value = criterion_value(entry.name, judgement, prepared_, bound.references);
-      CriterionScore score{entry.name, value.shown, std::nullopt};
+      const double phi = phi_of(*bound.measure, entry.name, prepared_, poses_, settings_);
+      CriterionScore score{entry.name, entry.shown(phi, judgement.evaluations.front().indices), std::nullopt};
       if (bound.certificate.proved) {
         Certificate certificate = bound.certificate;
-        certify(certificate, value.phi, bound.degree);
+        certify(certificate, phi, bound.degree);
         score.efficiency = certificate.efficiency;
         if (chosen) result.plan.certificate = certificate;
       } else if (chosen) {
@@ -109,6 +109,7 @@ class ListEvaluation {
       }
       if (chosen) {
         references = bound.references;
+        measure_ = bound.measure;
         degree_ = bound.degree;
       }
       result.scores.push_back(score);
@@ -139,33 +140,31 @@ class ListEvaluation {
   }
 
   /// Φ of another list; −∞ where it leaves parameters open.
-  std::optional<std::pair<Judgement, double>> phi_of(const Configurations& list,
-                                                     const std::vector<double>& references) const {
+  std::optional<std::pair<Judgement, double>> judged(const Configurations& list) const {
     try {
       Judgement judgement = judge(prepared_, list, settings_);
-      const double phi = criterion_value(settings_.criterion, judgement, prepared_, references).phi;
-      return std::pair{std::move(judgement), phi};
+      return std::pair{std::move(judgement), phi_of(*measure_, settings_.criterion, prepared_, list, settings_)};
     } catch (const CannotDo&) {
       return std::nullopt;
     }
   }
 
-  std::vector<double> without_each(double phi, const std::vector<double>& references) const {
+  std::vector<double> without_each(double phi) const {
     std::vector<double> result;
     for (int i = 0; i < int(poses_.count()); ++i) {
-      const auto left = poses_.count() > 1 ? phi_of(without({i}), references) : std::nullopt;
+      const auto left = poses_.count() > 1 ? judged(without({i})) : std::nullopt;
       result.push_back(left ? std::min(1.0, std::exp((left->second - phi) / degree())) : 0.0);
     }
     return result;
   }
 
-  ListChange changed(const Configurations& list, double phi, const std::vector<double>& references) const {
+  ListChange changed(const Configurations& list, double phi) const {
     ListChange change;
-    const auto judged = phi_of(list, references);
-    if (!judged) return change;
-    change.efficiency = std::exp((judged->second - phi) / degree());
-    change.log_det = judged->first.evaluations.front().log_det;
-    change.rho0 = judged->first.rho0;
+    const auto other = judged(list);
+    if (!other) return change;
+    change.efficiency = std::exp((other->second - phi) / degree());
+    change.log_det = other->first.evaluations.front().log_det;
+    change.rho0 = other->first.rho0;
     return change;
   }
 
@@ -184,7 +183,7 @@ class ListEvaluation {
     std::vector<int> dropped;
     for (int i = 0; i < n; ++i)
       if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
-    ListChange change = changed(without(dropped), phi, references);
+    ListChange change = changed(without(dropped), phi);
     for (const int i : dropped) change.poses.push_back(i + 1);
     return change;
   }
@@ -213,7 +212,7 @@ class ListEvaluation {
                                        : std::span<const double>(found.design.added[std::size_t(i) - n]));
     longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
     prepared_.measured.values.resize(prepared_.measured.values.size() - poses_.values.size());
-    ListChange change = changed(longer, phi, references);
+    ListChange change = changed(longer, phi);
     for (std::size_t i = 0; i < added.count(); ++i) {
       change.added.push_back(pose_of(*prepared_.first().model, added[i]));
       change.added.back().id = int(poses_.count() + i) + 1;
@@ -227,6 +226,7 @@ class ListEvaluation {
   Preparation prepared_;
   Configurations poses_;
   std::vector<std::string> notes_;
+  std::shared_ptr<const DesignMeasure> measure_;  ///< by the criterion in use
   double degree_ = 0.0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/criterion/registry.hpp"
 #include "posewright/problem/design_words.hpp"
 
 namespace posewright {
@@ -38,6 +39,13 @@ void fill_parameters(Plan& plan, const PreparedVariant& variant, const Evaluatio
 }
 
 }  // namespace
+
+void name_criterion(Plan& plan, const std::string& name) {
+  const CriterionEntry& entry = *find_criterion(name);
+  plan.criterion = name;
+  plan.determinant = entry.determinant;
+  plan.by_test_poses = entry.needs_test_poses;
+}
 
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q) {
   PlannedPose pose;
@@ -89,7 +97,7 @@ void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& p
   const Evaluation& first = judgement.evaluations.front();
   for (const PreparedVariant& variant : prepared.variants)
     plan.variant += (plan.variant.empty() ? "" : " + ") + variant.spec->name;
-  plan.criterion = settings.criterion;
+  name_criterion(plan, settings.criterion);
   plan.scaling = scaling_text(settings.scaling);
   plan.prior = settings.prior;
   plan.reserve = settings.reserve;

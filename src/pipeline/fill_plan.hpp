@@ -21,6 +21,9 @@ void fill_variants(Plan& plan, const Judgement& judgement, const Preparation& pr
 void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& chosen, const SearchResult& found,
                 const Judgement& judgement);
 
+/// The criterion that a plan is for, with what the outputs must know of it.
+void name_criterion(Plan& plan, const std::string& name);
+
 /// Configuration, actuators, labels and tool pose of q.
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
 

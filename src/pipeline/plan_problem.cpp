@@ -155,10 +155,10 @@ class Planning {
     plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
     fill_judgement(plan, judgement, prepared_, settings_);
-    const CriterionValue value = criterion_value(settings_.criterion, judgement, prepared_, found.references);
-    plan.criterion_value = value.shown;
+    const double phi = phi_of(*found.measure, settings_.criterion, prepared_, chosen, settings_);
+    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     plan.certificate = found.certificate;
-    certify(plan.certificate, value.phi, found.degree);
+    certify(plan.certificate, phi, found.degree);
     fill_variants(plan, judgement, prepared_, found.references);
     fill_poses(plan, prepared_, chosen, found, judgement);
     fill_candidates(plan.statistics, prepared_);

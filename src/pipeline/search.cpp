@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design_measure.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -41,24 +42,6 @@ double reference_of(const SearchPart& part, const Eigen::MatrixXd& prior, const 
   return solve_approximate_design(part.blocks, LogDetFunction(part.nuisance, part.blocks.columns()),
                                   bound_options(request, prior), monitor)
       .bound_for(request.poses);
-}
-
-BlockArray side_by_side(const std::vector<SearchPart>& parts) {
-  int rows = 0, columns = 0;
-  for (const SearchPart& part : parts) {
-    rows += part.blocks.rows();
-    columns += part.blocks.columns();
-  }
-  BlockArray joined(parts.front().blocks.count(), rows, columns);
-  for (std::size_t i = 0; i < joined.count(); ++i) {
-    Eigen::Index row = 0, column = 0;
-    for (const SearchPart& part : parts) {
-      joined.block(i).block(row, column, part.blocks.rows(), part.blocks.columns()) = part.blocks.block(i);
-      row += part.blocks.rows();
-      column += part.blocks.columns();
-    }
-  }
-  return joined;
 }
 
 Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool several, const Monitor& monitor) {
@@ -161,6 +144,16 @@ void fill(Certificate& certificate, const ApproximateDesign& approximate, const 
   certificate.repeats = repeats_text(request.repeats);
 }
 
+/// Φ of determinant criteria is that of raw coordinates, as people know it.
+double offset_of(const Joined& joined, const CriterionEntry& entry) {
+  return entry.determinant ? joined.offsets.front() : 0.0;
+}
+
+std::shared_ptr<const DesignMeasure> measure(const Joined& joined, const CriterionEntry& entry,
+                                             std::shared_ptr<const Criterion> criterion) {
+  return std::make_shared<DesignMeasure>(std::move(criterion), joined.R, joined.prior, offset_of(joined, entry));
+}
+
 }  // namespace
 
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
@@ -171,19 +164,27 @@ void require_known(const std::string& criterion, const std::string& method, cons
     throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
 }
 
+std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,
+                                                const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  return measure(joined, entry, entry.make(joined.data));
+}
+
 Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
   const CriterionEntry& entry = *find_criterion(request.criterion);
   require_choice(request, parts.front().blocks.count());
   const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
-  const auto criterion = entry.make(joined.data);
+  const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
   Bound result;
+  result.measure = measure(joined, entry, criterion);
   result.degree = criterion->function().degree();
   result.references = joined.references;
   result.certificate.proved = result.degree > 0;
   if (!result.certificate.proved) return result;
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
-  fill(result.certificate, approximate, joined, request, entry.determinant ? joined.offsets.front() : 0.0);
+  fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
   result.sensitivity = approximate.sensitivity;
   result.price = approximate.price;
   return result;
@@ -195,7 +196,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   std::vector<std::pair<int, int>> shapes;
   for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
   const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
-  const auto criterion = entry.make(joined.data);
+  const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
   const InformationFunction& function = criterion->function();
   const double degree = function.degree();
   // Criteria without a bound take their starts from the determinant's weights.
@@ -226,12 +227,13 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   task.workspace = workspace ? &*workspace : nullptr;
 
   SearchResult result;
+  result.measure = measure(joined, entry, criterion);
   result.degree = degree;
   Monitor shifted;
   shifted.interrupted = monitor.interrupted;
   shifted.deadline = monitor.deadline;
   // People see the log det that will be in the plan, not that of whitened coordinates.
-  const double offset = entry.determinant ? joined.offsets.front() : 0.0;
+  const double offset = offset_of(joined, entry);
   shifted.on_progress = [&](Progress progress) {
     if (progress.best) *progress.best += offset;
     if (progress.bound) *progress.bound += offset;

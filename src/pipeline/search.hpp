@@ -36,8 +36,11 @@ struct SearchRequest {
   std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> make_space{};
 };
 
+class DesignMeasure;
+
 struct SearchResult {
   Design design;
+  std::shared_ptr<const DesignMeasure> measure;  ///< Φ of any list, as the search counts it
   std::vector<BlockArray> chosen;  ///< raw blocks of the design's members that are candidates, for each part
   Certificate certificate;         ///< efficiencies still to be filled from an evaluation, see certify()
   double degree = 0.0;             ///< of Φ; 0: no bound
@@ -59,12 +62,17 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
 /// The bound alone: what no plan of as many of the candidates exceeds.
 struct Bound {
   Certificate certificate;
+  std::shared_ptr<const DesignMeasure> measure;  ///< Φ of any list, to be held against the bound
   double degree = 0.0;
   std::vector<double> references{};
   std::vector<double> sensitivity{};  ///< of every candidate at the best weights
   double price = 0.0;                 ///< candidates with a sensitivity well below it are in no good plan
 };
 Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
+
+/// The measure of a list by itself, without candidates: the list's own blocks give the coordinates.
+std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,
+                                                const Monitor& monitor);
 
 /// Efficiencies of a plan whose Φ is `phi`; the last step so that they rest on the evaluation's number.
 void certify(Certificate& certificate, double phi, double degree);

@@ -1,8 +1,10 @@
 #include "posewright/pipeline/select_blocks.hpp"
 
 #include <chrono>
+#include <numeric>
 
-#include "judgement.hpp"
+#include "design_measure.hpp"
+#include "fill_plan.hpp"
 #include "posewright/blocks/read_blocks.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/planning/evaluate.hpp"
@@ -20,8 +22,8 @@ std::vector<Parameter> labels(const std::vector<std::string>& names, int nuisanc
 
 void require_block_criterion(const std::string& criterion) {
   require_known(criterion, "exchange", {}, {});
-  if (criterion.starts_with("test_pose") || find_criterion(criterion)->several_variants ||
-      find_criterion(criterion)->needs_truth)
+  const CriterionEntry& entry = *find_criterion(criterion);
+  if (entry.needs_test_poses || entry.several_variants || entry.needs_truth)
     throw InputError({}, "criterion '" + criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
 }
 
@@ -36,15 +38,29 @@ void require_enough(const BlockFile& file, const SelectOptions& options) {
                    " poses are needed");
 }
 
+/// @param scale  unit of every column; empty: 1
+/// @param prior  information that is there before; empty: none
+std::vector<SearchPart> one_part(const BlockArray& blocks, int nuisance, const Eigen::VectorXd& scale = {},
+                                 const Eigen::MatrixXd& prior = {}) {
+  std::vector<SearchPart> parts(1);
+  std::vector<int> all(blocks.count());
+  std::iota(all.begin(), all.end(), 0);
+  parts.front().blocks = blocks.subset(all);
+  parts.front().nuisance = nuisance;
+  parts.front().scale = scale.size() > 0 ? scale : Eigen::VectorXd::Ones(blocks.columns());
+  parts.front().prior = prior;
+  return parts;
+}
+
 void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation, const SearchResult& found) {
   plan.log_det = evaluation.log_det;
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;
   plan.condition = evaluation.condition;
   plan.certificate = found.certificate;
-  const CriterionValue value = criterion_value(options.criterion, evaluation, options.nuisance);
-  plan.criterion_value = value.shown;
-  certify(plan.certificate, value.phi, found.degree);
+  const double phi = found.measure->phi(one_part(found.chosen.front(), options.nuisance));
+  plan.criterion_value = find_criterion(options.criterion)->shown(phi, evaluation.indices);
+  certify(plan.certificate, phi, found.degree);
   for (std::size_t i = 0; i < found.design.members.size(); ++i) {
     PlannedPose pose;
     pose.id = int(i) + 1;
@@ -65,7 +81,7 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   require_block_criterion(options.criterion);
   Plan plan;
   plan.seed = options.seed;
-  plan.criterion = options.criterion;
+  name_criterion(plan, options.criterion);
   plan.method = options.method;
   plan.scaling = "none";
   plan.reserve = options.reserve;
@@ -107,10 +123,14 @@ Plan select_blocks(const std::filesystem::path& path, const SelectOptions& optio
   return plan;
 }
 
-double value_of_blocks(const std::string& criterion, const Evaluation& evaluation, int nuisance,
-                       const Eigen::VectorXd& scale) {
+double value_of_blocks(const std::string& criterion, const BlockArray& blocks, const Evaluation& evaluation,
+                       int nuisance, const Eigen::VectorXd& scale, const Eigen::MatrixXd& prior) {
   require_block_criterion(criterion);
-  return criterion_value(criterion, evaluation, nuisance, scale).shown;
+  SearchRequest request;
+  request.criterion = criterion;
+  request.poses = int(blocks.count());
+  const auto measure = measure_of(one_part(blocks, nuisance, scale, prior), request, Monitor{});
+  return find_criterion(criterion)->shown(measure->phi(one_part(blocks, nuisance)), evaluation.indices);
 }
 
 }  // namespace posewright

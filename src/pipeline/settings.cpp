@@ -62,7 +62,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.scaling = options.scaling.value_or(design.scaling);
   s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
   s.truth = truth_of(problem, options, s.criterion);
-  if (s.criterion.starts_with("test_pose") && !design.test_poses)
+  if (find_criterion(s.criterion)->needs_test_poses && !design.test_poses)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
   s.measured = options.measured;
   if (!s.measured && design.measured) s.measured = poses_in_file(*design.measured);

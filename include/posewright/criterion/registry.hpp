@@ -1,31 +1,48 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "posewright/criterion/criterion.hpp"
 #include "posewright/criterion/criterion_data.hpp"
+#include "posewright/criterion/observability_indices.hpp"
 
 namespace posewright {
 
-/// One row a criterion: the name users write and what it maximises.
+/// One row a criterion: the name users write, what it maximises, what it needs. Nobody else knows a criterion's name.
 struct CriterionEntry {
   std::string name;
   std::string summary;
-  /// determinant: what `log_det` in a plan says; scaled: its value depends on the scale of the columns.
-  bool determinant, scaled;
-  bool several_variants;  ///< needs CriterionData::variants
   /// Throws CannotDo where the data lack what it needs.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
-  bool needs_truth = false;  ///< needs CriterionData::effects
+  /// Φ of a design in the criterion's own terms (docs/plan-file.md); `indices` are those of the same design.
+  double (*shown)(double phi, const ObservabilityIndices& indices);
+  bool determinant = false;       ///< Φ is what `log_det` in a plan says
+  bool scaled = false;            ///< Φ depends on the scale of the columns
+  bool several_variants = false;  ///< needs CriterionData::variants
+  bool needs_test_poses = false;  ///< needs CriterionData::test_points
+  bool needs_truth = false;       ///< needs CriterionData::effects
+  bool needs_residual = false;    ///< needs more readings than there are parameters
+  bool accuracy = false;          ///< if there are test poses, what is shown is −(squared position error, m²)
 };
 
-const std::vector<CriterionEntry>& criterion_registry();
+/// What `shown` of a row may be: Φ itself, e^Φ, −e^{−Φ} (Φ = −ln of a variance).
+double shown_phi(double phi, const ObservabilityIndices&);
+double shown_exponential(double phi, const ObservabilityIndices&);
+double shown_variance(double phi, const ObservabilityIndices&);
+
+/// References to its rows stay valid.
+const std::deque<CriterionEntry>& criterion_registry();
+/// One row more, for programs that bring a criterion of their own; before the first search, by one thread.
+/// Throws std::invalid_argument where the name is taken or a function is missing.
+void register_criterion(CriterionEntry entry);
 /// nullptr where no criterion has that name.
 const CriterionEntry* find_criterion(const std::string& name);
 /// nullptr where no criterion has that name.
 std::unique_ptr<Criterion> make_criterion(const std::string& name, const CriterionData& data);
+/// Whether Φ of the criterion of that name is a log det, so that a bound of it is one of the plan's log_det.
+bool is_determinant(const std::string& name);
 /// "o1, …": for messages that say what is allowed.
 std::string criterion_names();
 

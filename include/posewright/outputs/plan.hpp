@@ -152,6 +152,8 @@ struct Plan {
   ParametersFile parameters_file{};
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1", method = "exchange", scaling = "tolerance";
+  bool determinant = true;       ///< the criterion is log_det, so that its bound is one of log_det
+  bool by_test_poses = false;    ///< the criterion counts the test poses and nothing else
   bool reserve = false;          ///< searched for what is left without the pose that hurts most
   bool proved_optimal = false;   ///< no plan of these candidates is better
   double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)

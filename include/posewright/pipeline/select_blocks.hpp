@@ -34,11 +34,13 @@ Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor
 /// The same for a file.
 Plan select_blocks(const std::filesystem::path& file, const SelectOptions& options, const Monitor& monitor);
 
-/// What chosen blocks are worth by a criterion in its own terms (docs/plan-file.md), from their evaluation.
-/// @param nuisance  leading columns that are nuisance
-/// @param scale     unit of every column for the criterion `a`; empty: 1
+/// What chosen blocks are worth by a criterion in its own terms (docs/plan-file.md).
+/// @param evaluation  of the same blocks
+/// @param nuisance    leading columns that are nuisance
+/// @param scale       unit of every column for criteria that depend on it; empty: 1
+/// @param prior       information that is there before, raw (m × m); empty: none
 /// Throws InputError for a criterion that needs more than blocks.
-double value_of_blocks(const std::string& criterion, const Evaluation& evaluation, int nuisance,
-                       const Eigen::VectorXd& scale = {});
+double value_of_blocks(const std::string& criterion, const BlockArray& blocks, const Evaluation& evaluation,
+                       int nuisance, const Eigen::VectorXd& scale = {}, const Eigen::MatrixXd& prior = {});
 
 }  // namespace posewright

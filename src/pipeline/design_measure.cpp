@@ -1,0 +1,35 @@
+#include "design_measure.hpp"
+
+#include "posewright/criterion/information_function.hpp"
+#include "posewright/support/dense.hpp"
+
+namespace posewright {
+
+BlockArray side_by_side(const std::vector<SearchPart>& parts) {
+  int rows = 0, columns = 0;
+  for (const SearchPart& part : parts) {
+    rows += part.blocks.rows();
+    columns += part.blocks.columns();
+  }
+  BlockArray joined(parts.front().blocks.count(), rows, columns);
+  for (std::size_t i = 0; i < joined.count(); ++i) {
+    Eigen::Index row = 0, column = 0;
+    for (const SearchPart& part : parts) {
+      joined.block(i).block(row, column, part.blocks.rows(), part.blocks.columns()) = part.blocks.block(i);
+      row += part.blocks.rows();
+      column += part.blocks.columns();
+    }
+  }
+  return joined;
+}
+
+double DesignMeasure::phi(const std::vector<SearchPart>& parts) const {
+  const BlockArray raw = side_by_side(parts);
+  // R is as ill-conditioned as the raw columns: it is solved for, one row after the other, and never inverted.
+  const Eigen::MatrixXd J = R_.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(raw.all().transpose()));
+  Eigen::MatrixXd information = J * J.transpose();
+  if (prior_.size() > 0) information += prior_;
+  return criterion_->function().value(information) + offset_;
+}
+
+}  // namespace posewright

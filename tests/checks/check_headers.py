@@ -2,24 +2,13 @@
 import concurrent.futures
 import os
 import pathlib
-import re
 import subprocess
 import sys
 
+from changes import changed, include_flags
 
-# Of a large change the first so many.
+# Of a large change, and of a tree without history, the first so many.
 MOST = 40
-
-
-def flags(build):
-    """Folders that the sources are compiled with, from the build's own list."""
-    text = (pathlib.Path(build) / "compile_commands.json").read_text()
-    return sorted(set(re.findall(r"-I[^ \"]+", text))) + [w for f in sorted(set(re.findall(r"-isystem ([^ \"]+)", text)) - {"/usr/include"}) for w in ("-isystem", f)]
-
-
-def changed(root):
-    run = subprocess.run(["git", "-C", str(root), "diff", "--name-only", "--diff-filter=d", "HEAD~1"], capture_output=True, text=True)
-    return {root / name for name in run.stdout.split()}
 
 
 def main(source, build, compiler, every=""):
@@ -27,8 +16,9 @@ def main(source, build, compiler, every=""):
     headers = sorted(p for part in ("include", "planners", "src", "tests/kit") for p in (root / part).rglob("*.hpp"))
     assert len(headers) > 150
     if every != "--all":
-        headers = sorted(set(headers) & changed(root))[:MOST]
-    words = [compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-x", "c++", f'-DPOSEWRIGHT_SOURCE_DIR="{root}"', *flags(build)]
+        names = changed(root)
+        headers = [h for h in headers if names is None or str(h.relative_to(root)) in names][:MOST]
+    words = [compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-x", "c++", f'-DPOSEWRIGHT_SOURCE_DIR="{root}"', *include_flags(build)]
 
     def check(header):
         run = subprocess.run([*words, "-I", str(header.parent), "-I", str(root / "src/outputs"), "-"], input=f'#include "{header}"\n',

@@ -51,7 +51,7 @@ class Study:
         return done.returncode, done.stdout, done.stderr
 
     def calibrate(self, fitted):
-        """Number of parameters, RMS distance (m) and angle (rad) on the other poses, or on these where they are all."""
+        """By plain least squares: number of parameters, RMS distance (m) and angle (rad) on the other poses, or on these where they are all."""
         kept = set(fitted)
         with tempfile.NamedTemporaryFile("w", suffix=".csv", dir=self.folder, newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
@@ -59,7 +59,8 @@ class Study:
             for row in self.rows:
                 writer.writerow(row + ["fit" if row[0] in kept else "validate"])
             file.flush()
-            code, out, _ = self.run(["calibrate", self.problem, file.name, "--json", "--quiet", "--threads", 1])
+            code, out, _ = self.run(["calibrate", self.problem, file.name, "--weights", "ols", "--no-prior", "--force",
+                                     "--json", "--quiet", "--threads", 1])
         if code != 0:
             return {"parameters": 0, "distance": FAILED, "angle": FAILED}
         result = json.loads(out)

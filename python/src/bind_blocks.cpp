@@ -101,7 +101,7 @@ Judged evaluate_blocks(const py::object& blocks, const py::object& chosen, std::
   result.scale.resize(Eigen::Index(m));
   for (std::size_t j = 0; j < m; ++j) result.scale[Eigen::Index(j)] = given.parameters[j].tolerance;
   const py::gil_scoped_release release;
-  result.evaluation = evaluate(given.array, given.parameters, prior, result.scale);
+  result.evaluation = evaluate(given.array, given.parameters, prior ? Prior::every : Prior::none, result.scale);
   if (prior) result.prior = result.scale.array().square().inverse().matrix().asDiagonal();
   result.blocks = std::move(given.array);
   result.parameters = std::move(given.parameters);

@@ -4,16 +4,10 @@
 #include <vector>
 
 #include "block_formats.hpp"
+#include "posewright/support/trimmed.hpp"
 
 namespace posewright {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// Calls body(cell, index) for each comma-separated cell; returns their number.
 template <class Body>

@@ -11,7 +11,7 @@ namespace posewright {
 
 Curvature curvature(const IdentificationModel& model, const VariantColumns& columns,
                     const std::vector<MeasuredPose>& poses, const Fit& result) {
-  StackedReadings stacked(model, columns, poses, false, result.correction);
+  StackedReadings stacked(model, columns, poses, Prior::none, result.correction);
   const Eigen::VectorXd x = result.change.cwiseQuotient(stacked.tolerances());
   stacked.weigh(x, Weighting::weighted);
   Eigen::VectorXd at, ahead, behind;
@@ -23,7 +23,7 @@ Curvature curvature(const IdentificationModel& model, const VariantColumns& colu
                                      stacked.tolerances().cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
   // One σ along an axis changes the whitened readings by this much; less where a prior tells more than they do.
-  const double unit = result.scale_known ? 1.0 : result.scale;
+  const double unit = result.scale_known ? result.noise_factor : result.scale;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     const double length = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));

@@ -6,6 +6,7 @@
 
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_weights.hpp"
 #include "stacked_readings.hpp"
@@ -19,6 +20,9 @@ constexpr double tolerance = 1e-11;
 constexpr int weight_rounds = 2;
 constexpr int most_reweightings = 50;
 constexpr double settled_weights = 1e-4;
+// Noise that chance refuses this seldom is refused: σ then count what the residuals show.
+constexpr double refusal = 0.01;
+constexpr int noise_rounds = 3;
 // Pivots of unit columns below this mean that double precision cannot tell a column from the others.
 constexpr double rank_tolerance = 1e-11;
 // What Levenberg–Marquardt sees of a step that no robot can take: it will try a shorter one.
@@ -97,31 +101,73 @@ std::vector<std::vector<double>> weights_of_targets(StackedReadings& stacked, co
   return result;
 }
 
-void fill_statistics(StackedReadings& stacked, const FitOptions& options, const Eigen::VectorXd& x, Fit& result) {
-  Eigen::VectorXd f;
+/// R of the readings' Jacobian at x, noise as stated and no weights.
+Eigen::MatrixXd root_of_readings(StackedReadings& stacked, const Eigen::VectorXd& x) {
+  stacked.set_group_weights({});
+  stacked.set_noise_factor(1.0);
   Eigen::MatrixXd J;
-  if (!stacked.residual(x, f) || !stacked.jacobian(x, J)) throw CannotDo("the solution is out of the robot's reach");
+  if (!stacked.jacobian(x, J)) throw CannotDo("the solution is out of the robot's reach");
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J.topRows(stacked.readings()));
+  const Eigen::Index rows = std::min<Eigen::Index>(stacked.readings(), J.cols());
+  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+}
+
+/// Covariance in units of tolerance with the noise `factor` times the stated one.
+Eigen::MatrixXd covariance_with(const StackedReadings& stacked, const Eigen::MatrixXd& root, double factor) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(root.rows() + Eigen::Index(stacked.known().size()), root.cols());
+  rows.topRows(root.rows()) = root / factor;
+  // Tolerances stay as they are: they do not grow with the noise.
+  Eigen::Index row = root.rows();
+  for (const int j : stacked.known()) rows(row++, j) = 1.0;
+  if (rows.rows() < rows.cols()) throw CannotDo("the data do not determine all parameters at the solution");
+  return inverse_information(rows);
+}
+
+/// The noise that the readings' residuals show, in units of the stated one.
+double noise_of(const StackedReadings& stacked, const Eigen::MatrixXd& root, const Eigen::VectorXd& squares,
+                double factor) {
+  const double told = (root * covariance_with(stacked, root, factor)).cwiseProduct(root).sum() / (factor * factor);
+  const double freedom = stacked.readings() - told;
+  return freedom > 0 ? std::sqrt(squares.sum() / freedom) : 0.0;
+}
+
+/// Takes the noise from the residuals and estimates again, until both agree: it says how much tolerances weigh.
+double settle_noise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, Fit& result) {
+  double noise = result.scale;
+  for (int round = 0; round < noise_rounds && noise > 0; ++round) {
+    noise = noise_of(stacked, root_of_readings(stacked, x), stacked.group_squares(x), noise);
+    if (stacked.known().empty() || !(noise > 0)) break;
+    stacked.set_noise_factor(noise);
+    result.converged = minimise(stacked, options, x, result.evaluations);
+  }
+  return noise;
+}
+
+/// Statistics and covariance at x, which moves where tolerances have to be weighed anew.
+void fill_statistics(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, Fit& result) {
+  Eigen::VectorXd f;
+  stacked.set_noise_factor(1.0);
+  if (!stacked.residual(x, f)) throw CannotDo("the solution is out of the robot's reach");
   result.chi_square = f.squaredNorm();
   result.readings = stacked.readings();
   result.freedom = stacked.rows() - stacked.columns();
   result.scale = result.freedom > 0 ? std::sqrt(result.chi_square / result.freedom) : 0.0;
+  result.scale_known = options.weighting == Weighting::weighted;
   double factor = 1.0;
   if (options.weighting == Weighting::robust) {
-    stacked.set_group_weights({});
-    stacked.jacobian(x, J);
-    const RobustScale scale = robust_scale(stacked.group_squares(x), stacked.group_sizes(),
-                                           stacked.columns() - (options.prior ? stacked.columns() : 0));
+    const RobustScale scale =
+        robust_scale(stacked.group_squares(x), stacked.group_sizes(), stacked.columns() - int(stacked.known().size()));
     result.scale = scale.central;
-    factor = scale.variance_factor;
+    factor = std::sqrt(scale.variance_factor);
   } else if (options.weighting == Weighting::ordinary) {
-    factor = result.scale * result.scale;
+    factor = result.scale = settle_noise(stacked, options, x, result);
+  } else if (result.scale > 1 && chi_square_exceeded(result.chi_square, result.freedom) < refusal) {
+    factor = result.noise_factor = std::max(1.0, settle_noise(stacked, options, x, result));
   }
-  result.scale_known = options.weighting == Weighting::weighted;
   const auto tolerances = stacked.tolerances().asDiagonal();
-  // The prior's rows stay as they are: tolerances do not grow with the noise.
-  if (factor > 0) J.topRows(stacked.readings()) /= std::sqrt(factor);
-  result.covariance = tolerances * inverse_information(J) * tolerances;
-  if (!(factor > 0)) result.covariance.setZero();
+  result.root = root_of_readings(stacked, x);
+  if (factor > 0) result.covariance = tolerances * covariance_with(stacked, result.root, factor) * tolerances;
+  else result.covariance.setZero(stacked.columns(), stacked.columns());
   stacked.spread(x, result.residuals, result.whitened);
 }
 
@@ -143,6 +189,8 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
   }
   if (options.weighting == Weighting::robust) {
     result.converged = settle_weights(stacked, options, RobustShape::huber, x, result.evaluations) && result.converged;
+    const double central = robust_scale(stacked.group_squares(x), stacked.group_sizes(), 0).central;
+    if (!stacked.known().empty() && central > 0) stacked.set_noise_factor(central);
     result.converged = settle_weights(stacked, options, RobustShape::tukey, x, result.evaluations) && result.converged;
     result.weights = weights_of_targets(stacked, x);
   }

@@ -12,8 +12,6 @@
 namespace posewright {
 namespace {
 
-constexpr std::array<const char*, 7> placing = {"base.",   "tool.",   "target.", "station.",
-                                                "anchor.", "camera.", "board."};
 constexpr std::array<const char*, 3> turns = {"base.rx", "base.ry", "base.rz"};
 // Root mean square of whitened residuals that a robot before its calibration may leave: millimetres at micrometres.
 constexpr double plausible = 1000.0;
@@ -47,33 +45,10 @@ std::vector<std::array<double, 3>> cube_rotations() {
   return rotations;
 }
 
-}  // namespace
-
-VariantColumns placing_columns(const IdentificationModel& model, const VariantColumns& columns) {
-  std::vector<int> kept;
-  for (std::size_t j = 0; j < columns.parameters.size(); ++j) {
-    const Parameter& p = model.parameters()[std::size_t(columns.selected[j])];
-    const bool places =
-        (p.unit == "m" || p.unit == "rad") &&
-        std::any_of(placing.begin(), placing.end(), [&](const char* prefix) { return p.name.starts_with(prefix); });
-    if (places || columns.parameters[j].role == Role::nuisance) kept.push_back(int(j));
-  }
-  return subset(columns, kept);
-}
-
-std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
-                           const std::vector<MeasuredPose>& poses, const FitOptions& options) {
-  VariantColumns place = placing_columns(model, columns);
-  if (!place.selected.empty() && !options.prior) {
-    IdentifiabilityOptions tiers;
-    tiers.tiers = place.tiers;
-    place = subset(place, identifiability(blocks_of(model, place, poses), place.parameters, tiers).kept);
-  }
-  std::vector<double> best(model.parameters().size(), 0.0);
-  if (place.selected.empty()) return best;
-  FitOptions quick = options;
-  quick.most_evaluations = few_evaluations;
-  std::vector<double> found;
+/// The best of the starts, by the stated noise.
+std::vector<double> placed_from_any_side(const IdentificationModel& model, const VariantColumns& place,
+                                         const std::vector<MeasuredPose>& poses, const FitOptions& quick) {
+  std::vector<double> best(model.parameters().size(), 0.0), found;
   double least = cost_from(model, place, poses, quick, best, found);
   if (std::isfinite(least)) best = found;
   std::array<std::size_t, 3> at{};
@@ -93,6 +68,53 @@ std::vector<double> placed(const IdentificationModel& model, const VariantColumn
     best = found;
   }
   return best;
+}
+
+}  // namespace
+
+VariantColumns placing_columns(const VariantColumns& columns) {
+  std::vector<int> kept;
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    if (columns.parameters[j].places || columns.parameters[j].role == Role::nuisance) kept.push_back(int(j));
+  return subset(columns, kept);
+}
+
+VariantColumns determined(const IdentificationModel& model, const VariantColumns& columns,
+                          const std::vector<MeasuredPose>& poses, const std::vector<double>& at, Prior prior,
+                          std::vector<Dependency>* dependencies, double threshold) {
+  const BlockArray read = blocks_of(model, columns, poses, at);
+  const auto m = Eigen::Index(columns.parameters.size());
+  const Eigen::Index rows = read.rows(), extra = (m + rows - 1) / rows;
+  BlockArray blocks(int(Eigen::Index(read.count()) + extra), int(rows), int(m));
+  blocks.all().setZero();
+  blocks.all().topRows(read.all().rows()) = read.all();
+  for (Eigen::Index j = 0; j < m; ++j)
+    if (counts(columns.parameters[std::size_t(j)], prior))
+      blocks.all()(read.all().rows() + j, j) = 1 / columns.parameters[std::size_t(j)].tolerance;
+  IdentifiabilityOptions options;
+  options.tiers = columns.tiers;
+  if (threshold > 0) options.threshold = threshold;
+  Identifiability found = identifiability(blocks, columns.parameters, options);
+  if (dependencies != nullptr) *dependencies = std::move(found.dependencies);
+  return subset(columns, found.kept);
+}
+
+std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const FitOptions& options) {
+  VariantColumns place = placing_columns(columns);
+  if (!place.selected.empty()) place = determined(model, place, poses, {}, options.prior);
+  if (place.selected.empty()) return std::vector<double>(model.parameters().size(), 0.0);
+  FitOptions quick = options;
+  quick.most_evaluations = few_evaluations;
+  const std::vector<double> best = placed_from_any_side(model, place, poses, quick);
+  if (options.weighting == Weighting::weighted) return best;
+  // What readings count by decides where things come to stand.
+  try {
+    quick.start = best;
+    return fit(model, place, poses, quick).correction;
+  } catch (const CannotDo&) {
+    return best;
+  }
 }
 
 }  // namespace posewright

@@ -18,12 +18,14 @@ std::vector<int> indices_read(const Eigen::VectorXd& y) {
 }
 
 StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
-                                 const std::vector<MeasuredPose>& poses, bool prior, const std::vector<double>& start)
-    : model_(model), columns_(columns), poses_(poses), prior_(prior), correction_(start) {
+                                 const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start)
+    : model_(model), columns_(columns), poses_(poses), correction_(start) {
   correction_.resize(model.parameters().size(), 0.0);
   tolerances_.resize(Eigen::Index(columns.parameters.size()));
   for (std::size_t j = 0; j < columns.parameters.size(); ++j)
     tolerances_[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    if (counts(columns.parameters[j], prior)) known_.push_back(int(j));
   const int per_target = model.rows_per_target();
   int group = -1;
   for (const MeasuredPose& pose : poses) {
@@ -95,7 +97,7 @@ void StackedReadings::use_one_variance_per_unit() {
 }
 
 double StackedReadings::root_weight(int row) const {
-  return group_weights_.size() == 0 ? 1.0 : std::sqrt(group_weights_[group_of_[std::size_t(row)]]);
+  return (group_weights_.size() == 0 ? 1.0 : std::sqrt(group_weights_[group_of_[std::size_t(row)]])) / noise_factor_;
 }
 
 bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
@@ -110,7 +112,7 @@ bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
     root_[k].matrixL().solveInPlace(part_);
     for (Eigen::Index i = 0; i < part_.size(); ++i, ++row) f[row] = part_[i] * root_weight(int(row));
   }
-  if (prior_) f.tail(columns()) = -x;
+  for (const int j : known_) f[row++] = -x[j];
   return f.allFinite();
 }
 
@@ -126,10 +128,8 @@ bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
     for (Eigen::Index i = 0; i < rows_.rows(); ++i, ++row)
       J.row(row) = -root_weight(int(row)) * rows_.row(i).cwiseProduct(tolerances_.transpose());
   }
-  if (prior_) {
-    J.bottomRows(columns()).setZero();
-    J.bottomRows(columns()).diagonal().setConstant(-1.0);
-  }
+  J.bottomRows(Eigen::Index(known_.size())).setZero();
+  for (const int j : known_) J(row++, j) = -1.0;
   return true;
 }
 
@@ -141,10 +141,13 @@ Eigen::VectorXd StackedReadings::group_sizes() const {
 
 Eigen::VectorXd StackedReadings::group_squares(const Eigen::VectorXd& x) {
   const Eigen::VectorXd kept = group_weights_;
+  const double factor = noise_factor_;
   group_weights_.resize(0);
+  noise_factor_ = 1.0;
   Eigen::VectorXd f;
   residual(x, f);
   group_weights_ = kept;
+  noise_factor_ = factor;
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(groups());
   for (std::size_t row = 0; row < group_of_.size(); ++row)
     squares[group_of_[row]] += f[Eigen::Index(row)] * f[Eigen::Index(row)];

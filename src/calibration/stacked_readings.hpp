@@ -13,7 +13,7 @@ std::vector<int> indices_read(const Eigen::VectorXd& y);
 class StackedReadings {
  public:
   StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
-                  const std::vector<MeasuredPose>& poses, bool prior, const std::vector<double>& start = {});
+                  const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start = {});
 
   /// The columns of the corrections to start from, in units of tolerance.
   Eigen::VectorXd start() const;
@@ -21,11 +21,15 @@ class StackedReadings {
   /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo where a pose is out
   /// of reach there.
   void weigh(const Eigen::VectorXd& x, Weighting weighting);
+  /// Counts the noise of all readings so many times as stated, against the tolerances.
+  void set_noise_factor(double factor) { noise_factor_ = factor; }
   /// Weight of each group of rows; empty: 1.
   void set_group_weights(const Eigen::VectorXd& weights) { group_weights_ = weights; }
 
   int columns() const { return int(columns_.selected.size()); }
-  int rows() const { return readings_ + (prior_ ? columns() : 0); }
+  int rows() const { return readings_ + int(known_.size()); }
+  /// Columns whose tolerance counts, ascending; their rows follow the readings'.
+  const std::vector<int>& known() const { return known_; }
   int readings() const { return readings_; }
   int groups() const { return int(group_of_.empty() ? 0 : group_of_.back() + 1); }
   /// Rows of every group.
@@ -54,7 +58,8 @@ class StackedReadings {
   const IdentificationModel& model_;
   const VariantColumns& columns_;
   const std::vector<MeasuredPose>& poses_;
-  bool prior_;
+  std::vector<int> known_;
+  double noise_factor_ = 1.0;
   Eigen::VectorXd tolerances_;
   std::vector<std::vector<int>> read_;             ///< per pose: which readings are there
   std::vector<int> group_of_;                      ///< per row: its target (or pose)

@@ -25,15 +25,15 @@ po::options_description calibrate_command_options() {
       ("variant", text("V"), "which variant is calibrated (design: variant, or the first)")  //
       ("weights", text("KIND"),
        "ols: all readings of a unit alike; wls: by the instrument's noise; robust: gross errors lose their weight "
-       "(wls)")                                                                                //
-      ("prior", "count tolerances as measurements of their parameters (as the problem says)")  //
-      ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
+       "(wls)")                                                                              //
+      ("no-prior", "plain least squares: tolerances of what was manufactured do not count")  //
+      ("validate", text("FILE"), "more data, not fitted, to judge the result by")            //
       ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it");
   options.add_options()                                                                                        //
       ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")  //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                //
       ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")            //
-      ("force", "replace files that posewright did not write");
+      ("force", "replace files that posewright did not write; write what predicts worse than base and tool alone");
   options.add(problem_options());
   return options;
 }
@@ -92,7 +92,7 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   calibrate.data = positional[1];
   calibrate.variant = text_of(values, "variant");
   calibrate.weighting = weighting_of(values);
-  calibrate.prior = values.count("prior") > 0;
+  calibrate.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
   calibrate.validate = text_of(values, "validate");
   calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);
   return calibrate;
@@ -106,14 +106,16 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
   const std::optional<DhTable> table = table_of(wanted, problem, result);
-  if (result.fit.converged) write(wanted, problem, result, result.notes);
+  const bool useful = result.fit.converged && !result.left_out.refused();
+  const bool written = result.fit.converged && (useful || values.count("force") > 0);
+  if (written) write(wanted, problem, result, result.notes);
   else if (!wanted.parameters.empty() || !wanted.urdf.empty())
     result.notes.emplace_back("nothing is written: these are no parameters to go on with");
   print_notes(result.notes);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
-                 (result.fit.converged ? written_text({wanted.parameters, wanted.urdf}) : ""));
-    return result.fit.converged ? done : cannot_do;
+                 (written ? written_text({wanted.parameters, wanted.urdf}) : ""));
+    return written ? done : cannot_do;
   }
   Json json = {{"schema", "posewright/calibration/1"},
                {"version", version},
@@ -122,7 +124,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   json.update(calibration_json(result));
   json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
   fmt::print("{}", json_text(json));
-  return result.fit.converged ? done : cannot_do;
+  return written ? done : cannot_do;
 }
 
 }  // namespace

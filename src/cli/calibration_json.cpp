@@ -16,17 +16,21 @@ Json numbers(const std::vector<double>& values) {
   return list;
 }
 
-Json parameter_json(const CalibratedParameter& p) {
+Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
   const auto estimate = [&](double value) { return p.estimated ? Json(value) : Json(nullptr); };
+  const bool interval = p.estimated && turned_frame(c, p) == nullptr;
   return {{"name", p.label.name},
           {"unit", p.label.unit},
           {"role", p.label.role == Role::nuisance ? "nuisance" : "interest"},
           {"estimated", p.estimated},
           {"nominal", p.label.nominal},
           {"tolerance", p.label.tolerance},
+          {"prior", !p.estimated || !p.prior   ? "none"
+                    : p.label.tolerance_stated ? "stated"
+                                               : "assumed"},
           {"value", p.value},
           {"sigma", estimate(p.sigma)},
-          {"interval", p.estimated ? Json({p.lower, p.upper}) : Json(nullptr)},
+          {"interval", interval ? Json({p.lower, p.upper}) : Json(nullptr)},
           {"tells_less_than_tolerance", p.weak},
           {"why_not", text_or_null(p.why_not)}};
 }
@@ -51,10 +55,33 @@ Json residuals_json(const Calibration& c) {
   return sets;
 }
 
+Json orientations_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const CalibratedOrientation& o : c.orientations) {
+    Json rows = Json::array();
+    for (int i = 0; i < 3; ++i) rows.push_back({o.covariance(i, 0), o.covariance(i, 1), o.covariance(i, 2)});
+    list.push_back({{"frame", o.frame},
+                    {"rx_ry_rz", {o.angles[0], o.angles[1], o.angles[2]}},
+                    {"covariance", rows},
+                    {"half_width", {o.half_width[0], o.half_width[1], o.half_width[2]}}});
+  }
+  return list;
+}
+
+Json left_out_json(const LeaveOut& left_out) {
+  return {{"groups", left_out.groups},
+          {"estimated",
+           left_out.groups > 0 && std::isfinite(left_out.estimated) ? Json(left_out.estimated) : Json(nullptr)},
+          {"placed", left_out.groups > 0 ? Json(left_out.placed) : Json(nullptr)},
+          {"gain", left_out.groups > 0 && std::isfinite(left_out.gain) ? Json(left_out.gain) : Json(nullptr)},
+          {"refused", left_out.refused()},
+          {"why_not", text_or_null(left_out.why_not)}};
+}
+
 Json covariance_json(const Calibration& c) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < c.fit.covariance.rows(); ++i) {
-    const Eigen::VectorXd row = c.sigma_factor * c.sigma_factor * c.fit.covariance.row(i).transpose();
+    const Eigen::VectorXd row = c.fit.covariance.row(i).transpose();
     rows.push_back(std::vector<double>(row.begin(), row.end()));
   }
   return rows;
@@ -64,7 +91,7 @@ Json covariance_json(const Calibration& c) {
 
 Json calibration_json(const Calibration& c) {
   Json parameters = Json::array(), readings = Json::array(), poses = Json::array();
-  for (const CalibratedParameter& p : c.parameters) parameters.push_back(parameter_json(p));
+  for (const CalibratedParameter& p : c.parameters) parameters.push_back(parameter_json(c, p));
   for (const Reading& reading : c.readings) readings.push_back({{"name", reading.name}, {"unit", reading.unit}});
   for (const PoseResidual& pose : c.pose_residuals)
     poses.push_back({{"id", pose.id},
@@ -73,7 +100,7 @@ Json calibration_json(const Calibration& c) {
                      {"residuals", numbers(pose.residuals)}});
   return {{"variant", c.variant},
           {"weights", weighting_word(c.weighting)},
-          {"prior", c.prior},
+          {"prior", c.prior == Prior::none ? "none" : "manufactured"},
           {"rows", c.rows},
           {"poses_fitted", c.poses},
           {"poses_held_back", c.held_back},
@@ -81,7 +108,8 @@ Json calibration_json(const Calibration& c) {
           {"converged", c.fit.converged},
           {"parameters", parameters},
           {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
-          {"sigma_factor", c.sigma_factor},
+          {"orientations", orientations_json(c)},
+          {"noise_factor", c.fit.noise_factor},
           {"noise_scale", c.fit.scale},
           {"chi_square", c.fit.chi_square},
           {"freedom", c.fit.freedom},
@@ -89,7 +117,10 @@ Json calibration_json(const Calibration& c) {
            {{"chi_square", test_json(c.tests.chi_square)},
             {"lack_of_fit", test_json(c.lack_of_fit)},
             {"serial_correlation", test_json(c.tests.serial)},
+            {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
+          {"left_out", left_out_json(c.left_out)},
+          {"weakest_combination", text_or_null(c.weakest)},
           {"curvature", std::isfinite(c.curvature.largest) ? Json(c.curvature.largest) : Json(nullptr)},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},

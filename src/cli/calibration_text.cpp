@@ -37,26 +37,49 @@ std::string headline(const Calibration& c) {
   const auto estimated =
       std::count_if(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.estimated; });
   text += fmt::format("; {} readings for {} parameters\n{}{}, {} evaluations{}\n", c.fit.readings, estimated,
-                      weighting_name(c.weighting), c.prior ? ", tolerances as prior knowledge" : "", c.fit.evaluations,
-                      c.fit.converged ? "" : ": NOT CONVERGED");
+                      weighting_name(c.weighting),
+                      c.prior != Prior::none ? ", tolerances of what was manufactured as prior knowledge" : "",
+                      c.fit.evaluations, c.fit.converged ? "" : ": NOT CONVERGED");
   return text;
 }
 
+bool assumed(const CalibratedParameter& p) { return p.estimated && p.prior && !p.label.tolerance_stated; }
+
+std::string tolerance_text(const CalibratedParameter& p) {
+  if (!p.prior) return "free";
+  return shown_value(p.label.tolerance, p.label.unit) + (assumed(p) ? " assumed" : "");
+}
+
+std::string orientations_text(const Calibration& c) {
+  if (c.orientations.empty()) return "";
+  Table table({"turned about its parent's", "x by", "y by", "z by"},
+              {Align::left, Align::right, Align::right, Align::right});
+  for (const CalibratedOrientation& o : c.orientations) {
+    const auto shown = [&](int k) { return "± " + shown_value(o.half_width[k], "rad"); };
+    table.row({o.frame, shown(0), shown(1), shown(2)});
+  }
+  return "\n95 % intervals of orientations, as a rotation of the estimate\n" + table.text();
+}
+
 std::string parameters_text(const Calibration& c) {
-  Table table(
-      {"parameter", "nominal", "calibrated", "change", "σ", "95 % from", "to", ""},
-      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left});
+  Table table({"parameter", "tolerance", "nominal", "calibrated", "change", "σ", "95 % from", "to", ""},
+              {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,
+               Align::right, Align::left});
   for (const CalibratedParameter& p : c.parameters) {
     if (!p.estimated) continue;
     const std::string& unit = p.label.unit;
     const auto shown = [&](double value) { return shown_to(value, p.sigma, unit); };
-    table.row({p.label.name, shown(p.label.nominal), shown(p.value), shown(p.value - p.label.nominal), shown(p.sigma),
-               shown(p.lower), shown(p.upper),
+    const bool turns = turned_frame(c, p) != nullptr;
+    table.row({p.label.name, tolerance_text(p), shown(p.label.nominal), shown(p.value),
+               shown(p.value - p.label.nominal), turns ? "below" : shown(p.sigma), turns ? "" : shown(p.lower),
+               turns ? "" : shown(p.upper),
                p.weak                           ? "the data tell less than its tolerance"
                : p.label.role == Role::nuisance ? "nuisance"
                                                 : ""});
   }
-  std::string text = table.text();
+  std::string text = table.text() + orientations_text(c);
+  if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
+    text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
   const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
                                       [](const CalibratedParameter& p) { return !p.estimated; });
   if (c.automatic && left_out > 0)
@@ -118,15 +141,11 @@ std::string noise_text(const Calibration& c) {
     text +=
         fmt::format("Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
                     c.tests.chi_square.statistic, c.fit.freedom, chance(c.tests.chi_square.probability), c.fit.scale);
-    if (c.sigma_factor > 1)
+    if (c.fit.noise_factor > 1)
       text += fmt::format(
-          ".\n  The model or the stated noise is refused; σ and intervals above are stretched by {:.3g} to what the "
-          "residuals show.\n",
-          c.sigma_factor);
-    else if (c.tests.chi_square.probability < remarkable && c.fit.scale > 1)
-      text +=
-          ".\n  The model or the stated noise is refused; with tolerances as prior knowledge σ still count what was "
-          "stated.\n";
+          ".\n  The model or the stated noise is refused; σ and intervals above count {:.3g} times the noise, which is "
+          "what the residuals show.\n",
+          c.fit.noise_factor);
     else if (c.tests.chi_square.probability < remarkable)
       text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
     else text += ": as they should be.\n";
@@ -137,12 +156,13 @@ std::string noise_text(const Calibration& c) {
                         c.fit.scale, c.fit.freedom);
   }
   if (c.lack_of_fit.possible)
-    text +=
-        fmt::format("Lack of fit: F = {:.3g} (p {}) of residuals against the spread of readings within a pose{}.\n",
-                    c.lack_of_fit.statistic, chance(c.lack_of_fit.probability),
-                    c.lack_of_fit.probability < remarkable
-                        ? ": something stays at a pose that is no reading noise (robot repeatability, a missing effect)"
-                        : ": nothing but reading noise");
+    text += fmt::format(
+        "Lack of fit: F = {:.3g} (p {}) of residuals against the scatter of readings within a pose and what is stated "
+        "to stay at one{}.\n",
+        c.lack_of_fit.statistic, chance(c.lack_of_fit.probability),
+        c.lack_of_fit.probability < remarkable
+            ? ": more stays at a pose than is stated (repeatability of the robot, a missing effect)"
+            : ": they explain the residuals");
   return text;
 }
 
@@ -153,6 +173,13 @@ std::string whiteness_text(const Calibration& c) {
                         chance(c.tests.serial.probability),
                         c.tests.serial.probability < remarkable
                             ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
+                            : "");
+  if (c.tests.within.possible)
+    text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
+                        chance(c.tests.within.probability),
+                        c.tests.within.probability < remarkable
+                            ? ": readings of a pose err together: the robot stood elsewhere than stated? State its "
+                              "repeatability; σ and intervals are too small without it"
                             : "");
   if (c.tests.normality.possible)
     text += fmt::format(
@@ -166,6 +193,16 @@ std::string whiteness_text(const Calibration& c) {
         c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
   }
   return text;
+}
+
+std::string left_out_text(const Calibration& c) {
+  if (c.left_out.groups == 0) return "";
+  if (!std::isfinite(c.left_out.estimated)) return "Poses left out cannot be predicted: " + c.left_out.why_not + "\n";
+  return fmt::format(
+      "Poses left out ({} times) are predicted to {:.3g} times the stated noise, with base and tool alone to "
+      "{:.3g}{}.\n",
+      c.left_out.groups, c.left_out.estimated, c.left_out.placed,
+      c.left_out.refused() ? ": NO GAIN that is more than chance" : "");
 }
 
 std::string outliers_text(const Calibration& c) {
@@ -182,7 +219,7 @@ std::string outliers_text(const Calibration& c) {
 
 std::string calibration_text(const Calibration& c) {
   return headline(c) + "\n" + parameters_text(c) + residuals_text(c) + histogram_text(c.tests.histogram) +
-         noise_text(c) + whiteness_text(c) + outliers_text(c);
+         noise_text(c) + whiteness_text(c) + left_out_text(c) + outliers_text(c);
 }
 
 }  // namespace posewright::cli

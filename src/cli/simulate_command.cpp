@@ -4,6 +4,7 @@
 
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/problem/units.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
@@ -21,20 +22,24 @@ using Json = nlohmann::ordered_json;
 
 po::options_description simulate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                      //
-      ("draws", text("n"), "virtual calibrations (1000)")                                                    //
-      ("truth", text("V"), "variant whose model gives the readings (the one that is calibrated)")            //
-      ("truth-nominal", "of the truth only the nominal values differ")                                       //
-      ("exact", "true parameters are the nominal ones, not one tolerance off")                               //
-      ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                 //
-      ("weights", text("ols|wls|robust"), "what a reading counts: alike, by its noise, less far off (wls)")  //
-      ("missing", text("SHARE"), "share of the targets that are not read (0)")                               //
-      ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                             //
-      ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                               //
-      ("validation", text("k"), "random places to check where there are no test poses (50)")                 //
-      ("candidates", text("n"), "configurations that choose the parameters of auto (10000)")                 //
-      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                       //
-      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                         //
+  options.add_options()                                                                                               //
+      ("draws", text("n"), "virtual calibrations (1000)")                                                             //
+      ("truth", text("V"), "variant whose model gives the readings (the one that is calibrated)")                     //
+      ("truth-nominal", "of the truth only the nominal values differ")                                                //
+      ("truth-repeatability", text("LENGTH"), "how far the measured tip stands off at a visit, 1σ (as the problem)")  //
+      ("truth-independent", text("LENGTH"), "how far every target stands off on its own, 1σ (0)")                     //
+      ("truth-joints", text("ANGLE"), "what the measured robot's joint readings are off by, 1σ (as the problem)")     //
+      ("no-prior", "plain least squares: tolerances of what was manufactured do not count in a calibration")          //
+      ("exact", "true parameters are the nominal ones, not one tolerance off")                                        //
+      ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                          //
+      ("weights", text("ols|wls|robust"), "what a reading counts: alike, by its noise, less far off (wls)")           //
+      ("missing", text("SHARE"), "share of the targets that are not read (0)")                                        //
+      ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                                      //
+      ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                                        //
+      ("validation", text("k"), "random places to check where there are no test poses (50)")                          //
+      ("candidates", text("n"), "configurations that choose the parameters of auto (10000)")                          //
+      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                                //
+      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                                  //
       ("force", "replace a file that posewright did not write");
   options.add(problem_options());
   return options;
@@ -50,12 +55,36 @@ double number(const po::variables_map& values, const std::string& option, double
   return value;
 }
 
+/// A size with its unit.
+std::optional<Measured> size(const po::variables_map& values, const char* option,
+                             std::initializer_list<Quantity> quantities) {
+  if (values.count(option) == 0) return std::nullopt;
+  const std::string text = text_of(values, option);
+  const auto refuse = [&] {
+    throw InputError({}, fmt::format("--{} {}", option, text),
+                     "a value >= 0 with its unit is expected: " + allowed_units(quantities));
+  };
+  Measured given;
+  try {
+    given = parse_measured(text, quantities);
+  } catch (const InputError&) {
+    refuse();
+  }
+  if (!(given.value >= 0) || (given.quantity == Quantity::number && given.value > 0)) refuse();
+  return given;
+}
+
 SimulateOptions options_of(const po::variables_map& values, const CommonOptions& common) {
   SimulateOptions simulate;
   ExperimentOptions& experiment = simulate.experiment;
   simulate.variant = text_of(values, "variant");
   simulate.truth = text_of(values, "truth");
   simulate.truth_nominal = values.count("truth-nominal") > 0;
+  if (const auto given = size(values, "truth-repeatability", {Quantity::length}))
+    simulate.truth_noise.repeatability = given->value;
+  if (const auto given = size(values, "truth-independent", {Quantity::length}))
+    simulate.truth_noise.independent = given->value;
+  simulate.truth_noise.joints = size(values, "truth-joints", {Quantity::angle, Quantity::length});
   if (simulate.truth_nominal && simulate.truth.empty())
     throw InputError({}, "--truth-nominal needs another variant", "--truth V");
   experiment.draws = whole_number(values, "draws", 2, 10000000).value_or(experiment.draws);
@@ -66,6 +95,7 @@ SimulateOptions options_of(const po::variables_map& values, const CommonOptions&
   if (values.count("outlier-size") > 0 && experiment.outliers == 0)
     throw InputError({}, "--outlier-size without outliers", "--outliers SHARE");
   experiment.fit.weighting = weighting_of(values);
+  experiment.fit.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
   experiment.seed = common.seed;
   experiment.threads = common.threads;
   simulate.validation = whole_number(values, "validation", 1, 1000000).value_or(simulate.validation);

@@ -14,10 +14,15 @@ Json options_json(const SimulateOptions& options) {
   return {{"draws", e.draws},
           {"exact", e.exact},
           {"truth_nominal", options.truth_nominal},
+          {"truth_noise",
+           {{"repeatability", value_or_null(options.truth_noise.repeatability)},
+            {"independent", value_or_null(options.truth_noise.independent)},
+            {"joints", options.truth_noise.joints ? Json(options.truth_noise.joints->value) : Json(nullptr)}}},
           {"missing", e.missing},
           {"outliers", e.outliers},
           {"outlier_size", e.outlier_size},
-          {"weights", weighting_word(e.fit.weighting)}};
+          {"weights", weighting_word(e.fit.weighting)},
+          {"prior", e.fit.prior != Prior::none}};
 }
 
 Json draws_json(const Simulation& s) {

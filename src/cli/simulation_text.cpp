@@ -11,6 +11,17 @@ namespace {
 
 using Align = Table::Align;
 
+std::string truth_noise_text(const TruthNoise& noise) {
+  if (!noise.differs()) return "";
+  std::vector<std::string> parts;
+  if (noise.repeatability) parts.push_back("its tip stands off by " + shown_value(*noise.repeatability, "m"));
+  if (noise.independent) parts.push_back("every target on its own by " + shown_value(*noise.independent, "m"));
+  if (noise.joints)
+    parts.push_back("its joint readings are off by " +
+                    shown_value(noise.joints->value, noise.joints->quantity == Quantity::length ? "m" : "rad"));
+  return fmt::format("Noise of the measured robot (1σ), not the one stated: {}\n", fmt::join(parts, ", "));
+}
+
 std::string headline(const Simulation& s, const SimulateOptions& options) {
   const ExperimentOptions& e = options.experiment;
   std::string text = fmt::format("{} virtual calibrations of {} with the {} poses of {}\n", s.summary.fitted, s.variant,
@@ -22,6 +33,7 @@ std::string headline(const Simulation& s, const SimulateOptions& options) {
     text += "nominal as in " + s.truth + ", one tolerance (1σ) off where " + s.variant + " estimates";
   else text += "of " + s.truth + ", one tolerance (1σ) off";
   text += fmt::format("; weights: {}; {} readings a draw\n", weighting_word(e.fit.weighting), s.readings);
+  text += truth_noise_text(options.truth_noise);
   if (s.hidden > 0) text += fmt::format("{} readings more are of targets that cannot be seen.\n", s.hidden);
   if (e.missing > 0)
     text += fmt::format("{:.3g} % of the targets are missing, at random; the prediction counts on that.\n",

@@ -138,11 +138,6 @@ std::unique_ptr<Criterion> make_criterion(const std::string& name, const Criteri
   return entry == nullptr ? nullptr : entry->make(data);
 }
 
-bool is_determinant(const std::string& name) {
-  const CriterionEntry* entry = find_criterion(name);
-  return entry != nullptr && entry->determinant;
-}
-
 std::string criterion_names() {
   std::string names;
   for (const CriterionEntry& entry : criterion_registry()) names += (names.empty() ? "" : ", ") + entry.name;

@@ -33,7 +33,9 @@ CompensatorGeometry::CompensatorGeometry(const CompensatorGeometrySpec& spec, co
     : spec_(spec),
       noise_(markers_of(measurement).noise),
       repeats_(measurement.repeats),
-      repeatability_(measurement.repeatability) {
+      repeatability_(measurement.repeatability.translation) {
+  if (measurement.repeatability.rotation > 0)
+    throw CannotDo("measurement: repeatability of a compensator's pins is a length; it has no tip that could turn");
   parameters_ = {{"L", "m", spec.L, linkage_length_tolerance, Role::interest},
                  {"ax", "m", spec.ax, linkage_length_tolerance, Role::interest},
                  {"ay", "m", spec.ay, linkage_length_tolerance, Role::interest},
@@ -98,7 +100,8 @@ bool CompensatorGeometry::do_linearise(std::span<const double> q, std::span<cons
   out.covariance.setZero(rows_, rows_);
   out.covariance.topLeftCorner<3, 3>() = point_covariance(noise_, P0) / repeats_;
   out.covariance.bottomRightCorner<3, 3>() = point_covariance(noise_, P1) / repeats_;
-  out.covariance.diagonal().array() += repeatability_ * repeatability_;
+  // The fixed pin stays; the link's pin stands elsewhere at every visit.
+  out.covariance.diagonal().tail<3>().array() += repeatability_ * repeatability_;
   const Eigen::Vector3d swing = spec_.encoder_noise * L * (frame.R * across);
   out.covariance.bottomRightCorner<3, 3>() += swing * swing.transpose();
   return true;

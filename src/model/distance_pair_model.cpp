@@ -4,11 +4,12 @@
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/dense.hpp"
+#include "repeatability.hpp"
 
 namespace posewright {
 struct DistancePairModel::End {
   Eigen::Isometry3d X;
-  Twists twists, reading_twists;
+  Twists twists, reading_twists, displacement;
 };
 
 DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& spec)
@@ -75,7 +76,13 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
     if (!end(at_end(q, i), correction, selected, ends[i])) return false;
   out.G.resize(rows_, Eigen::Index(selected.size()));
   out.covariance.setZero(rows_, rows_);
-  out.rows.resize(rows_, 2 * Eigen::Index(tip_->reading_noise().size()));
+  const auto readings = Eigen::Index(tip_->reading_noise().size());
+  const int displacement = displacement_size(repeatability_);
+  out.rows.resize(rows_, 2 * (readings + displacement));
+  for (End& each : ends) {
+    each.displacement.resize(6, displacement);
+    displacement_of_a_visit(repeatability_, each.X.translation(), each.displacement);
+  }
   for (int t = 0; t < rows_; ++t) {
     const Eigen::Vector3d from = target(ends[0].X, correction, std::size_t(t)),
                           to = target(ends[1].X, correction, std::size_t(t));
@@ -92,13 +99,14 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
       out.G(t, Eigen::Index(c)) =
           own / 3 == t ? e.dot(ends[1].X.linear().col(own % 3) - ends[0].X.linear().col(own % 3)) : 0.0;
     }
-    // Both ends carry the robot's repeatability.
-    out.covariance(t, t) = distance_variance(spec_, d, repeats_, std::sqrt(2.0) * repeatability_);
-    const auto readings = Eigen::Index(tip_->reading_noise().size());
-    for (Eigen::Index i = 0; i < 2; ++i)
+    out.covariance(t, t) = distance_variance(spec_, d, repeats_);
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      // The robot stands off at either end, each time anew.
+      auto of_end = out.rows.row(t).segment(i * (readings + displacement), readings + displacement);
       for (Eigen::Index j = 0; j < readings; ++j)
-        out.rows(t, i * readings + j) =
-            along[i].dot(ends[i].reading_twists.col(j)) * tip_->reading_noise()[std::size_t(j)];
+        of_end[j] = along[i].dot(ends[i].reading_twists.col(j)) * tip_->reading_noise()[std::size_t(j)];
+      of_end.tail(displacement) = along[i].transpose() * ends[i].displacement;
+    }
   }
   out.covariance.noalias() += out.rows * out.rows.transpose();
   return true;

@@ -37,7 +37,8 @@ class DistancePairModel : public IdentificationModel {
 
   std::unique_ptr<TipModel> tip_;
   DistanceMeasurement spec_;
-  double repeats_, repeatability_;
+  double repeats_;
+  Repeatability repeatability_;
   int tip_parameters_ = 0;
   std::size_t moving_ = 0;  ///< the robot's coordinates that are no choices; these come first
 };

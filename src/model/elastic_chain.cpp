@@ -17,6 +17,10 @@ namespace {
 constexpr double relative_tolerance = 0.3;
 constexpr double compliance_tolerance = 0.3e-6;  // rad/(N·m); m/N for prismatic joints
 
+// A joint that springs bend by more than this is no small deflection.
+constexpr double small_angle = 0.5 * degree;
+constexpr int steps_of_range = 200;
+
 using Wrench = Eigen::Matrix<double, 6, 1>;  // force, moment about the origin of M
 
 Wrench force_at(const Eigen::Vector3d& force, const Eigen::Vector3d& point) {
@@ -69,6 +73,36 @@ std::vector<std::string> place_names(const std::vector<double>& at, bool prismat
 }
 
 }  // namespace
+
+bool is_numbered_place(std::string_view name) {
+  constexpr std::string_view numbered = ".compliance_";
+  const auto at = name.find(numbered);
+  return at != std::string_view::npos &&
+         name.find_first_not_of("0123456789*?", at + numbered.size()) == std::string_view::npos;
+}
+
+std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr || !arm->elastostatic || !arm->elastostatic->compensator) return "";
+  const CompensatorSpec& spring = *arm->elastostatic->compensator;
+  if (!spring.torque) return "";
+  double most = 0;
+  for (const Coordinate& c : coordinates) {
+    if (c.name != spring.joint.value) continue;
+    for (int i = 0; i <= steps_of_range; ++i) {
+      const CompensatorLinkage<double> linkage(spring, c.lower + (c.upper - c.lower) * i / steps_of_range);
+      const double preload = spring.free_length * spring.stiffness;
+      const double stiffness = spring.joint_stiffness + linkage.added_stiffness(spring.stiffness, preload);
+      most = std::max(most, std::abs(linkage.torque(spring.stiffness, preload) / stiffness));
+    }
+  }
+  if (most < small_angle) return "";
+  return fmt::format(
+      "the compensator's torque bends the unloaded joint {} by up to {:.2f} deg: linear springs do not hold for that; "
+      "is "
+      "effect: stiffness meant?",
+      spring.joint.value, most / degree);
+}
 
 ElasticChain::ElasticChain(ChainDescription chain, const ElastostaticSpec& spec, const SourcePlace& place)
     : chain_(std::move(chain)), spec_(spec) {
@@ -127,7 +161,7 @@ void ElasticChain::add_springs(const SourcePlace& place) {
   }
 }
 
-void ElasticChain::torques(std::span<const double> q, int load, std::span<double> out) const {
+void ElasticChain::torques(std::span<const double> q, int load, bool link_weights, std::span<double> out) const {
   const ChainDescription& chain = chain_.description();
   const LoadCaseSpec& w = spec_.loads[std::size_t(load)];
   std::array<Twist, max_joints> motion;
@@ -142,8 +176,8 @@ void ElasticChain::torques(std::span<const double> q, int load, std::span<double
     motion[k] = joint.prismatic ? prismatic(axis) : revolute(axis, frame.p);
     if (joint.prismatic) frame.p += axis * value;
     else frame.then_rotate(joint.axis, value);
-    weight[k] = spec_.link_gravity ? force_at(joint.mass * spec_.gravity, frame.R * joint.centre_of_mass + frame.p)
-                                   : Wrench(Wrench::Zero());
+    weight[k] = link_weights ? force_at(joint.mass * spec_.gravity, frame.R * joint.centre_of_mass + frame.p)
+                             : Wrench(Wrench::Zero());
   }
   frame.then(chain.X_LastTip);
   Wrench beyond = force_at(w.force, frame.R * w.point + frame.p) +
@@ -154,6 +188,13 @@ void ElasticChain::torques(std::span<const double> q, int load, std::span<double
     beyond += weight[k];
     out[std::size_t(chain.joints[k].coordinate)] += chain.joints[k].multiplier * motion[k].dot(beyond);
   }
+}
+
+double ElasticChain::load_alone(std::span<const double> q, std::size_t coordinate) const {
+  std::array<double, max_joints> torque{};
+  const std::size_t joints = chain_.coordinates().size();
+  torques(q, int(q[joints]), false, std::span(torque).first(joints));
+  return torque[coordinate];
 }
 
 void ElasticChain::deflect(std::span<const double> q, std::span<const double> elastic, std::span<double> deflection,
@@ -177,10 +218,12 @@ void ElasticChain::deflect(std::span<const double> q, std::span<const double> el
     // Three parameters in a row share one deflection, δ = (τ − M) / K.
     const CompensatorLinkage<double> linkage(*spec_.compensator, q[c]);
     const double stiffness = value(i) + linkage.added_stiffness(value(i + 1), value(i + 2));
-    deflection[c] = (torque[c] - linkage.torque(value(i + 1), value(i + 2))) / stiffness;
+    const double acts = spec_.compensator->torque ? 1.0 : 0.0;
+    const double load = spec_.compensator->torque || !spec_.link_gravity ? torque[c] : load_alone(q, c);
+    deflection[c] = (load - acts * linkage.torque(value(i + 1), value(i + 2))) / stiffness;
     derivative[i] = -deflection[c] / stiffness;
-    derivative[i + 1] = -(linkage.torque(1, 0) + deflection[c] * linkage.added_stiffness(1, 0)) / stiffness;
-    derivative[i + 2] = -(linkage.torque(0, 1) + deflection[c] * linkage.added_stiffness(0, 1)) / stiffness;
+    derivative[i + 1] = -(acts * linkage.torque(1, 0) + deflection[c] * linkage.added_stiffness(1, 0)) / stiffness;
+    derivative[i + 2] = -(acts * linkage.torque(0, 1) + deflection[c] * linkage.added_stiffness(0, 1)) / stiffness;
     i += 2;
   }
 }

@@ -5,6 +5,7 @@
 
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/support/dense.hpp"
+#include "repeatability.hpp"
 
 namespace posewright {
 namespace {
@@ -23,8 +24,9 @@ struct ExplicitModel::Parts {
   int station;
 };
 
-ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement)
-    : tip_(std::move(tip)), measurement_(std::move(measurement)) {
+ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement,
+                             const Repeatability& repeatability)
+    : tip_(std::move(tip)), measurement_(std::move(measurement)), repeatability_(repeatability) {
   const auto is_tool = [](const Parameter& p) { return p.name.starts_with("tool."); };
   parameters_ = tip_->parameters();
   if (measurement_->replaces_tool()) std::erase_if(parameters_, is_tool);
@@ -58,8 +60,8 @@ ExplicitModel::Parts ExplicitModel::parts(std::span<const double> q, std::span<c
           choice ? int(q.back()) : 0};
 }
 
-/// Twists of the selected parameters (zero for the instrument's own columns) and of the readings, the instrument's own
-/// covariance.
+/// Twists of the selected parameters (zero for the instrument's own columns) and of what moves the tip at random, 1σ
+/// each (joint readings, the visit's displacement); the instrument's own covariance.
 bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> selected, Eigen::Isometry3d& X,
                                      Linearisation& out) const {
   if (!tip_->linearise(p.q, p.tip_correction, selected, X, out.twists, reading_noise_ ? &out.reading_twists : nullptr))
@@ -74,10 +76,25 @@ bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> select
   }
   out.covariance.resize(rows_, rows_);
   measurement_->covariance(sighting, out.covariance);
-  if (!reading_noise_) out.reading_twists.resize(6, 0);
-  for (Eigen::Index j = 0; j < out.reading_twists.cols(); ++j)
-    out.reading_twists.col(j) *= tip_->reading_noise()[std::size_t(j)];
+  if (repeatability_.independent > 0) displace_alone(sighting, out);
+  const Eigen::Index readings = reading_noise_ ? out.reading_twists.cols() : 0;
+  const int displacement = displacement_size(repeatability_);
+  out.random_twists.resize(6, readings + displacement);
+  for (Eigen::Index j = 0; j < readings; ++j)
+    out.random_twists.col(j) = tip_->reading_noise()[std::size_t(j)] * out.reading_twists.col(j);
+  displacement_of_a_visit(repeatability_, X.translation(), out.random_twists.rightCols(displacement));
   return true;
+}
+
+/// Each target, or each reading where there are none, moves on its own.
+void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, Linearisation& out) const {
+  out.rows.resize(rows_, 3);
+  measurement_->rows_of_twists(sighting, repeatability_.independent * Twists::Identity(6, 3), out.rows);
+  const Eigen::Index each = std::max(1, rows_per_target_);
+  for (Eigen::Index first = 0; first + each <= rows_; first += each) {
+    const auto own = out.rows.middleRows(first, each);
+    out.covariance.block(first, first, each, each) += own * own.transpose();
+  }
 }
 
 bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,
@@ -86,9 +103,9 @@ bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const doub
   Eigen::Isometry3d X;
   if (!twists_and_noise(p, selected, X, out)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
-  if (reading_noise_) {
-    out.rows.resize(rows_, out.reading_twists.cols());
-    measurement_->rows_of_twists(sighting, out.reading_twists, out.rows);
+  if (out.random_twists.cols() > 0) {
+    out.rows.resize(rows_, out.random_twists.cols());
+    measurement_->rows_of_twists(sighting, out.random_twists, out.rows);
     out.covariance.noalias() += out.rows * out.rows.transpose();
   }
   out.G.resize(rows_, Eigen::Index(selected.size()));
@@ -145,10 +162,10 @@ bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<c
   measurement_->rows_of_twists(sighting, about_tip, out.basis.leftCols<6>());
   out.coefficients.setZero(width, Eigen::Index(selected.size()));
   about_tip_origin(X.translation(), out.twists);
-  about_tip_origin(X.translation(), out.reading_twists);
+  about_tip_origin(X.translation(), out.random_twists);
   out.coefficients.topRows<6>() = out.twists;
-  out.reading_coefficients.setZero(width, out.reading_twists.cols());
-  out.reading_coefficients.topRows<6>() = out.reading_twists;
+  out.random_coefficients.setZero(width, out.random_twists.cols());
+  out.random_coefficients.topRows<6>() = out.random_twists;
   Eigen::Index next = 6;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     if (is_own_column_[std::size_t(selected[c])] == 0) continue;

@@ -77,8 +77,7 @@ CameraModel::CameraModel(const MeasurementSpec& spec)
     : spec_(std::get<CameraMeasurement>(spec.instrument)),
       X_CarrierCamera_(isometry(spec_.camera)),
       X_CarrierBoard_(isometry(spec_.board)),
-      repeats_(spec.repeats),
-      repeatability_(spec.repeatability) {
+      repeats_(spec.repeats) {
   for (int r = 0; r < spec_.rows; ++r)
     for (int c = 0; c < spec_.columns; ++c) points_.emplace_back(c * spec_.spacing, r * spec_.spacing, 0);
   for (std::size_t i = 1; i <= points_.size(); ++i)
@@ -163,14 +162,8 @@ void CameraModel::own_column(const Sighting& sighting, int index, Eigen::Ref<Eig
     column.segment<2>(2 * Eigen::Index(i)) = by_lens(X_CameraBoard * points_[i], s.lens, index - poses);
 }
 
-void CameraModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
+void CameraModel::covariance(const Sighting&, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   covariance.setZero();
-  if (repeatability_ > 0) {
-    // The tip stands a little elsewhere: the same for all points of the image.
-    Eigen::MatrixXd shifted(rows_, 3);
-    rows_of_twists(sighting, Twists::Identity(6, 3), shifted);
-    covariance.noalias() = repeatability_ * repeatability_ * shifted * shifted.transpose();
-  }
   covariance.diagonal().array() += spec_.sigma * spec_.sigma / repeats_;
 }
 

@@ -28,7 +28,7 @@ class CameraModel : public MeasurementModel {
   CameraMeasurement spec_;
   Eigen::Isometry3d X_CarrierCamera_, X_CarrierBoard_;
   std::vector<Eigen::Vector3d> points_;  // board frame
-  double repeats_, repeatability_;
+  double repeats_;
 };
 
 }  // namespace posewright

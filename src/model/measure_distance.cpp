@@ -8,9 +8,9 @@ constexpr double shortest = 1e-6;           // m
 
 }  // namespace
 
-double distance_variance(const DistanceMeasurement& spec, double d, double repeats, double repeatability) {
+double distance_variance(const DistanceMeasurement& spec, double d, double repeats) {
   const double sigma = spec.sigma + spec.sigma_per_m * d;
-  return sigma * sigma / repeats + repeatability * repeatability;
+  return sigma * sigma / repeats;
 }
 
 bool spans(const DistanceMeasurement& spec, double d) {
@@ -19,9 +19,7 @@ bool spans(const DistanceMeasurement& spec, double d) {
 }
 
 DistanceModel::DistanceModel(const MeasurementSpec& spec)
-    : spec_(std::get<DistanceMeasurement>(spec.instrument)),
-      repeats_(spec.repeats),
-      repeatability_(spec.repeatability) {
+    : spec_(std::get<DistanceMeasurement>(spec.instrument)), repeats_(spec.repeats) {
   rows_ = int(spec_.targets.size() * spec_.anchors.size());
   replaces_tool_ = true;
   unseen_reason_ = "distance out of range";
@@ -89,8 +87,7 @@ void DistanceModel::own_column(const Sighting& sighting, int index, Eigen::Ref<E
 void DistanceModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   covariance.setZero();
   for (int row = 0; row < rows_; ++row)
-    covariance(row, row) =
-        distance_variance(spec_, span_of(sighting, std::size_t(row)).between.norm(), repeats_, repeatability_);
+    covariance(row, row) = distance_variance(spec_, span_of(sighting, std::size_t(row)).between.norm(), repeats_);
 }
 
 bool DistanceModel::sees(const Sighting& sighting) const {

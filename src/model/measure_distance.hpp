@@ -27,11 +27,11 @@ class DistanceModel : public MeasurementModel {
   Span span_of(const Sighting& sighting, std::size_t row) const;
 
   DistanceMeasurement spec_;
-  double repeats_, repeatability_;
+  double repeats_;
 };
 
-/// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats + repeatability² (of each end that moves).
-double distance_variance(const DistanceMeasurement& spec, double d, double repeats, double repeatability);
+/// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats.
+double distance_variance(const DistanceMeasurement& spec, double d, double repeats);
 /// Whether the instrument can span d; distances under a micrometre have no direction.
 bool spans(const DistanceMeasurement& spec, double d);
 

@@ -5,10 +5,7 @@
 
 namespace posewright {
 PointsModel::PointsModel(const MeasurementSpec& spec)
-    : spec_(std::get<PointsMeasurement>(spec.instrument)),
-      places_(spec_.stations),
-      repeats_(spec.repeats),
-      repeatability_(spec.repeatability) {
+    : spec_(std::get<PointsMeasurement>(spec.instrument)), places_(spec_.stations), repeats_(spec.repeats) {
   rows_per_target_ = int(spec_.components.size());
   rows_ = int(spec_.targets.size() * spec_.components.size());
   stations_ = places_.names();
@@ -98,8 +95,8 @@ void PointsModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixX
   const Eigen::Isometry3d X_MeasureStation = places_.pose(sighting.station, station_part(sighting.correction));
   for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
     const Eigen::Vector3d from = target(sighting, t) - X_MeasureStation.translation();
-    Eigen::Matrix3d point = point_covariance(spec_.noise, X_MeasureStation.linear().transpose() * from) / repeats_;
-    point.diagonal().array() += repeatability_ * repeatability_;
+    const Eigen::Matrix3d point =
+        point_covariance(spec_.noise, X_MeasureStation.linear().transpose() * from) / repeats_;
     const Eigen::Index first = Eigen::Index(t) * width;
     for (Eigen::Index i = 0; i < width; ++i)
       for (Eigen::Index j = 0; j < width; ++j)

@@ -26,7 +26,7 @@ class PointsModel : public MeasurementModel {
 
   PointsMeasurement spec_;
   Stations places_;
-  double repeats_, repeatability_;
+  double repeats_;
 };
 
 }  // namespace posewright

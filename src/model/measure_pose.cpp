@@ -24,10 +24,7 @@ std::unique_ptr<MeasurementModel> points_of(const PoseMeasurement& pose) {
 }  // namespace
 
 PoseModel::PoseModel(const MeasurementSpec& spec)
-    : spec_(std::get<PoseMeasurement>(spec.instrument)),
-      points_(points_of(spec_)),
-      repeats_(spec.repeats),
-      repeatability_(spec.repeatability) {
+    : spec_(std::get<PoseMeasurement>(spec.instrument)), points_(points_of(spec_)), repeats_(spec.repeats) {
   rows_ = int(spec_.components.size());
   for (const int c : spec_.components)
     readings_.push_back({std::string("pose.") + displacement_names[std::size_t(c)], c < 3 ? "m" : "rad"});
@@ -72,11 +69,9 @@ void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const 
 void PoseModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   const Eigen::Matrix<double, 6, 6> full =
       points_ == nullptr ? spec_.covariance : fitted_pose_covariance(*points_, sighting.X_MeasureTip);
-  for (Eigen::Index i = 0; i < rows_; ++i) {
+  for (Eigen::Index i = 0; i < rows_; ++i)
     for (Eigen::Index j = 0; j < rows_; ++j)
       covariance(i, j) = full(spec_.components[std::size_t(i)], spec_.components[std::size_t(j)]) / repeats_;
-    if (spec_.components[std::size_t(i)] < 3) covariance(i, i) += repeatability_ * repeatability_;
-  }
 }
 
 }  // namespace posewright

@@ -26,7 +26,7 @@ class PoseModel : public MeasurementModel {
  private:
   PoseMeasurement spec_;
   std::unique_ptr<MeasurementModel> points_;  // of photogrammetry
-  double repeats_, repeatability_;
+  double repeats_;
   int turns_ = 0;  // how many of rx, ry, rz are read
 };
 

@@ -57,17 +57,16 @@ std::unique_ptr<IdentificationModel> observed(const Problem& problem, const Vari
   const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument);
   if (distance != nullptr && distance->anchors.empty())
     return std::make_unique<DistancePairModel>(std::move(tip), measurement);
-  return std::make_unique<ExplicitModel>(std::move(tip), make_measurement(measurement));
-}
-
-/// The problem without what cancels in a difference of two readings at one pose.
-Problem without_pose_errors(Problem problem) {
-  problem.measurement.repeatability = 0.0;
-  if (auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) arm->encoder_noise = 0.0;
-  return problem;
+  return std::make_unique<ExplicitModel>(std::move(tip), make_measurement(measurement), measurement.repeatability);
 }
 
 }  // namespace
+
+Problem without_pose_errors(Problem problem) {
+  problem.measurement.repeatability = {};
+  set_joint_noise(problem.robot, 0.0);
+  return problem;
+}
 
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant) {
   if (variant.convention != VariantSpec::Convention::frames && !std::holds_alternative<SerialArmSpec>(problem.robot))

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "posewright/model/elastic_chain.hpp"
+
 namespace posewright {
 
 bool matches(std::string_view pattern, std::string_view name) {
@@ -60,8 +62,7 @@ int ParameterNames::index_of(const std::string& name) const {
 std::string ParameterNames::allowed(const std::string& wanted) const {
   std::string names;
   for (const std::string& name : shown_) names += (names.empty() ? "parameters: " : ", ") + name;
-  // Those numbers followed the sorted positions and not the file's, so they cannot be taken for anything.
-  if (wanted.find(".compliance_") != std::string::npos)
+  if (is_numbered_place(wanted))
     return "compliances at listed positions are named by their place, no longer by a number; " + names;
   return names;
 }

@@ -19,6 +19,9 @@ constexpr double default_deformation_tolerance = 0.01;  // m of platform per m o
 // enough.
 constexpr int most_iterations = 200;
 
+// Parameters of the deformation: kappa, kappa_1 … kappa_6, K_11 … K_66.
+constexpr int first_of_matrix = 1 + leg_count;
+
 enum Entry { ax, ay, az, bx, by, bz, ux, uy, length };
 
 /// What the columns of leg parameters mean, in the order of the catalogue.
@@ -45,24 +48,30 @@ struct PlacedLeg {
   }
 };
 
-/// Deformation of the platform: lift of leg i's joint by the actuators.
+/// Deformation of the platform: lift of leg i's joint by how far the actuators stand from the reference.
 struct Deformation {
-  double kappa = 0.0;
-  std::array<double, 36> K{};
+  std::array<double, 36> K{};  // of all kinds together, row by row
   bool none = true;
 
   explicit Deformation(std::span<const double> correction) {
     if (correction.empty()) return;
-    kappa = correction[0];
-    std::copy_n(correction.begin() + 1, 36, K.begin());
+    std::copy_n(correction.begin() + first_of_matrix, 36, K.begin());
+    for (int i = 0; i < leg_count; ++i) K[std::size_t(7 * i)] += correction[0] + correction[std::size_t(1 + i)];
     none = std::all_of(correction.begin(), correction.end(), [](double x) { return x == 0; });
   }
-  double lift(int leg, std::span<const double> rho) const {
-    double sum = kappa * rho[std::size_t(leg)];
-    for (int j = 0; j < leg_count; ++j) sum += K[std::size_t(6 * leg + j)] * rho[std::size_t(j)];
+  double lift(int leg, std::span<const double> rho, const std::array<double, 6>& reference) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < leg_count; ++j) sum += K[std::size_t(6 * leg) + j] * (rho[j] - reference[j]);
     return sum;
   }
 };
+
+/// Which actuator lifts leg i's joint by parameter `index` of the deformation; −1: none does.
+int lifting_actuator(int index, int leg) {
+  if (index == 0) return leg;
+  if (index < first_of_matrix) return index - 1 == leg ? leg : -1;
+  return (index - first_of_matrix) / leg_count == leg ? (index - first_of_matrix) % leg_count : -1;
+}
 
 /// Slide that gives the leg its length: ‖q − ρu‖ = l, q = p + R b − a.
 bool slide_of(const PlacedLeg& leg, const Eigen::Vector3d& joint, double& rho) {
@@ -97,11 +106,13 @@ std::vector<Parameter> catalogue(const SixLegsSpec& spec) {
     }
   }
   if (spec.actuation == LegActuation::extend) return parameters;
-  parameters.push_back({"kappa", "1", 0.0, default_deformation_tolerance, Role::interest});
+  const auto deformation = [&](const std::string& name) {
+    parameters.push_back({name, "1", 0.0, default_deformation_tolerance, Role::interest});
+  };
+  deformation("kappa");
+  for (int i = 1; i <= leg_count; ++i) deformation("kappa_" + std::to_string(i));
   for (int i = 1; i <= leg_count; ++i)
-    for (int j = 1; j <= leg_count; ++j)
-      parameters.push_back(
-          {"K_" + std::to_string(i) + std::to_string(j), "1", 0.0, default_deformation_tolerance, Role::interest});
+    for (int j = 1; j <= leg_count; ++j) deformation("K_" + std::to_string(i) + std::to_string(j));
   return parameters;
 }
 
@@ -128,8 +139,12 @@ SixLegs::SixLegs(const SixLegsSpec& spec, const std::vector<CoordinateLimits>& p
   // A deforming platform is a model of its own, not a part of the geometry that `auto` chooses from.
   std::erase_if(geometric_, [&](const IdentificationModel::Preference& p) {
     const std::string& name = parameters_[std::size_t(p.parameter)].name;
-    return name == "kappa" || name.starts_with("K_");
+    return name.starts_with("kappa") || name.starts_with("K_");
   });
+  // A problem whose reference its actuators do not reach has no pose to plan; that is said where poses are drawn.
+  if (spec.actuation == LegActuation::slide &&
+      !SixLegs::do_inverse_kinematics(std::array<double, 6>{}, {}, reference_rho_))
+    reference_rho_.fill(0.0);
 }
 
 Eigen::Isometry3d SixLegs::platform_pose(std::span<const double> q) const {
@@ -167,7 +182,7 @@ bool SixLegs::do_inverse_kinematics(std::span<const double> q, std::span<const d
     }
     if (deformation.none || std::equal(rho.begin(), rho.end(), before.begin())) return true;
     std::copy(rho.begin(), rho.end(), before.begin());
-    for (int i = 0; i < leg_count; ++i) lift[std::size_t(i)] = deformation.lift(i, rho);
+    for (int i = 0; i < leg_count; ++i) lift[std::size_t(i)] = deformation.lift(i, rho, reference_rho_);
   }
   return true;  // alternates between neighbouring doubles
 }
@@ -201,7 +216,7 @@ void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, s
   for (int i = 0; i < leg_count; ++i) {
     const double slide = slides ? rho[std::size_t(i)] : 0.0, extension = slides ? 0.0 : rho[std::size_t(i)];
     const PlacedLeg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
-    const double lift = deformation.none ? 0.0 : deformation.lift(i, rho);
+    const double lift = deformation.none ? 0.0 : deformation.lift(i, rho, reference_rho_);
     const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift * Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d h = joint - leg.a - slide * leg.u, e = h.normalized();
     const Eigen::Vector3d e_platform = X.linear().transpose() * e;
@@ -217,15 +232,13 @@ void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, s
       double& value = out.parameter(i, Eigen::Index(c));
       if (j < 0) continue;
       if (j < first_deformation) value = j / per_leg_ == i ? column_entry(entries[std::size_t(j % per_leg_)]) : 0.0;
-      else if (j == first_deformation) value = -e_platform.z() * rho[std::size_t(i)];
-      else if ((j - first_deformation - 1) / leg_count == i)
-        value = -e_platform.z() * rho[std::size_t((j - first_deformation - 1) % leg_count)];
+      else if (const int by = lifting_actuator(j - first_deformation, i); by >= 0)
+        value = -e_platform.z() * (rho[std::size_t(by)] - reference_rho_[std::size_t(by)]);
     }
     // A twist (v, ω) moves the platform joint by v + ω × joint.
     out.platform.row(i) << -e.transpose(), -joint.cross(e).transpose();
     out.actuator(i, i) = slides ? leg.u.dot(e) : 1.0;
     if (deformation.none) continue;
-    out.actuator(i, i) -= deformation.kappa * e_platform.z();
     for (int j = 0; j < leg_count; ++j) out.actuator(i, j) -= deformation.K[std::size_t(6 * i + j)] * e_platform.z();
   }
 }

@@ -1,6 +1,7 @@
 #include "posewright/model/variant.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "parameter_names.hpp"
@@ -47,6 +48,14 @@ void for_each_value(const ParameterNames& names, const Problem& problem, const s
   }
 }
 
+/// Base, tool, targets, stations, anchors; a camera and its board but not the lens.
+bool places(const Parameter& p) {
+  constexpr std::array<const char*, 7> prefixes = {"base.",   "tool.",   "target.", "station.",
+                                                   "anchor.", "camera.", "board."};
+  return (p.unit == "m" || p.unit == "rad") &&
+         std::any_of(prefixes.begin(), prefixes.end(), [&](const char* prefix) { return p.name.starts_with(prefix); });
+}
+
 /// Free parameters of interest in the order written, or all geometric ones for `auto`.
 std::vector<int> interest_candidates(const IdentificationModel& model, const ParameterNames& names,
                                      const VariantSpec& variant) {
@@ -83,8 +92,10 @@ void apply_nominal(IdentificationModel& model, const Problem& problem, const Var
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
   const ParameterNames names(model, problem);
   std::vector<Parameter> all = model.parameters();
-  for_each_value(names, problem, variant.tolerance, all, "the tolerance",
-                 [&](int i, double value) { all[std::size_t(i)].tolerance = value; });
+  for_each_value(names, problem, variant.tolerance, all, "the tolerance", [&](int i, double value) {
+    all[std::size_t(i)].tolerance = value;
+    all[std::size_t(i)].tolerance_stated = true;
+  });
   std::vector<bool> is_nuisance(all.size(), false), is_fixed(all.size(), false);
   for (const auto& pattern : variant.nuisance)
     for (const int i : names.find(pattern)) is_nuisance[std::size_t(i)] = true;
@@ -101,6 +112,7 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
     Parameter label = all[std::size_t(i)];
     label.name = names.shown(i);
     label.role = role;
+    label.places = places(all[std::size_t(i)]);
     columns.selected.push_back(i);
     columns.parameters.push_back(std::move(label));
     columns.tiers.push_back(variant.automatic && tier.count(i) != 0 ? tier[i] : 0);

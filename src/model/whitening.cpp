@@ -33,13 +33,13 @@ void whiten_factored(Linearisation& s, BlockArray::Map& block) {
   }
   s.compression.compute(s.basis);
   const auto& r = s.compression.matrixQR();
-  s.rows.resize(block.rows(), s.reading_coefficients.cols());
+  s.rows.resize(block.rows(), s.random_coefficients.cols());
   for (Eigen::Index i = 0; i < block.rows(); ++i) {
     block.row(i) = r(i, i) * s.coefficients.row(i);
-    s.rows.row(i) = r(i, i) * s.reading_coefficients.row(i);
+    s.rows.row(i) = r(i, i) * s.random_coefficients.row(i);
     for (Eigen::Index k = i + 1; k < block.rows(); ++k) {
       block.row(i) += r(i, k) * s.coefficients.row(k);
-      s.rows.row(i) += r(i, k) * s.reading_coefficients.row(k);
+      s.rows.row(i) += r(i, k) * s.random_coefficients.row(k);
     }
   }
   if (s.rows.cols() == 0) return;

@@ -8,20 +8,21 @@
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/placement.hpp"
+#include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/pipeline/measured_data.hpp"
 #include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+#include "study.hpp"
 
 namespace posewright {
 namespace {
 
-// Shares of a column's norm below this are rounding: the dependency is exact.
-constexpr double exact_dependency = 1e-9;
-// A model that chance refuses this seldom is refused: its σ are stretched to the residuals.
-constexpr double refusal = 0.01;
 // Residuals so many times the noise are no robot's.
 constexpr double absurd = 1000.0;
+constexpr int random_configurations = 300;
+constexpr std::uint64_t everywhere_stream = 0xe3e7;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
 constexpr double prior_share = 1 / std::numbers::sqrt2;
 
@@ -35,8 +36,10 @@ class CalibrationRun {
         model_(make_model(problem_, spec_)) {
     result_.variant = spec_.name;
     result_.weighting = options.weighting;
-    result_.prior = options.prior || problem_.design.prior;
+    result_.prior = options.prior;
     read();
+    if (std::string warning = compensator_warning(problem_, model_->coordinates()); !warning.empty())
+      result_.notes.push_back(std::move(warning));
   }
 
   Calibration run() {
@@ -50,13 +53,18 @@ class CalibrationRun {
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
     report(1);
     result_.correction = result_.fit.correction;
-    if (!result_.fit.converged)
-      result_.notes.push_back("the estimate did not converge: are nominal base, tool and units right?");
+    result_.weakest = weakest_combination(result_.fit, columns_);
+    if (result_.fit.converged)
+      result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
+    note_end();
     result_.tests = test_residuals(result_.fit);
+    result_.tests.within = within_pose_correlation(*model_, columns_, fitted_, result_.fit);
     judge_noise();
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
-    result_.curvature.largest *= result_.sigma_factor;
     fill_parameters();
+    result_.orientations =
+        orientations(*model_, columns_, result_.fit,
+                     interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom));
     fill_residuals();
     report(2);
     return std::move(result_);
@@ -70,7 +78,7 @@ class CalibrationRun {
     result_.repeats = data.repeats;
     result_.spread = data.spread;
     result_.readings = model_->readings();
-    spread_freedom_ = data.spread_freedom;
+    repeated_ = std::move(data.repeated);
     if (data.rows > int(data.poses.size())) use_repeats(data.repeats);
     for (std::size_t k = 0; k < data.poses.size(); ++k) {
       const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
@@ -105,59 +113,84 @@ class CalibrationRun {
   /// Columns that these poses determine, judged where things stand: at the origin of the flange a target would say
   /// nothing of the wrist.
   void choose_columns(const VariantColumns& all) {
-    if (result_.prior && !all.automatic) {
-      columns_ = all;
-      return;
-    }
-    IdentifiabilityOptions options;
-    if (!all.automatic) options.threshold = exact_dependency;
-    options.tiers = all.tiers;
-    const Identifiability found = identifiability(blocks_of(*model_, all, fitted_, placed_), all.parameters, options);
-    columns_ = subset(all, found.kept);
     result_.automatic = all.automatic;
-    for (const Dependency& d : found.dependencies) {
-      CalibratedParameter left;
-      left.label = all.parameters[std::size_t(d.dropped)];
-      left.estimated = false;
-      left.value = left.lower = left.upper = left.label.nominal;
-      left.why_not = describe(d, all.parameters);
-      left_out_.push_back(std::move(left));
+    std::vector<Dependency> dependent;
+    if (result_.prior == Prior::none) {
+      columns_ =
+          determined(*model_, all, fitted_, placed_, Prior::none, &dependent, all.automatic ? 0.0 : exact_dependency);
+      leave_at_nominal(dependent, all);
+    } else {
+      VariantColumns wanted = all;
+      if (all.automatic) {
+        // What tells nothing new wherever the robot stands; what these poses alone do not tell, a tolerance does.
+        wanted = determined(*model_, all, everywhere(), placed_, Prior::none, &dependent);
+        leave_at_nominal(dependent, all);
+      }
+      columns_ = determined(*model_, wanted, fitted_, placed_, result_.prior, &dependent, exact_dependency);
+      leave_at_nominal(dependent, wanted);
     }
     if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
+  }
+
+  void leave_at_nominal(const std::vector<Dependency>& dependent, const VariantColumns& among) {
+    for (const Dependency& d : dependent) {
+      CalibratedParameter left;
+      left.label = among.parameters[std::size_t(d.dropped)];
+      left.estimated = false;
+      left.value = left.lower = left.upper = left.label.nominal;
+      left.why_not = describe(d, among.parameters);
+      left_out_.push_back(std::move(left));
+    }
+  }
+
+  /// The poses and random configurations within the limits.
+  std::vector<MeasuredPose> everywhere() const {
+    std::vector<MeasuredPose> poses = fitted_;
+    Random random(0, everywhere_stream);
+    for (int i = 0; i < random_configurations; ++i) {
+      MeasuredPose pose;
+      for (const Coordinate& c : model_->coordinates())
+        pose.q.push_back(c.discrete() ? c.values[std::size_t(random.uniform() * double(c.values.size()))]
+                                      : random.uniform(c.lower, c.upper));
+      // Without noise and limits of a cell: all that is asked is what tells one column from the others.
+      if (model_->measurable(pose.q) && model_->predict(pose.q, placed_, pose.y)) poses.push_back(std::move(pose));
+    }
+    return poses;
+  }
+
+  /// Why an estimate is not to be used.
+  void note_end() {
+    const std::string why = result_.weakest.empty() ? "" : ". Near dependence: " + result_.weakest;
+    const char* const remedy =
+        "; measure more or other poses (plan), estimate fewer parameters (observe), or state tolerances";
+    if (!result_.fit.converged)
+      result_.notes.push_back(result_.weakest.empty()
+                                  ? "the estimate did not converge: are nominal base, tool and units right?"
+                                  : "the estimate did not converge" + why + remedy);
+    else if (result_.left_out.refused())
+      result_.notes.push_back(fmt::format(
+          "poses that are left out are predicted no better by the estimate ({}) than with base and tool alone ({:.3g} "
+          "times the stated noise), or better by chance only: nothing shows that these parameters are better than the "
+          "nominal ones{}{}",
+          std::isfinite(result_.left_out.estimated) ? fmt::format("{:.3g}", result_.left_out.estimated)
+                                                    : result_.left_out.why_not,
+          result_.left_out.placed, why, remedy));
   }
 
   /// Whether residuals are larger than the noise allows; then σ follow the residuals.
   void judge_noise() {
     const Fit& fit = result_.fit;
-    // Prior terms and weights have no place in the comparison with the spread of readings.
-    if (fit.freedom > 0 && spread_freedom_ > 0 && !result_.prior && fit.weights.empty()) lack_of_fit();
+    if (!repeated_.empty()) {
+      Problem alone = without_pose_errors(problem_);
+      alone.measurement.repeats = 1;
+      result_.lack_of_fit =
+          lack_of_fit(*model_, *make_model(alone, spec_), problem_.measurement.repeats, fitted_, repeated_, fit);
+    }
     if (fit.scale > absurd)
       result_.notes.push_back(fmt::format(
           "residuals are {:.3g} times the stated noise: no robot's errors explain that. Are units, signs of the "
           "joints and the order of the targets right?",
           fit.scale));
-    if (!fit.scale_known || fit.freedom < 1) return;
-    // Tolerances do not grow with the noise, so with a prior nothing is stretched.
-    if (!result_.prior && fit.scale > 1 && chi_square_exceeded(fit.chi_square, fit.freedom) < refusal)
-      result_.sigma_factor = fit.scale;
-  }
-
-  /// Residuals of the means against the spread of the rows, both in σ of the rows: F of (freedom, rows − poses).
-  void lack_of_fit() {
-    double between = 0;
-    int count = 0;
-    for (const Eigen::VectorXd& pose : result_.fit.residuals)
-      for (Eigen::Index i = 0; i < pose.size(); ++i) {
-        const double spread = result_.spread[std::size_t(i)];
-        if (!std::isfinite(pose[i]) || !(spread > 0)) continue;
-        between += result_.repeats * (pose[i] / spread) * (pose[i] / spread);
-        ++count;
-      }
-    const int freedom = result_.fit.freedom;
-    if (count < result_.fit.readings || freedom < 1) return;
-    result_.lack_of_fit.statistic = between / freedom;
-    result_.lack_of_fit.probability = fisher_exceeded(result_.lack_of_fit.statistic, freedom, double(spread_freedom_));
-    result_.lack_of_fit.possible = true;
   }
 
   void fill_parameters() {
@@ -168,17 +201,18 @@ class CalibrationRun {
       CalibratedParameter p;
       p.label = columns_.parameters[j];
       p.value = p.label.nominal + result_.fit.change[k];
-      p.sigma = result_.sigma_factor * std::sqrt(result_.fit.covariance(k, k));
+      p.prior = counts(p.label, result_.prior);
+      p.sigma = std::sqrt(result_.fit.covariance(k, k));
       p.lower = p.value - stretch * p.sigma;
       p.upper = p.value + stretch * p.sigma;
-      p.weak = p.sigma > p.label.tolerance * (result_.prior ? prior_share : 1.0);
+      p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share : 1.0);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
     for (CalibratedValue& value : calibrated_values(problem_, spec_, *model_, result_.correction))
       result_.values.push_back({std::move(value), {}});
     for (std::size_t j = 0; j < columns_.selected.size(); ++j)
       result_.values[std::size_t(columns_.selected[j])].sigma =
-          result_.sigma_factor * std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
+          std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
     for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
     for (auto* more : {&nuisance, &left_out_})
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
@@ -193,7 +227,7 @@ class CalibrationRun {
 
   void fill_residuals() {
     const std::vector<double> nominal(model_->parameters().size(), 0.0);
-    const std::size_t placing = placing_columns(*model_, columns_).selected.size();
+    const std::size_t placing = placing_columns(columns_).selected.size();
     for (const auto& [which, poses] : {std::pair{"fitted", &fitted_}, std::pair{"held back", &held_back_}}) {
       add_set(which, "nominal", *poses, nominal);
       if (placing > 0 && placing < columns_.selected.size()) add_set(which, "placed", *poses, placed_);
@@ -220,11 +254,19 @@ class CalibrationRun {
   std::vector<MeasuredPose> fitted_, held_back_;
   std::vector<CalibratedParameter> left_out_;
   std::vector<double> placed_;
-  int spread_freedom_ = 0;
+  std::vector<RepeatedReadings> repeated_;
   Calibration result_;
 };
 
 }  // namespace
+
+const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter) {
+  const std::string& name = parameter.label.name;
+  for (const CalibratedOrientation& o : calibration.orientations)
+    for (const char* angle : {".rx", ".ry", ".rz"})
+      if (name == o.frame + angle) return &o;
+  return nullptr;
+}
 
 Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& options, const Monitor& monitor) {
   return CalibrationRun(problem, options, monitor).run();

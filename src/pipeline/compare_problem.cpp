@@ -81,7 +81,7 @@ class Comparing {
       const VariantColumns& columns = variant.columns();
       const Evaluation& e = judged_[plan][&variant] = evaluate(
           build_blocks(*variant.model, columns.selected, with_measured(poses_[plan]), settings_.planner.threads),
-          columns.parameters, settings_.prior, variant.scale);
+          columns.parameters, settings_.prior ? Prior::every : Prior::none, variant.scale);
       score.log_det = e.log_det;
       score.condition = e.condition;
       fill_sigma(score, columns, e);

@@ -24,9 +24,13 @@ BlockArray side_by_side(const std::vector<SearchPart>& parts) {
 }
 
 double DesignMeasure::phi(const std::vector<SearchPart>& parts) const {
-  const BlockArray raw = side_by_side(parts);
+  return parts.size() == 1 ? phi(parts.front().blocks) : phi(side_by_side(parts));
+}
+
+double DesignMeasure::phi(const BlockArray& blocks) const {
   // R is as ill-conditioned as the raw columns: it is solved for, one row after the other, and never inverted.
-  const Eigen::MatrixXd J = R_.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(raw.all().transpose()));
+  const Eigen::MatrixXd J =
+      R_.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(blocks.all().transpose()));
   Eigen::MatrixXd information = J * J.transpose();
   if (prior_.size() > 0) information += prior_;
   return criterion_->function().value(information) + offset_;

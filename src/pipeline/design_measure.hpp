@@ -19,7 +19,9 @@ class DesignMeasure {
   DesignMeasure(std::shared_ptr<const Criterion> criterion, Eigen::MatrixXd R, Eigen::MatrixXd prior, double offset)
       : criterion_(std::move(criterion)), R_(std::move(R)), prior_(std::move(prior)), offset_(offset) {}
 
-  /// Φ of the poses whose raw blocks the parts hold; −∞ where they do not identify all parameters.
+  /// Φ of the poses with these raw blocks; −∞ where they do not identify all parameters.
+  double phi(const BlockArray& blocks) const;
+  /// The same for blocks of several parts.
   double phi(const std::vector<SearchPart>& parts) const;
 
  private:

@@ -29,7 +29,8 @@ class ListEvaluation {
     prepared_ = prepare(problem, settings_, monitor);
     const std::vector<Coordinate>& coordinates = prepared_.first().workspace->coordinates();
     const PoseList list = poses(coordinates);
-    notes_ = list.notes;
+    notes_ = prepared_.notes;
+    notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
     note_parameters(list, problem, notes_);
     poses_.dimension = int(coordinates.size());
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
@@ -81,7 +82,8 @@ class ListEvaluation {
         throw InputError(
             {list.name, 0},
             fmt::format("pose {} is not feasible: {}", i + 1, variant.workspace->reasons()[std::size_t(reason)]),
-            notes_.size() > list.notes.size() ? notes_.back() : "poses within the workspace of the problem");
+            notes_.size() > prepared_.notes.size() + list.notes.size() ? notes_.back()
+                                                                       : "poses within the workspace of the problem");
   }
 
   double degree() const { return degree_ > 0 ? degree_ : 1.0; }

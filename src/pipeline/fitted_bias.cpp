@@ -19,7 +19,7 @@ std::optional<Eigen::VectorXd> fitted_bias(const PreparedVariant& fitted, const 
       measured.push_back(std::move(pose));
     }
     FitOptions options;
-    options.prior = prior;
+    options.prior = prior ? Prior::every : Prior::none;
     const Fit result = fit(*fitted.model, fitted.columns(), measured, options);
     if (!result.converged) return std::nullopt;
     Eigen::VectorXd bias = result.change;

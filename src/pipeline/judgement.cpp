@@ -24,7 +24,7 @@ Judgement judge(const Preparation& prepared, const Configurations& poses, const 
   for (const PreparedVariant& variant : prepared.variants)
     judgement.evaluations.push_back(
         evaluate(build_blocks(*variant.model, variant.columns().selected, all, settings.planner.threads),
-                 variant.columns().parameters, settings.prior, variant.scale));
+                 variant.columns().parameters, settings.prior ? Prior::every : Prior::none, variant.scale));
   const PreparedVariant& first = prepared.first();
   if (!first.test_points.empty())
     judgement.rho0 =

@@ -40,8 +40,7 @@ class Averaging {
   void finish() {
     if (!group_.empty()) close();
     data_.repeats = double(data_.poses.size()) / inverse_repeats_;
-    data_.spread_freedom = int(counts_.sum());
-    if (data_.spread_freedom == 0) return;
+    if (counts_.sum() == 0) return;
     for (Eigen::Index i = 0; i < squares_.size(); ++i)
       data_.spread.push_back(counts_[i] > 0 ? std::sqrt(squares_[i] / counts_[i])
                                             : std::numeric_limits<double>::quiet_NaN());
@@ -83,8 +82,10 @@ class Averaging {
 
   void add_spread(const Eigen::VectorXd& mean) {
     Eigen::VectorXd change, number = Eigen::VectorXd::Zero(mean.size());
+    RepeatedReadings visit{group_.front().q, Eigen::MatrixXd(mean.size(), Eigen::Index(group_.size()))};
     for (const Row& row : group_) {
       model_.difference(row.y, mean, change);
+      visit.deviations.col(&row - group_.data()) = change;
       for (Eigen::Index i = 0; i < mean.size(); ++i)
         if (std::isfinite(change[i])) {
           squares_[i] += change[i] * change[i];
@@ -92,6 +93,7 @@ class Averaging {
         }
     }
     counts_ += (number.array() - 1).max(0).matrix();
+    data_.repeated.push_back(std::move(visit));
   }
 
   double plain_mean(Eigen::Index i) const {

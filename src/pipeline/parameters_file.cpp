@@ -10,11 +10,10 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "written_plan.hpp"
 
 namespace posewright {
 namespace {
-
-constexpr std::uintmax_t parameters_size_limit = 200'000'000;
 
 std::filesystem::path find_near(const std::string& name, const std::filesystem::path& plan) {
   std::error_code code;
@@ -52,7 +51,7 @@ ParametersFile parameters_of(const Problem& problem) {
 ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   ParametersFile stated;
   try {
-    const auto json = parse_json(read_file(plan, parameters_size_limit));
+    const auto json = parse_json(read_file(plan, plan_size_limit));
     const nlohmann::json::json_pointer key("/problem/parameters");
     if (!json.is_object() || !json.contains(key)) return {};
     const auto& parameters = json.at(key);

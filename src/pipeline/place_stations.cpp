@@ -91,7 +91,7 @@ class Ranking {
     if (entry != nullptr && entry->several_variants)
       throw CannotDo("criterion " + criterion +
                      " compares plans with others of the same stations; choose one of one variant");
-    determinant_ = is_determinant(criterion);
+    determinant_ = entry != nullptr && entry->determinant;
   }
 
   std::vector<StationRank> rank() {

@@ -6,6 +6,7 @@
 #include "discrepancy.hpp"
 #include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/model/elastic_chain.hpp"
 #include "posewright/support/error.hpp"
 #include "read_poses.hpp"
 #include "study_space.hpp"
@@ -132,6 +133,8 @@ Preparation prepare(const Problem& problem, const Settings& settings, const Moni
     }
   }
 
+  if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
+    prepared.notes.push_back(std::move(warning));
   prepared.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
   prepared.has_minimum_distance = problem.design.minimum_distance.has_value();
   keep_away_from_measured(prepared, settings.repeats);

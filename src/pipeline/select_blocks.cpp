@@ -38,27 +38,13 @@ void require_enough(const BlockFile& file, const SelectOptions& options) {
                    " poses are needed");
 }
 
-/// @param scale  unit of every column; empty: 1
-/// @param prior  information that is there before; empty: none
-std::vector<SearchPart> one_part(const BlockArray& blocks, int nuisance, const Eigen::VectorXd& scale = {},
-                                 const Eigen::MatrixXd& prior = {}) {
-  std::vector<SearchPart> parts(1);
-  std::vector<int> all(blocks.count());
-  std::iota(all.begin(), all.end(), 0);
-  parts.front().blocks = blocks.subset(all);
-  parts.front().nuisance = nuisance;
-  parts.front().scale = scale.size() > 0 ? scale : Eigen::VectorXd::Ones(blocks.columns());
-  parts.front().prior = prior;
-  return parts;
-}
-
 void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation, const SearchResult& found) {
   plan.log_det = evaluation.log_det;
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;
   plan.condition = evaluation.condition;
   plan.certificate = found.certificate;
-  const double phi = found.measure->phi(one_part(found.chosen.front(), options.nuisance));
+  const double phi = found.measure->phi(found.chosen.front());
   plan.criterion_value = find_criterion(options.criterion)->shown(phi, evaluation.indices);
   certify(plan.certificate, phi, found.degree);
   for (std::size_t i = 0; i < found.design.members.size(); ++i) {
@@ -129,8 +115,15 @@ double value_of_blocks(const std::string& criterion, const BlockArray& blocks, c
   SearchRequest request;
   request.criterion = criterion;
   request.poses = int(blocks.count());
-  const auto measure = measure_of(one_part(blocks, nuisance, scale, prior), request, Monitor{});
-  return find_criterion(criterion)->shown(measure->phi(one_part(blocks, nuisance)), evaluation.indices);
+  std::vector<int> all(blocks.count());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<SearchPart> parts(1);
+  parts.front().blocks = blocks.subset(all);
+  parts.front().nuisance = nuisance;
+  parts.front().scale = scale.size() > 0 ? scale : Eigen::VectorXd::Ones(blocks.columns());
+  parts.front().prior = prior;
+  const auto measure = measure_of(std::move(parts), request, Monitor{});
+  return find_criterion(criterion)->shown(measure->phi(blocks), evaluation.indices);
 }
 
 }  // namespace posewright

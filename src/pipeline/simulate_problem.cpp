@@ -33,10 +33,9 @@ class Simulating {
         monitor_(monitor),
         spec_(find_variant(problem_, options.variant)),
         truth_spec_(options.truth.empty() ? spec_ : find_variant(problem_, options.truth)),
-        fitted_(variant(spec_)),
-        truth_(variant(truth_spec_)) {
+        fitted_(variant(problem_, spec_)),
+        truth_(variant(with_truth_noise(problem_, options.truth_noise), truth_spec_)) {
     experiment_.options = options.experiment;
-    experiment_.options.fit.prior = problem.design.prior;
     experiment_.model = fitted_.model.get();
     experiment_.columns = fitted_.columns;
     experiment_.one_catalogue = one_catalogue(*fitted_.model, *truth_.model);
@@ -65,13 +64,13 @@ class Simulating {
   }
 
  private:
-  VariantModel variant(const VariantSpec& spec) const {
+  VariantModel variant(const Problem& problem, const VariantSpec& spec) const {
     VariantModelOptions wanted;
     wanted.variant = spec.name;
     wanted.candidates = options_.candidates;
     wanted.seed = options_.experiment.seed;
     wanted.threads = options_.experiment.threads;
-    return make_variant_model(problem_, wanted, monitor_);
+    return make_variant_model(problem, wanted, monitor_);
   }
 
   void take_poses(const PoseSource& plan) {

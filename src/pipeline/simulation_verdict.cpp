@@ -132,6 +132,7 @@ class Verdict {
     if (s_.curvature.largest > curvature_limit) curved();
     if (s_.truth != s_.variant)
       say("because: the readings come from " + s_.truth + ", whose effects " + s_.variant + " takes up in its own");
+    if (options_.truth_noise.differs()) say("because: the measured robot has other noise than the problem states");
     if (experiment.outliers > 0)
       say(fmt::format("because: {:.3g} % of the targets carry gross errors, which no prediction counts",
                       100 * experiment.outliers));
@@ -139,7 +140,7 @@ class Verdict {
       say("because: robust weights cost some of the information, about 5 % in σ² of single readings");
     if (experiment.fit.weighting == Weighting::ordinary)
       say("because: equal weights are not those of the noise where readings differ in it");
-    if (experiment.fit.prior && experiment.exact)
+    if (experiment.fit.prior != Prior::none && experiment.exact)
       say("because: tolerances count as knowledge, but no true parameter is off");
     if (!experiment.exact) other_places();
     if (words_.size() == before) say("no cause of this shows in the figures");

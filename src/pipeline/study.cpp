@@ -9,12 +9,10 @@ namespace {
 
 // Enough configurations for any structural dependency to show; more only cost time.
 constexpr std::size_t structural_sample = 400;
-// Shares of a column's norm below this are rounding: the dependency is exact.
-constexpr double exact_column = 1e-9;
 
 IdentifiabilityOptions exact_options() {
   IdentifiabilityOptions options;
-  options.threshold = exact_column;
+  options.threshold = exact_dependency;
   return options;
 }
 

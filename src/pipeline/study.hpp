@@ -14,6 +14,9 @@
 
 namespace posewright {
 
+/// Shares of a column's norm below this are rounding: the dependency is exact.
+inline constexpr double exact_dependency = 1e-9;
+
 /// Robot, workspace and candidates of a problem: what every command about a problem file starts from.
 struct Study {
   std::unique_ptr<IdentificationModel> model;

@@ -39,7 +39,28 @@ std::vector<int> robot_parameters(const IdentificationModel& seen, const Identif
   return from;
 }
 
+/// Joints of a serial arm may be of either kind.
+void require_unit_of_joints(const Measured& noise, const RobotSpec& robot) {
+  if (std::holds_alternative<SerialArmSpec>(robot) || !(noise.value > 0)) return;
+  const Quantity quantity = std::holds_alternative<SixLegsSpec>(robot) ? Quantity::length : Quantity::angle;
+  if (noise.quantity != quantity)
+    throw InputError({}, "the noise of the true robot's joints has the wrong unit",
+                     "allowed: " + allowed_units({quantity}));
+}
+
 }  // namespace
+
+Problem with_truth_noise(Problem problem, const TruthNoise& noise) {
+  Repeatability& repeatability = problem.measurement.repeatability;
+  // A length that is stated anew says how the tip stands off; what the problem says of its turning stays.
+  repeatability.translation = noise.repeatability.value_or(repeatability.translation);
+  repeatability.independent = noise.independent.value_or(0.0);
+  if (noise.joints) {
+    require_unit_of_joints(*noise.joints, problem.robot);
+    set_joint_noise(problem.robot, noise.joints->value);
+  }
+  return problem;
+}
 
 std::vector<std::vector<double>> same_actuators(const IdentificationModel& from, const IdentificationModel& to,
                                                 const std::vector<std::vector<double>>& configurations) {

@@ -7,9 +7,13 @@
 #include "posewright/calibration/experiment.hpp"
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/pipeline/simulate_problem.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+/// The problem with the noise that the measured robot has.
+Problem with_truth_noise(Problem problem, const TruthNoise& noise);
 
 /// Where robot `to` stands when its actuators (the joints of an arm) are as those of `from` at each configuration.
 /// Throws CannotDo where it cannot, or where the two have different coordinates.

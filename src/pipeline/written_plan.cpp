@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
@@ -14,13 +15,6 @@ using Json = nlohmann::json;
 
 [[noreturn]] void throw_no_plan(const std::filesystem::path& file) {
   throw InputError({file.string(), 0}, "is no plan of a robot", "plan.json as posewright plan writes it");
-}
-
-/// "joint_a2.compliance_3": names that are not written any more.
-bool has_number_of_place(const std::string& name) {
-  const std::string numbered = ".compliance_";
-  const auto at = name.find(numbered);
-  return at != std::string::npos && name.find_first_not_of("0123456789", at + numbered.size()) == std::string::npos;
 }
 
 PlanOptions options_of(const Json& plan) {
@@ -55,7 +49,7 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
       throw_no_plan(file);
     plan.options = options_of(json);
     for (const Json& parameter : json.at("parameters"))
-      if (const auto name = parameter.at("name").get<std::string>(); has_number_of_place(name))
+      if (const auto name = parameter.at("name").get<std::string>(); is_numbered_place(name))
         throw InputError({file.string(), 0},
                          "was made when compliances at listed positions were numbered: '" + name + "'",
                          "plan again; the numbers followed the sorted positions, so they cannot be taken over");

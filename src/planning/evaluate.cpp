@@ -21,11 +21,13 @@ void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& p
 
 }  // namespace
 
-Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, bool prior,
+Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, Prior prior,
                     const Eigen::VectorXd& scale) {
   const auto m = Eigen::Index(chosen.columns());
   const Eigen::Index measured = chosen.all().rows();
-  Eigen::MatrixXd g(measured + (prior ? m : 0), m);
+  const auto known =
+      std::count_if(parameters.begin(), parameters.end(), [&](const auto& p) { return counts(p, prior); });
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(measured + known, m);
   g.topRows(measured) = chosen.all();
   if (g.rows() < m)
     throw CannotDo(std::to_string(chosen.count()) + " poses give " + std::to_string(g.rows()) + " equations for " +
@@ -35,7 +37,9 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   Eigen::VectorXd tolerance(m);
   for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
 
-  if (prior) g.bottomRows(m) = tolerance.cwiseInverse().asDiagonal();
+  Eigen::Index row = measured;
+  for (Eigen::Index j = 0; j < m; ++j)
+    if (counts(parameters[std::size_t(j)], prior)) g(row++, j) = 1 / tolerance[j];
 
   // Columns in units of their tolerance, so that pivots can be compared across m and rad.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(g * tolerance.asDiagonal());

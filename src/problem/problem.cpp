@@ -9,4 +9,16 @@ Problem& Problem::operator=(const Problem&) = default;
 Problem& Problem::operator=(Problem&&) noexcept = default;
 Problem::~Problem() = default;
 
+namespace {
+
+struct SetJointNoise {
+  double sigma;
+  void operator()(SixLegsSpec& robot) const { robot.actuator_noise = sigma; }
+  void operator()(auto& robot) const { robot.encoder_noise = sigma; }
+};
+
+}  // namespace
+
+void set_joint_noise(RobotSpec& robot, double sigma) { std::visit(SetJointNoise{sigma}, robot); }
+
 }  // namespace posewright

@@ -29,7 +29,7 @@ LoadCaseSpec read_load(const std::string& name, const Value& value) {
 
 CompensatorSpec read_compensator(const Value& value) {
   const Section section(value);
-  section.allow({"joint", "L", "ax", "ay", "stiffness", "free_length", "joint_stiffness"});
+  section.allow({"joint", "L", "ax", "ay", "stiffness", "free_length", "joint_stiffness", "effect"});
   CompensatorSpec spec;
   spec.joint = section.at("joint").exact_name();
   spec.L = section.at("L").number(Quantity::length, Sign::positive);
@@ -41,6 +41,7 @@ CompensatorSpec read_compensator(const Value& value) {
   spec.stiffness = section.at("stiffness").number(Quantity::stiffness, Sign::positive);
   spec.free_length = section.at("free_length").number(Quantity::length, Sign::not_negative);
   spec.joint_stiffness = section.at("joint_stiffness").number(Quantity::number, Sign::positive);
+  if (const Value* effect = section.find("effect")) spec.torque = effect->choice({"stiffness", "torque"}) == "torque";
   return spec;
 }
 

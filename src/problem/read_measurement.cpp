@@ -150,13 +150,22 @@ PointsMeasurement read_points(const Section& section, bool single) {
   return points;
 }
 
-/// m; beside a noise in pixels or angles a plain number may be meant in those, so it needs its unit.
-double read_repeatability(const Value& value, const std::string& type) {
+/// {position, rotation}, or the position alone. Beside a noise in pixels a plain number may be meant in those, so it
+/// needs its unit.
+Repeatability read_repeatability(const Value& value, const std::string& type) {
+  if (value.is_mapping()) {
+    const Section section(value);
+    section.allow({"position", "rotation"});
+    Repeatability both = read_repeatability(section.at("position"), type);
+    if (const Value* rotation = section.find("rotation"))
+      both.rotation = rotation->number(Quantity::angle, Sign::not_negative);
+    return both;
+  }
   const Measured given = value.measured({Quantity::length}, Sign::not_negative);
   if (type == "camera" && given.quantity == Quantity::number && given.value > 0)
     value.fail("is a plain number beside a noise in pixels",
                "how far the robot stands off, with its unit: " + allowed_units({Quantity::length}));
-  return given.value;
+  return {given.value, 0.0, 0.0};
 }
 
 }  // namespace

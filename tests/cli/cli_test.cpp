@@ -71,7 +71,7 @@ TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   EXPECT_EQ(folder.count_files(), 0U);
   const ProgramRun observe = run_program(folder.path(), {"observe", telescope, "--candidates", "300", "--json"});
   const auto json = nlohmann::json::parse(observe.out);
-  EXPECT_EQ(json["variants"].size(), 7U);
+  EXPECT_EQ(json["variants"].size(), 8U);
   EXPECT_EQ(json["variants"][0]["rank"], 42);
 }
 
@@ -110,7 +110,8 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"plan", telescope, "--time-limit", "soon"}, 2, "--time-limit soon"},
       {{"plan", telescope, "--variant", "none"},
        2,
-       "has no variant 'none'; variants: rigid, rigid_6, linear, matrix, all_free, kappa_and_ux, row_of_K"},
+       "has no variant 'none'; variants: rigid, rigid_6, linear, linear_common, matrix, all_free, kappa_and_ux, "
+       "row_of_K"},
       {{"plan", telescope, "--criterion", "o9"}, 2, "unknown criterion 'o9'; available: o1"},
       {{"plan", telescope, "--method", "magic"}, 2, "unknown method 'magic'; available: auto, exchange"},
       {{"plan", telescope, "--repeats", "maybe"}, 2, "--repeats maybe; allowed: allow, forbid"},

@@ -70,7 +70,7 @@ using LoopOracle =
 std::vector<Jet> leg_loops(const SixLegsSpec& spec, std::span<const double> q, std::span<const double> rho,
                            const std::vector<Jet>& d) {
   const bool slides = spec.actuation == LegActuation::slide;
-  const std::size_t per_leg = slides ? 9 : 7, own = slides ? 54 + 37 : 42;
+  const std::size_t per_leg = slides ? 9 : 7, own = slides ? 54 + 43 : 42;
   const Eigen::Isometry3d X = SixLegs(spec, {}).platform(q);
   Frame<Jet> frame;
   frame.then(Eigen::Isometry3d(Eigen::Translation3d(X.translation())));
@@ -81,6 +81,10 @@ std::vector<Jet> leg_loops(const SixLegsSpec& spec, std::span<const double> q, s
   for (int k = 0; k < 3; ++k) p[k] = frame.p[k];
   for (int k = 0; k < 9; ++k) r[k] = frame.R(k / 3, k % 3);
   for (std::size_t i = 0; i < 6; ++i) actuator[i] = d[own + 6 + i] + rho[i];
+  std::vector<double> reference(6, 0.0);
+  if (slides) {
+    EXPECT_TRUE(SixLegs(spec, {}).actuator_values(std::vector<double>(6, 0.0), {}, reference));
+  }
   std::vector<Jet> g;
   for (std::size_t i = 0; i < 6; ++i) {
     const LegSpec& leg = spec.legs[i];
@@ -94,8 +98,10 @@ std::vector<Jet> leg_loops(const SixLegsSpec& spec, std::span<const double> q, s
     parameters.l = c[per_leg - 1] + leg.l;
     Jet lift(0.0);
     if (slides) {
-      lift = d[54] * actuator[i];
-      for (std::size_t j = 0; j < 6; ++j) lift += d[55 + 6 * i + j] * actuator[j];
+      // How far each actuator stands from where the nominal robot's stands at the reference.
+      const auto change = [&](std::size_t j) { return actuator[j] - Jet(reference[j]); };
+      lift = (d[54] + d[55 + i]) * change(i);
+      for (std::size_t j = 0; j < 6; ++j) lift += d[61 + 6 * i + j] * change(j);
     }
     g.push_back(leg_residual<Jet>(p, r, slides ? actuator[i] : Jet(0.0), slides ? Jet(0.0) : actuator[i], lift,
                                   parameters, 1.0));
@@ -139,7 +145,7 @@ TEST(SixLegs, LoopDerivativesEqualAutomaticDifferentiation) {
   for (const double size : {0.0, 1.0}) {
     const SixLegsSpec spec = inclined_telescope();
     compare_loops(
-        SixLegs(spec, limits()), 91, [&](auto q, auto rho, const auto& d) { return leg_loops(spec, q, rho, d); }, size);
+        SixLegs(spec, limits()), 97, [&](auto q, auto rho, const auto& d) { return leg_loops(spec, q, rho, d); }, size);
   }
 }
 

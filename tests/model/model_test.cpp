@@ -37,12 +37,13 @@ TEST(Whitening, BlockTransposedTimesBlockIsGWeightedByTheInverseCovariance) {
 TEST(Whitening, RepeatsDivideTheReadingNoiseButNotWhatStaysAtAPose) {
   Problem problem = example("kr270/problem.yaml");
   problem.measurement.repeats = 4;
-  problem.measurement.repeatability = 3e-5;
+  problem.measurement.repeatability.translation = 3e-5;
   const auto model = make_model(problem);
   Linearisation scratch;
   ASSERT_TRUE(model->linearise(std::vector<double>{0.1, -1, 0.5, 0, 0.3, 0}, {}, std::vector<int>{0}, scratch));
   EXPECT_NEAR(scratch.covariance(4, 4), 1e-8 / 4 + 9e-10, 1e-20);
   EXPECT_EQ(scratch.covariance(4, 3), 0);
+  EXPECT_NEAR(scratch.covariance(4, 1), 9e-10, 1e-20) << "all targets stand off alike";
 }
 
 TEST(Whitening, EncoderNoiseEntersThroughTheJointTwists) {

@@ -66,8 +66,9 @@ def joints_of(urdf, tip):
 AXES = ["x", "y", "z", "rx", "ry", "rz"]
 
 
-def readings(chain, targets, q, change):
-    """Positions of all targets; `change`: parameter name → what it differs by from its nominal value."""
+def readings(chain, targets, q, change, off=np.zeros(6)):
+    """Positions of all targets; `change`: parameter name → what it differs by from its nominal value; `off`: how far the
+    tip stands off, a translation and a rotation about itself in the axes of the measurement frame."""
     of = lambda name: [change.get(f"{name}.{axis}", 0.0) for axis in AXES]
     X, k = displaced(of("base")), 0
     for name, X_ParentJoint, axis in chain:
@@ -78,8 +79,29 @@ def readings(chain, targets, q, change):
         X = X @ frame(R=rotation(axis, q[k] * gear + change.get(f"{name}.offset", 0.0)))
         k += 1
     X = X @ displaced(of("tool"))
+    X[:3, 3] += off[:3]
+    if np.any(off[3:]):
+        X[:3, :3] = rotation(off[3:], np.linalg.norm(off[3:])) @ X[:3, :3]
     points = [np.append(p + [change.get(f"target.{n}.{a}", 0.0) for a in "xyz"], 1) for n, p in targets.items()]
     return np.concatenate([(X @ p)[:3] for p in points])
+
+
+def derivative(f, size, h=1e-5):
+    """Central differences of f by each of its `size` arguments."""
+    return np.array([(f(h * e) - f(-h * e)) / (2 * h) for e in np.eye(size)]).T
+
+
+def covariance_at(problem, chain, targets, q):
+    """Of all readings at q: the instrument's over the repeats; one displacement of the tip, common to all; the joints'."""
+    measurement = problem["measurement"]
+    noise = si(measurement["device"]["noise"]) / np.sqrt(measurement.get("repeats", 1))
+    V = noise**2 * np.eye(3 * len(targets))
+    stays = measurement.get("repeatability", 0)
+    stays = stays if isinstance(stays, dict) else {"position": stays}
+    size = np.repeat([si(stays["position"]), si(stays.get("rotation", 0))], 3)
+    A = derivative(lambda off: readings(chain, targets, q, {}, off), 6) * size
+    J = derivative(lambda step: readings(chain, targets, np.add(q, step), {}), len(q)) * si(problem["robot"].get("encoder_noise", 0))
+    return V + A @ A.T + J @ J.T
 
 
 def check(problem_file, plan_file):
@@ -88,7 +110,6 @@ def check(problem_file, plan_file):
     chain = joints_of(problem_file.parent / problem["robot"]["urdf"], problem["robot"]["tip"])
     measurement = problem["measurement"]
     targets = {n: np.array([si(v) for v in p]) for n, p in measurement["targets"].items()}
-    noise = si(measurement["device"]["noise"]) / np.sqrt(measurement.get("repeats", 1))
     used = [p for p in plan["parameters"] if p["identifiable"]]
     G = []
     for pose in plan["poses"]:
@@ -96,7 +117,7 @@ def check(problem_file, plan_file):
         for p in used:
             name, h = own.get(p["name"], p["name"]), 1e-5
             columns.append((readings(chain, targets, q, {name: h}) - readings(chain, targets, q, {name: -h})) / (2 * h))
-        G.append(np.array(columns).T / noise)
+        G.append(np.linalg.solve(np.linalg.cholesky(covariance_at(problem, chain, targets, q)), np.array(columns).T))
     G = np.vstack(G)
     scale = np.array([p["tolerance"] for p in used])
     interest = np.array([p["role"] == "interest" for p in used])
@@ -132,6 +153,12 @@ def random_arm(folder, random):
                                "device": {"type": "isotropic", "noise": f"{random.uniform(0.02, 0.2):.3f} mm"}},
                "variants": {"all": {"parameters": "auto", "nuisance": ["base.*", "target.*"]}},
                "design": {"poses": 9}}
+    # A robot that stands off at a visit and joints that err: two of three arms have the one, half the other.
+    if random.random() < 2 / 3:
+        problem["measurement"]["repeatability"] = {"position": f"{random.uniform(0.01, 0.2):.3f} mm",
+                                                   "rotation": f"{random.uniform(0, 0.2):.3f} mrad"}
+    if random.random() < 0.5:
+        problem["robot"]["encoder_noise"] = f"{random.uniform(0.01, 0.2):.3f} mrad"
     (folder / "problem.yaml").write_text(yaml.safe_dump(problem))
 
 

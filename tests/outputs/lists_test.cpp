@@ -97,19 +97,19 @@ TEST(PoseLists, SlidingJointsAreMillimetresBesideDegreesAndMetresBesideRadians) 
 }
 
 TEST(PoseLists, ATrajectoryMovesNoFasterThanTheRouteSays) {
-  const PoseSequence route = random_route(6, 5, 4);
+  const PoseSequence planned = random_route(6, 5, 4);
   ExportOptions options;
   options.settle = 1;
   options.wait = 2;
-  const YAML::Node root = YAML::Load(find_pose_format("joint-trajectory").write(route, options).files[0].bytes);
+  const YAML::Node root = YAML::Load(find_pose_format("joint-trajectory").write(planned, options).files[0].bytes);
   const auto time = [&](std::size_t i) {
     const YAML::Node t = root["points"][i]["time_from_start"];
     return t["sec"].as<double>() + 1e-9 * t["nanosec"].as<double>();
   };
-  const Path path = path_of(route);
+  const Path path = path_of(planned);
   std::size_t point = 0;  // of the trajectory: home, then via points and poses twice
   EXPECT_DOUBLE_EQ(time(0), 5.0);
-  for (const SequenceMotion& motion : route.motions) {
+  for (const SequenceMotion& motion : planned.motions) {
     const double start = time(point);
     point += motion.points.size() - 1;
     EXPECT_GE(time(point) - start, 1.5 * motion.seconds * (1 - 1e-9)) << "a cubic peaks at 1.5 times its mean speed";

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
+#include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/pipeline/observe_problem.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
@@ -83,7 +86,7 @@ double sigma_of(const Observation& o, const std::string& name) {
 
 TEST(Telescope, KappaAndUxHideBehindEachOther) {
   const Observation together = observed("telescope/problem.yaml", "kappa_and_ux"),
-                    alone = observed("telescope/problem.yaml", "linear");
+                    alone = observed("telescope/problem.yaml", "linear_common");
   EXPECT_GT(sigma_of(together, "kappa"), 5 * sigma_of(alone, "kappa"));
   bool named = false;
   for (const Dependency& d : together.practical->near) {
@@ -101,6 +104,43 @@ TEST(Telescope, KappaAndUxHideBehindEachOther) {
       EXPECT_EQ(recommended, name == "kappa") << name;
     }
   }
+}
+
+TEST(Telescope, TheOtherSurrogateHasTheWholeWorkspaceWithinTheStrokeAndThePublishedAccuracy) {
+  const auto model =
+      make_model(read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples/telescope/within_stroke.yaml"));
+  const std::array<double, 5> half = {2e-3, 2e-3, 0.2e-3, M_PI / 180, M_PI / 180};
+  double worst = 0, stroke = 0;
+  for (int corner = 0; corner < 32; ++corner) {
+    std::vector<double> q(6, 0.0), rho(6), least(6);
+    for (std::size_t k = 0; k < 5; ++k) q[k] = (corner >> k & 1) != 0 ? half[k] : -half[k];
+    // The mirror may turn about its axis as it likes.
+    double need = 1;
+    for (int turn = -30; turn <= 30; ++turn) {
+      q[5] = 0.1 * turn * M_PI / 180;
+      ASSERT_TRUE(model->actuator_values(q, rho));
+      double most = 0;
+      for (const double r : rho) most = std::max(most, std::abs(r));
+      if (most < need) need = most, least = q;
+    }
+    stroke = std::max(stroke, need);
+    // ∂ρ/∂(position, rotation) by differences; its inverse times every combination of ±1 µm.
+    Eigen::Matrix<double, 6, 6> J;
+    for (std::size_t k = 0; k < 6; ++k) {
+      std::vector<double> ahead = least, behind = least, a(6), b(6);
+      ahead[k] += 1e-6, behind[k] -= 1e-6;
+      ASSERT_TRUE(model->actuator_values(ahead, a) && model->actuator_values(behind, b));
+      for (std::size_t i = 0; i < 6; ++i) J(Eigen::Index(i), Eigen::Index(k)) = (a[i] - b[i]) / 2e-6;
+    }
+    const Eigen::Matrix<double, 6, 6> inverse = J.inverse();
+    for (int signs = 0; signs < 64; ++signs) {
+      Eigen::Matrix<double, 6, 1> error;
+      for (int i = 0; i < 6; ++i) error[i] = (signs >> i & 1) != 0 ? 1e-6 : -1e-6;
+      worst = std::max(worst, (inverse * error).head<3>().norm());
+    }
+  }
+  EXPECT_LT(stroke, 1.305e-3);
+  EXPECT_NEAR(worst, 6e-6, 0.1e-6);
 }
 
 TEST(Telescope, AFreeRowOfKCannotBeToldFromItsOwnLeg) {

@@ -9,9 +9,8 @@
 #include "posewright/pipeline/evaluate_problem.hpp"
 #include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/pipeline/select_blocks.hpp"
-#include "posewright/problem/read_problem.hpp"
+#include "tests/kit/example_problems.hpp"
 #include "tests/kit/random_blocks.hpp"
-#include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
 
@@ -19,20 +18,21 @@ std::unique_ptr<Criterion> make_squared_variances(const CriterionData& data);  /
 
 namespace {
 
-constexpr const char* five_bar = R"(posewright: 1
-robot:
-  model: five_bar
-  encoder_noise: "0.005 deg"
-  legs:
-    - {base: ["-150 mm", 0], proximal: "250 mm", distal: "350 mm", elbow: left}
-    - {base: ["150 mm", 0],  proximal: "250 mm", distal: "350 mm", elbow: right}
-  range: {x: ["-200 mm", "200 mm"], y: ["250 mm", "500 mm"]}
-measurement: {type: joints, device: {type: isotropic, noise: "0.01 deg"}}
-variants:
-  few: {parameters: ["leg_?.proximal", "leg_?.offset"], tolerance: {"*offset": "0.5 deg"}}
-  all: {parameters: ["leg_?.proximal", "leg_?.distal", "leg_?.offset", "leg_?.sensor_offset"], tolerance: {"*offset": "0.5 deg"}}
-design: {variant: few, poses: 9, candidates: 80, restarts: 1, method: exchange, test_poses: {random: 4}}
-)";
+/// The five-bar of the examples with a variant that has less, few candidates and test poses.
+Problem five_bar() {
+  Problem problem = example("five_bar/problem.yaml");
+  VariantSpec few = problem.variants.front();
+  few.name = "few";
+  few.parameters = {{"leg_?.proximal", 1}, {"leg_?.offset", 1}};
+  problem.variants = {few, problem.variants.front()};
+  problem.design.poses->value = 9;
+  problem.design.candidates.value = 80;
+  problem.design.restarts.value = 1;
+  problem.design.method.value = "exchange";
+  problem.design.test_poses = TestPosesSpec{};
+  problem.design.test_poses->random = 4;
+  return problem;
+}
 
 /// The rows of the table, before anything is added.
 const std::vector<CriterionEntry>& own_rows() {
@@ -54,11 +54,10 @@ class RegisteredCriteria : public testing::Test {
   Plan plan(const std::string& criterion) const {
     PlanOptions options;
     options.criterion = criterion;
-    if (find_criterion(criterion)->needs_truth) options.truth = "all";
+    if (find_criterion(criterion)->needs_truth) options.truth = "links_and_offsets";
     return plan_problem(problem_, options, Monitor{});
   }
-  TemporaryFolder folder_;
-  Problem problem_ = read_problem(folder_.write("p.yaml", five_bar));
+  Problem problem_ = five_bar();
 };
 
 TEST_F(RegisteredCriteria, OfAnyNameGiveThePlanValueBoundAndEfficiencyOfTheirOwnFunction) {
@@ -78,7 +77,7 @@ TEST_F(RegisteredCriteria, OfAnyNameAreScoredAlikeInAListThatIsGiven) {
   for (const CriterionEntry& entry : own_rows()) another_name(entry);
   EvaluateOptions options;
   options.plan.criterion = "registered_a";
-  options.plan.truth = "all";
+  options.plan.truth = "links_and_offsets";
   const PoseListEvaluation e = evaluate_problem(problem_, poses_of(made), options, Monitor{});
   const auto score = [&](const std::string& name) {
     for (const CriterionScore& s : e.scores)

@@ -33,7 +33,7 @@ TEST(Prior, EvaluationCountsEveryToleranceAsOneMoreMeasurement) {
   Eigen::MatrixXd m = blocks.all().transpose() * blocks.all();
   m += tolerances(parameters).cwiseAbs2().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd covariance = m.inverse();
-  const Evaluation e = evaluate(blocks, parameters, true);
+  const Evaluation e = evaluate(blocks, parameters, Prior::every);
   for (int j = 0; j < 7; ++j) {
     EXPECT_NEAR(e.sigma[j], std::sqrt(covariance(j, j)), 1e-12);
     EXPECT_LT(e.sigma[j], parameters[std::size_t(j)].tolerance);
@@ -48,7 +48,7 @@ double best_of_three(const BlockArray& blocks, const std::vector<Parameter>& par
   for (int a = 0; a < 8; ++a)
     for (int b = a + 1; b < 8; ++b)
       for (int c = b + 1; c < 8; ++c)
-        best = std::max(best, evaluate(blocks.subset({a, b, c}), parameters, true).log_det);
+        best = std::max(best, evaluate(blocks.subset({a, b, c}), parameters, Prior::every).log_det);
   return best;
 }
 
@@ -71,7 +71,7 @@ TEST(Prior, SearchFindsTheBestPlanAndTheBoundHolds) {
       };
       std::vector<int> all = {0, 1, 2, 3, 4, 5, 6, 7};
       const SearchResult found = search(part(all), request, Monitor{});
-      const double value = evaluate(blocks.subset(found.design.members), parameters, true).log_det;
+      const double value = evaluate(blocks.subset(found.design.members), parameters, Prior::every).log_det;
       const double best = best_of_three(blocks, parameters);
       EXPECT_NEAR(value, best, 1e-9) << nuisance << " " << seed;
       EXPECT_GE(found.certificate.bound, best - 1e-9);
@@ -80,7 +80,7 @@ TEST(Prior, SearchFindsTheBestPlanAndTheBoundHolds) {
       // The search's own value, whitened coordinates, differs by a constant only.
       request.poses = 8;
       const SearchResult everything = search(part(all), request, Monitor{});
-      EXPECT_NEAR(everything.certificate.bound, evaluate(blocks.subset(all), parameters, true).log_det, 1e-6)
+      EXPECT_NEAR(everything.certificate.bound, evaluate(blocks.subset(all), parameters, Prior::every).log_det, 1e-6)
           << "with all candidates in it the bound is the plan";
     }
 }

@@ -66,7 +66,7 @@ TEST(ReadProblem, PointsMeasurementIsReadFieldByField) {
   const MeasurementSpec measurement = parse(example::serial).measurement;
   EXPECT_EQ(measurement.line, 9);
   EXPECT_EQ(measurement.repeats, 3);
-  EXPECT_DOUBLE_EQ(measurement.repeatability, 30e-6);
+  EXPECT_DOUBLE_EQ(measurement.repeatability.translation, 30e-6);
   const auto& points = std::get<PointsMeasurement>(measurement.instrument);
   ASSERT_EQ(points.targets.size(), 2U);
   EXPECT_EQ(points.targets[0].name, "P1");

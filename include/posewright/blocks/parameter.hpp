@@ -13,6 +13,16 @@ struct Parameter {
   double nominal = 0.0;    ///< informative; models take corrections to it, zero at nominal
   double tolerance = 0.0;  ///< prior 1σ from manufacture and assembly, in `unit`; > 0
   Role role = Role::interest;
+  bool tolerance_stated = false;  ///< the user wrote the tolerance; else it is assumed
+  bool places = false;            ///< says where things stand (base, tool, targets, instruments), not what the robot is
 };
+
+/// Which tolerances count as one more measurement of their parameter (1σ): none, those of parameters that were
+/// manufactured and those that the user stated (nobody knows where a base stands unless he says so), or all.
+enum class Prior { none, manufactured, every };
+
+inline bool counts(const Parameter& parameter, Prior prior) {
+  return prior == Prior::every || (prior == Prior::manufactured && (parameter.tolerance_stated || !parameter.places));
+}
 
 }  // namespace posewright

@@ -21,7 +21,7 @@ enum class Weighting { ordinary, weighted, robust };
 
 struct FitOptions {
   Weighting weighting = Weighting::weighted;
-  bool prior = false;  ///< count every tolerance as one more measurement of its parameter
+  Prior prior = Prior::none;  ///< which tolerances count
   /// Corrections of all parameters to start from; those that are not estimated keep them. Empty: all zero.
   std::vector<double> start{};
   int most_evaluations = 200;  ///< of the residuals in one run of Levenberg–Marquardt
@@ -36,8 +36,13 @@ struct Fit {
   bool scale_known = true;
   double chi_square = 0.0;  ///< sum of squares of the whitened residuals (weighted where robust) and of prior terms
   int readings = 0;         ///< how many were read
-  int freedom = 0;          ///< readings − columns, plus the prior's rows
+  int freedom = 0;          ///< readings − columns, plus the tolerances that count
   double scale = 0.0;       ///< √(chi_square/freedom); robust: of the central part
+  /// Weighted: what the stated noise was multiplied by because the residuals refuse it (less than 1 % chance); else 1.
+  /// The covariance counts it, and where tolerances count so do the estimates.
+  double noise_factor = 1.0;
+  /// R of the readings' Jacobian J = Q R with columns in units of tolerance, noise as stated: what the data alone tell.
+  Eigen::MatrixXd root;
   std::vector<Eigen::VectorXd> residuals;  ///< per pose: measured less predicted, SI; NaN where not read
   std::vector<Eigen::VectorXd> whitened;   ///< per pose: unit variance if model and noise are right; NaN where not read
   std::vector<std::vector<double>> weights;  ///< robust: per pose and target (or per pose) from 0 to 1; else empty
@@ -46,7 +51,9 @@ struct Fit {
 };
 
 /// Nonlinear least squares by Levenberg–Marquardt (Moré 1978, as in MINPACK) on parameters in units of tolerance and
-/// residuals whitened with their covariance at the solution.
+/// residuals whitened with their covariance at the solution. Where tolerances count and the residuals tell or refuse
+/// the noise, tolerances are weighed against the noise that the residuals show: s² = Σr²/(n − tr(M(M + s²P)⁻¹)) over
+/// the n readings, M their information, P that of the tolerances.
 ///
 /// robust: iteratively reweighted, Huber's ψ (c = 1.345) until the weights settle, then Tukey's biweight (c = 4.685),
 /// on the norm of each target's whitened residual, in units of their median; covariance by Huber (Robust Statistics

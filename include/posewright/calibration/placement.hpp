@@ -5,8 +5,15 @@
 namespace posewright {
 
 /// Of the columns those that say where things stand, not what the robot is: base.*, tool.*, target.*, station.*,
-/// anchor.*, camera.* and board.* displacements, and whatever the variant calls nuisance.
-VariantColumns placing_columns(const IdentificationModel& model, const VariantColumns& columns);
+/// anchor.*, camera.* and board.* displacements (Parameter::places), and whatever the variant calls nuisance.
+VariantColumns placing_columns(const VariantColumns& columns);
+
+/// The columns that these poses and the tolerances that count determine, by identifiability() at the corrections `at`.
+/// @param dependencies  of what is left out; null: not asked for
+/// @param threshold     IdentifiabilityOptions::threshold; 0: its default
+VariantColumns determined(const IdentificationModel& model, const VariantColumns& columns,
+                          const std::vector<MeasuredPose>& poses, const std::vector<double>& at, Prior prior,
+                          std::vector<Dependency>* dependencies = nullptr, double threshold = 0.0);
 
 /// Fits the placing columns alone. Nobody knows how an instrument's axes lie to a robot's base before the first fit:
 /// where the nominal base leaves residuals that no error of a robot explains, the 24 rotations of a cube are tried as

@@ -41,8 +41,6 @@ void register_criterion(CriterionEntry entry);
 const CriterionEntry* find_criterion(const std::string& name);
 /// nullptr where no criterion has that name.
 std::unique_ptr<Criterion> make_criterion(const std::string& name, const CriterionData& data);
-/// Whether Φ of the criterion of that name is a log det, so that a bound of it is one of the plan's log_det.
-bool is_determinant(const std::string& name);
 /// "o1, …": for messages that say what is allowed.
 std::string criterion_names();
 

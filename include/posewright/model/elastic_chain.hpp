@@ -1,9 +1,21 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+/// "joint_a2.compliance_3" or a glob of such: how compliances at listed positions were named before. Those numbers
+/// followed the sorted positions and not the file's, so they cannot be taken for anything.
+bool is_numbered_place(std::string_view name);
+
+/// How far the torque of a compensator bends its joint without any load (`effect: torque`), where that is no small
+/// angle in which springs are linear: one line for the user. Empty where nothing is to be said.
+std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates);
 
 /// Serial arm whose joints give way (virtual joint springs, design §3.3): each joint stands deflected by δ = k·τ, with
 /// the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the nominal, undeflected
@@ -13,7 +25,9 @@ namespace posewright {
 /// NAME.compliance (rad/(N·m) or m/N), or NAME.compliance@-25.2deg, … for listed positions (in the order in which they
 /// are listed), or with a gravity compensator NAME.stiffness K2⁰ (N·m/rad), compensator.stiffness Kc (N/m) and
 /// compensator.preload s0·Kc (N), where
-///   δ = (τ − M(q)) / (K2⁰ + M'(q)), M the spring's torque; then tool.*.
+///   δ = τ_load / (K2⁰ + M'(q)), M the spring's torque (eq. (13)–(14) of the KR 270's study), τ_load that of the load
+/// case alone: what spring and links do to the unloaded arm is in the controller's zero. Where the problem says
+/// `effect: torque`, δ = (τ − M(q)) / (K2⁰ + M'(q)). Then tool.*.
 class ElasticChain : public TipModel {
  public:
   /// Throws InputError for joints that the chain has not.
@@ -22,10 +36,13 @@ class ElasticChain : public TipModel {
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
 
-  /// Torque (N·m or N) at every coordinate under load case `load`, nominal arm.
-  void torques(std::span<const double> q, int load, std::span<double> out) const;
+  /// Torque (N·m or N) at every coordinate under load case `load`, nominal arm; with the links' weight where it counts.
+  void torques(std::span<const double> q, int load, std::span<double> out) const {
+    torques(q, load, spec_.link_gravity, out);
+  }
 
  private:
+  void torques(std::span<const double> q, int load, bool link_weights, std::span<double> out) const;
   /// One elastostatic parameter and the coordinate it acts on.
   struct Spring {
     enum class Kind { compliance, listed, joint_stiffness, spring_stiffness, preload } kind;
@@ -33,6 +50,8 @@ class ElasticChain : public TipModel {
     int listed = 0;  ///< which of the listed positions
   };
   void add_springs(const SourcePlace& place);
+  /// Torque at one coordinate by the load case, without the weight of links.
+  double load_alone(std::span<const double> q, std::size_t coordinate) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
   void deflect(std::span<const double> q, std::span<const double> elastic, std::span<double> deflection,
                std::span<double> derivative) const;

@@ -5,19 +5,22 @@
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/model/tip_model.hpp"
+#include "posewright/problem/measurement_specs.hpp"
 
 namespace posewright {
 
 /// A robot that carries a tip, seen by an instrument: g = y − h(ρ, ξ). Parameters: the robot's, then the instrument's.
 /// Where the instrument's targets stand for the tool, tool.* are left out. Configuration: the robot's, then the station
-/// where there is a choice. Residual covariance: the instrument's, plus the joint readings' noise through ∂h/∂ρ.
+/// where there is a choice. Residual covariance: the instrument's, plus the joint readings' noise through ∂h/∂ρ, plus
+/// what the tip's displacement of this visit does to all readings alike.
 ///
 /// Everything but targets and lenses acts on the readings through a motion of the tip, so G = [Y | O] · C with Y (r ×
 /// 6) the rows along unit twists and O the own columns: where r is larger than that, blocks are written with 6 + |O|
 /// rows.
 class ExplicitModel : public IdentificationModel {
  public:
-  ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement);
+  ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<MeasurementModel> measurement,
+                const Repeatability& repeatability = {});
 
   const TipModel& tip() const { return *tip_; }
 
@@ -44,11 +47,13 @@ class ExplicitModel : public IdentificationModel {
   Parts parts(std::span<const double> q, std::span<const double> correction) const;
   bool twists_and_noise(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
                         Linearisation& out) const;
+  void displace_alone(const MeasurementModel::Sighting& sighting, Linearisation& out) const;
 
   std::unique_ptr<TipModel> tip_;
   std::unique_ptr<MeasurementModel> measurement_;
   int tip_parameters_ = 0;           ///< how many of the tip's parameters are in use (tool.* are its last)
   std::vector<char> is_own_column_;  ///< per parameter: the instrument's, and no motion of the tip
+  Repeatability repeatability_;
   bool reading_noise_ = false;
 };
 

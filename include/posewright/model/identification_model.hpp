@@ -47,11 +47,12 @@ struct Linearisation {
   Eigen::MatrixXd basis;       ///< r × c, c < r, where the model offers G = basis · coefficients
   /// c × selected
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients;
-  /// c × readings, factored form only: `covariance` is then the instrument's alone, and readings with these columns N
-  /// (1σ each) add basis · N Nᵀ · basisᵀ.
-  Eigen::MatrixXd reading_coefficients;
+  /// Factored form only: `covariance` is then the instrument's alone, and what moves the tip at random with these
+  /// columns N (1σ each) adds basis · N Nᵀ · basisᵀ.
+  Eigen::MatrixXd random_coefficients;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
+  Eigen::Matrix<double, 6, Eigen::Dynamic> random_twists;   ///< scratch: what moves the tip at random, 1σ
   Eigen::MatrixXd rows, small;                              ///< scratch
   std::vector<char> seen;                                   ///< scratch: per target
   std::vector<double> correction, settled;                  ///< scratch
@@ -99,8 +100,8 @@ class IdentificationModel {
   /// @return false where q has no solution (unreachable) or cannot be measured; `out` is then unspecified
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Linearisation& out) const;
-  /// The same with G factored into out.basis and out.coefficients, noise of readings into out.reading_coefficients;
-  /// only where block_rows() < rows().
+  /// The same with G factored into out.basis and out.coefficients, random motions of the tip into
+  /// out.random_coefficients; only where block_rows() < rows().
   bool linearise_factored(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                           Linearisation& out) const;
 

@@ -15,6 +15,9 @@ std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const Va
 /// The same for the problem's first variant.
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
 
+/// The problem without what stays at a pose (the robot's repeatability, its joint readings' noise).
+Problem without_pose_errors(Problem problem);
+
 /// The robot alone; null for one that carries no single tip. Throws as make_model.
 std::unique_ptr<TipModel> make_tip(const Problem& problem, const VariantSpec& variant);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "posewright/model/closed_chain.hpp"
@@ -36,9 +37,10 @@ T leg_residual(const T* p, const T* R, const T& slide, const T& extension, const
 /// Configuration: x, y, z (m) added to the reference position, rx, ry, rz (rad): R = Rz Ry Rx R_reference. Own
 /// parameters: leg_i.{ax, ay, az, bx, by, bz, ux, uy, l}, i = 1 … 6 (no ux, uy for a Gough platform); a in the base
 /// frame, b in the platform's. A 6-PUS adds the deformation of the platform by the actuators' positions (design §3.4),
-///   Δb_i = (kappa ρ_i + Σ_j K_ij ρ_j) z,
-/// all zero unless a variant's nominal values say otherwise. Actuators leg_i.rho by inverse kinematics, of the two
-/// solutions the lower.
+///   Δb_i = ((kappa + kappa_i) Δρ_i + Σ_j K_ij Δρ_j) z,   Δρ = ρ − ρ⁰,
+/// ρ⁰ the actuators of the nominal robot at the reference; kappa_i as in eq. (7), K as in eq. (8) of the telescope's
+/// study, kappa one for all legs. All zero unless a variant's nominal values say otherwise. Actuators leg_i.rho by
+/// inverse kinematics, of the two solutions the lower.
 class SixLegs : public ClosedChain {
  public:
   SixLegs(const SixLegsSpec& spec, const std::vector<CoordinateLimits>& pose_limits);
@@ -55,6 +57,7 @@ class SixLegs : public ClosedChain {
 
   SixLegsSpec spec_;
   Eigen::Isometry3d X_BaseReference_;
+  std::array<double, 6> reference_rho_{};
   int per_leg_ = 9;
 };
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "posewright/calibration/curvature.hpp"
+#include "posewright/calibration/leave_out.hpp"
+#include "posewright/calibration/orientation.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/problem/problem.hpp"
@@ -17,7 +19,8 @@ struct CalibrateOptions {
   std::filesystem::path data;
   std::string variant;  ///< empty: as in the file
   Weighting weighting = Weighting::weighted;
-  bool prior = false;              ///< also where the problem does not say so
+  /// Tolerances of what was manufactured count, and those that were stated; none: plain least squares.
+  Prior prior = Prior::manufactured;
   std::filesystem::path validate;  ///< more data that are not fitted; empty: none
   int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
 };
@@ -26,7 +29,8 @@ struct CalibrateOptions {
 struct CalibratedParameter {
   Parameter label;  ///< nominal value: before
   bool estimated = true;
-  double value = 0.0, sigma = 0.0;  ///< SI; σ with the factor of Calibration::sigma_factor
+  bool prior = false;               ///< its tolerance counted
+  double value = 0.0, sigma = 0.0;  ///< SI
   double lower = 0.0, upper = 0.0;  ///< 95 % interval
   std::string why_not{};            ///< not estimated: what the data cannot tell it from
   bool weak = false;                ///< the data tell less than the tolerance
@@ -50,7 +54,7 @@ struct PoseResidual {
 struct Calibration {
   std::string variant;
   Weighting weighting = Weighting::weighted;
-  bool prior = false;
+  Prior prior = Prior::none;
   bool automatic = false;  ///< the variant leaves it to the data which parameters are estimated
   int rows = 0, poses = 0, held_back = 0;
   double repeats = 1.0;
@@ -58,10 +62,11 @@ struct Calibration {
   std::vector<double> spread;  ///< of every reading within a pose, 1σ of one row; empty without repeats
   Fit fit;
   std::vector<CalibratedParameter> parameters;  ///< interest, nuisance, then those not estimated
-  /// Intervals and σ are those of the stated noise times this: above 1 where the residuals are larger than it allows.
-  double sigma_factor = 1.0;
+  std::vector<CalibratedOrientation> orientations;
+  LeaveOut left_out;    ///< does the estimate predict poses that it has not seen?
+  std::string weakest;  ///< weakest_combination()
   ResidualTests tests;
-  TestResult lack_of_fit;  ///< F: residuals of poses against the spread within them
+  TestResult lack_of_fit;  ///< posewright::lack_of_fit()
   Curvature curvature;
   std::vector<ResidualSet> residuals;
   std::vector<PoseResidual> pose_residuals;
@@ -71,6 +76,9 @@ struct Calibration {
   std::vector<double> correction;
   std::vector<EstimatedValue> values;  ///< the same as values, under the model's names, with σ where estimated
 };
+
+/// The frame whose orientation this parameter is an angle of; null: it is none, or is estimated without the others.
+const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter);
 
 /// Estimates the parameters of a variant from measured data. Columns that the data do not determine stay at their
 /// nominal values and are listed. Throws InputError (files) and CannotDo (nothing can be estimated).

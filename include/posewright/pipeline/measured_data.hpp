@@ -5,20 +5,20 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "posewright/calibration/lack_of_fit.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
 
 /// Readings as a user's file has them, for one model.
 struct MeasuredData {
-  std::vector<MeasuredPose> poses;  ///< in the file's order; rows of one configuration averaged
-  std::vector<bool> held_back;      ///< per pose: for validation only (column `use`)
-  int rows = 0;                     ///< of the file
-  double repeats = 1.0;             ///< rows per pose, harmonic mean
-  std::vector<double> spread;       ///< standard deviation of each reading within a pose; empty without repeats
-  int spread_freedom =
-      0;  ///< degrees of freedom of all spreads together: rows that were read less poses, summed over readings
-  std::vector<std::string> notes;  ///< what the user must know of how it was read
+  std::vector<MeasuredPose> poses;         ///< in the file's order; rows of one configuration averaged
+  std::vector<bool> held_back;             ///< per pose: for validation only (column `use`)
+  int rows = 0;                            ///< of the file
+  double repeats = 1.0;                    ///< rows per pose, harmonic mean
+  std::vector<double> spread;              ///< standard deviation of each reading within a pose; empty without repeats
+  std::vector<RepeatedReadings> repeated;  ///< poses of more than one row
+  std::vector<std::string> notes;          ///< what the user must know of how it was read
 };
 
 /// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every

@@ -8,17 +8,28 @@
 #include "posewright/calibration/experiment_summary.hpp"
 #include "posewright/pipeline/pose_list.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/problem/units.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {
 
+/// Noise of the robot that is measured, where it differs from what the problem states: what a calibration that expects
+/// one kind of noise makes of another. 1σ; none: as the problem says.
+struct TruthNoise {
+  std::optional<double> repeatability;  ///< m: the tip stands off, common to all readings of a visit
+  std::optional<double> independent;    ///< m: every target stands off on its own
+  std::optional<Measured> joints;       ///< rad or m: what the joint or actuator readings are off by
+  bool differs() const { return repeatability || independent || joints; }
+};
+
 struct SimulateOptions {
-  std::string variant;           ///< that is calibrated; empty: as in the file
-  std::string truth;             ///< whose model gives the readings; empty: the same variant
-  bool truth_nominal = false;    ///< of the truth only the nominal values differ: parameters of `variant` are drawn
-  int validation = 50;           ///< random places to check where the problem has no test poses
-  int candidates = 10000;        ///< that tell which columns of an `auto` variant can be identified
-  ExperimentOptions experiment;  ///< fit.prior is the problem's
+  std::string variant;  ///< that is calibrated; empty: as in the file
+  std::string truth;    ///< whose model gives the readings; empty: the same variant
+  TruthNoise truth_noise;
+  bool truth_nominal = false;  ///< of the truth only the nominal values differ: parameters of `variant` are drawn
+  int validation = 50;         ///< random places to check where the problem has no test poses
+  int candidates = 10000;      ///< that tell which columns of an `auto` variant can be identified
+  ExperimentOptions experiment;
 };
 
 struct SimulatedParameter {

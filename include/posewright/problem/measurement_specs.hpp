@@ -87,10 +87,20 @@ struct JointsMeasurement {
 using InstrumentSpec =
     std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement, JointsMeasurement>;
 
+/// What stays at a pose and is not averaged away, 1σ: the robot stands elsewhere at every visit. One displacement of
+/// the tip, common to all that is read during the visit.
+struct Repeatability {
+  double translation = 0.0;  ///< m, each axis
+  double rotation = 0.0;     ///< rad, about each axis through the tip
+  /// m, each axis, of each target (or reading) on its own. No robot does this; it is there for virtual experiments that
+  /// ask what another truth would do to a calibration.
+  double independent = 0.0;
+};
+
 struct MeasurementSpec {
   InstrumentSpec instrument;
-  int repeats = 1;                     ///< readings averaged per configuration
-  double repeatability = 0.0;          ///< 1σ (m) that stays at a pose and is not averaged away (robot repeatability)
+  int repeats = 1;  ///< readings averaged per configuration
+  Repeatability repeatability;
   bool loaded_minus_unloaded = false;  ///< differences between each load case and the first one, at the same pose
   int line = 0;
 };

@@ -39,6 +39,9 @@ struct CompensatorSpec {
   double stiffness = 0.0;        ///< Kc, N/m
   double free_length = 0.0;      ///< s0, m
   double joint_stiffness = 0.0;  ///< K2⁰, N·m/rad
+  /// False: the spring stiffens the joint, and the load bends it; what spring and links do to the unloaded arm is in
+  /// the controller's zero. True: the spring's own torque bends the joint, too.
+  bool torque = false;
 };
 
 /// Joints as springs: reduced elastostatic model of an arm.
@@ -123,5 +126,8 @@ struct CompensatorGeometrySpec {
 };
 
 using RobotSpec = std::variant<SerialArmSpec, SixLegsSpec, FiveBarSpec, DeltaSpec, CompensatorGeometrySpec>;
+
+/// States the noise (1σ, rad or m) of what the robot reads of its own joints or actuators.
+void set_joint_noise(RobotSpec& robot, double sigma);
 
 }  // namespace posewright

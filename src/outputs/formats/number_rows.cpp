@@ -8,16 +8,11 @@
 #include <sstream>
 
 #include "posewright/support/error.hpp"
+#include "posewright/support/trimmed.hpp"
 #include "text.hpp"
 
 namespace posewright::formats {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 /// Cells of a line; a blank as the separator stands for any number of them.
 std::vector<std::string_view> cells_of(std::string_view line, char separator) {

@@ -5,6 +5,7 @@
 
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/trimmed.hpp"
 #include "program.hpp"
 #include "text.hpp"
 
@@ -13,18 +14,12 @@
 namespace posewright {
 namespace {
 
-std::string trimmed_cell(std::string text) {
-  const auto blank = [](unsigned char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(static_cast<unsigned char>(text.back()))) text.pop_back();
-  while (!text.empty() && blank(static_cast<unsigned char>(text.front()))) text.erase(text.begin());
-  return text;
-}
-
 /// "joint_1 [deg]": name and unit.
 std::pair<std::string, std::string> name_and_unit(const std::string& header) {
   const auto open = header.rfind('[');
   if (open == std::string::npos || header.back() != ']') return {header, ""};
-  return {trimmed_cell(header.substr(0, open)), header.substr(open + 1, header.size() - open - 2)};
+  return {std::string(trimmed(std::string_view(header).substr(0, open))),
+          header.substr(open + 1, header.size() - open - 2)};
 }
 
 Exported write_plain_csv(const PoseSequence& all, const ExportOptions&) {
@@ -56,7 +51,7 @@ std::vector<std::string> csv_cells(const std::string& line) {
     else if (c == ',' && !quoted) cells.emplace_back();
     else cells.back() += c;
   }
-  for (std::string& cell : cells) cell = trimmed_cell(cell);
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
   return cells;
 }
 
@@ -65,7 +60,7 @@ PoseTable read_csv_table(const std::string& bytes, const std::string& file) {
   std::istringstream lines(bytes);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    line = trimmed_cell(line);
+    line = std::string(trimmed(line));
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string> cells = csv_cells(line);
     if (table.names.empty()) {

@@ -1,0 +1,155 @@
+#include "posewright/calibration/leave_out.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "posewright/calibration/placement.hpp"
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
+#include "stacked_readings.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr int most_single = 30, groups_above = 10;
+// A combination that the readings tell worse than this many tolerances is worth a name.
+constexpr double weak = 3.0;
+constexpr double negligible = 0.2;
+constexpr std::size_t most_named = 6;
+
+/// Readings that judge: lengths where there are any, since position is what a robot is calibrated for; else all.
+std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y) {
+  std::vector<int> read = indices_read(y), lengths;
+  for (const int i : read)
+    if (model.readings()[std::size_t(i)].unit == "m") lengths.push_back(i);
+  return lengths.empty() ? read : lengths;
+}
+
+/// Mean square of the whitened residuals of every pose.
+void add_squares(const IdentificationModel& model, const std::vector<double>& correction,
+                 const std::vector<MeasuredPose>& poses, std::vector<double>& squares) {
+  const std::vector<Eigen::VectorXd> residuals = residuals_of(model, correction, poses);
+  Linearisation at;
+  Eigen::VectorXd y;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::vector<int> read = judging(model, poses[k].y);
+    if (!model.predict_and_linearise(poses[k].q, correction, {}, at, y)) throw CannotDo("a pose is out of reach");
+    factorise_covariance(at.covariance(read, read), at.factor);
+    Eigen::VectorXd r = residuals[k](read);
+    at.factor.matrixL().solveInPlace(r);
+    squares.push_back(r.squaredNorm() / double(read.size()));
+  }
+}
+
+double summary(std::vector<double> squares, Weighting weighting) {
+  if (weighting != Weighting::robust)
+    return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / double(squares.size()));
+  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::sqrt(*middle);
+}
+
+/// Mean of placed − estimated in standard errors of that mean; robust: how many gain, beyond half of them.
+double gain_of(const std::vector<double>& estimated, const std::vector<double>& placed, Weighting weighting) {
+  const auto n = double(estimated.size());
+  double mean = 0, squares = 0, better = 0;
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    const double gain = placed[k] - estimated[k];
+    if (!std::isfinite(gain)) return -std::numeric_limits<double>::infinity();
+    better += gain > 0 ? 1 : 0;
+    mean += gain / n;
+  }
+  if (weighting == Weighting::robust) return (better - n / 2) / std::sqrt(n / 4);
+  for (std::size_t k = 0; k < estimated.size(); ++k) squares += std::pow(placed[k] - estimated[k] - mean, 2);
+  return squares > 0 ? mean / std::sqrt(squares / (n - 1) / n) : 0.0;
+}
+
+/// Estimates from `rest` and adds how far the others are off; false, and why, where there is no estimate.
+bool predict_others(const IdentificationModel& model, const VariantColumns& columns, const FitOptions& options,
+                    const std::vector<MeasuredPose>& rest, const std::vector<MeasuredPose>& others,
+                    std::vector<double>& squares, std::string& why_not) {
+  try {
+    const Fit result = fit(model, columns, rest, options);
+    if (!result.converged) throw CannotDo("the estimate does not converge without some of the poses");
+    add_squares(model, result.correction, others, squares);
+    return true;
+  } catch (const CannotDo& error) {
+    why_not = error.what();
+    return false;
+  }
+}
+
+}  // namespace
+
+LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& columns,
+                   const std::vector<MeasuredPose>& poses, const FitOptions& options, const std::vector<double>& start,
+                   const Fit& whole, const Monitor& monitor) {
+  LeaveOut result;
+  VariantColumns place = placing_columns(columns);
+  if (place.selected.size() == columns.selected.size()) {
+    result.why_not = "nothing but where things stand is estimated";
+    return result;
+  }
+  place = place.selected.empty() ? place : determined(model, place, poses, start, options.prior);
+  const std::size_t groups = poses.size() > most_single ? groups_above : poses.size();
+  if (groups < 2) {
+    result.why_not = "a single pose";
+    return result;
+  }
+  std::vector<double> estimated, placed;
+  FitOptions place_options = options;
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (monitor.should_stop()) {
+      result.why_not = "stopped early";
+      return result;
+    }
+    std::vector<MeasuredPose> rest, others;
+    for (std::size_t k = 0; k < poses.size(); ++k) (k % groups == g ? others : rest).push_back(poses[k]);
+    std::string none;
+    place_options.start = start;
+    if (place.selected.empty()) add_squares(model, start, others, placed);
+    else if (!predict_others(model, place, place_options, rest, others, placed, none)) continue;
+    FitOptions all = options;
+    all.start = whole.correction;
+    if (!predict_others(model, columns, all, rest, others, estimated, result.why_not))
+      estimated.resize(placed.size(), std::numeric_limits<double>::infinity());
+    monitor.report({"leaving poses out", double(g + 1), double(groups), {}, {}, {}});
+  }
+  if (placed.size() < 2) {
+    result.why_not = "too few poses to leave one out";
+    return result;
+  }
+  result.groups = int(groups);
+  result.estimated = summary(estimated, options.weighting);
+  result.placed = summary(placed, options.weighting);
+  result.gain = gain_of(estimated, placed, options.weighting);
+  return result;
+}
+
+std::string weakest_combination(const Fit& result, const VariantColumns& columns) {
+  if (result.root.size() == 0) return "";
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(result.root, Eigen::ComputeFullV);
+  const Eigen::Index m = result.root.cols();
+  const double least = result.root.rows() < m ? 0.0 : svd.singularValues()[m - 1];
+  if (least * weak > 1) return "";
+  const Eigen::VectorXd v = svd.matrixV().col(m - 1);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(m));
+  std::iota(order.begin(), order.end(), Eigen::Index(0));
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return std::abs(v[a]) > std::abs(v[b]); });
+  std::string names;
+  for (std::size_t i = 0; i < std::min(order.size(), most_named); ++i) {
+    const double share = v[order[i]];
+    if (std::abs(share) < negligible * std::abs(v[order[0]])) break;
+    names += fmt::format("{}{:.2g} {}", i == 0 ? (share < 0 ? "−" : "") : (share < 0 ? " − " : " + "), std::abs(share),
+                         columns.parameters[std::size_t(order[i])].name);
+  }
+  return names + (least > 0 ? fmt::format(" (in tolerances) is told to {:.3g} tolerances only", 1 / least)
+                            : " (in tolerances) is not told at all");
+}
+
+}  // namespace posewright

@@ -8,7 +8,7 @@ import sys
 from changes import changed, include_flags
 
 # Of a large change, and of a tree without history, the first so many.
-MOST = 40
+MOST = 20
 
 
 def main(source, build, compiler, every=""):

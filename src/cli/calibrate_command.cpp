@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "calibration_report.hpp"
 #include "command.hpp"
 #include "dh_table_report.hpp"
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/pipeline/compliance_list.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
@@ -21,18 +24,21 @@ using Json = nlohmann::ordered_json;
 
 po::options_description calibrate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                      //
-      ("variant", text("V"), "which variant is calibrated (design: variant, or the first)")  //
+  options.add_options()  //
+      ("variant", po::value<Words>()->value_name("V")->composing(),
+       "which variant is calibrated (design: variant, or the first); a list A,B: all of them, in one table")  //
       ("weights", text("KIND"),
        "ols: all readings of a unit alike; wls: by the instrument's noise; robust: gross errors lose their weight "
        "(wls)")                                                                              //
       ("no-prior", "plain least squares: tolerances of what was manufactured do not count")  //
       ("validate", text("FILE"), "more data, not fitted, to judge the result by")            //
-      ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it");
-  options.add_options()                                                                                        //
-      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")  //
-      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                //
-      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")            //
+      ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")         //
+      ("in-steps", "identify base and tool, geometry and stiffness one after the other, too");
+  options.add_options()                                                                                              //
+      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")        //
+      ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, where the data have them")  //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                      //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")                  //
       ("force", "replace files that posewright did not write; write what predicts worse than base and tool alone");
   options.add(problem_options());
   return options;
@@ -40,12 +46,13 @@ po::options_description calibrate_command_options() {
 
 /// What goes to the robot's users.
 struct Results {
-  std::filesystem::path parameters, urdf;  ///< empty: not asked for
+  std::filesystem::path parameters, urdf, deformation;  ///< empty: not asked for
   std::string dh;
 
   Results(const po::variables_map& values, const Problem& problem, const CalibrateOptions& calibrate)
       : parameters(values.count("output") > 0 ? output_file(values, "output", "") : ""),
         urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : ""),
+        deformation(values.count("deformation") > 0 ? output_file(values, "deformation", "") : ""),
         dh(choice_of(values, "dh", {"distal", "proximal"})) {
     if ((!urdf.empty() || !dh.empty()) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
@@ -53,7 +60,7 @@ struct Results {
     inputs.push_back(calibrate.data);
     if (!calibrate.validate.empty()) inputs.push_back(calibrate.validate);
     if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) inputs.push_back(arm->urdf);
-    check_output_files(values, {parameters, urdf}, inputs);
+    check_output_files(values, {parameters, urdf, deformation}, inputs);
   }
 };
 
@@ -90,12 +97,66 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   if (positional.size() > 2) throw InputError({}, "unexpected argument '" + positional[2] + "'", "PROBLEM DATA.csv");
   CalibrateOptions calibrate;
   calibrate.data = positional[1];
-  calibrate.variant = text_of(values, "variant");
+  if (const std::vector<std::string> variants = variants_of(values); variants.size() == 1)
+    calibrate.variant = variants.front();
   calibrate.weighting = weighting_of(values);
   calibrate.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
   calibrate.validate = text_of(values, "validate");
   calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);
+  calibrate.in_steps = values.count("in-steps") > 0;
   return calibrate;
+}
+
+Json begin_json(const char* schema, const Problem& problem, const CalibrateOptions& calibrate) {
+  return {
+      {"schema", schema}, {"version", version}, {"problem", problem_json(problem)}, {"data", calibrate.data.string()}};
+}
+
+void refuse_results(const Results& wanted, const std::string& why) {
+  if (!wanted.parameters.empty() || !wanted.urdf.empty() || !wanted.dh.empty() || !wanted.deformation.empty())
+    throw InputError({}, "-o, --urdf, --dh and --deformation are for one calibration", why);
+}
+
+/// Several models of the robot on the same data, beside each other.
+int run_models(const CommonOptions& common, const Problem& problem, CalibrateOptions calibrate,
+               const std::vector<std::string>& variants) {
+  std::vector<Calibration> models;
+  for (const std::string& variant : variants) {
+    calibrate.variant = find_variant(problem, variant).name;
+    models.push_back(watched(common, 0, [&](const Monitor& monitor) {
+                       return calibrate_problem(problem, calibrate, monitor);
+                     }).result);
+  }
+  for (const Calibration& model : models)
+    for (const std::string& note : model.notes) print_notes({model.variant + ": " + note});
+  if (common.json) {
+    Json json = begin_json("posewright/calibrations/1", problem, calibrate);
+    json["models"] = Json::array();
+    for (const Calibration& model : models) {
+      Json one = begin_json("posewright/calibration/1", problem, calibrate);
+      one.update(calibration_json(model));
+      one["denavit_hartenberg"] = nullptr;
+      json["models"].push_back(std::move(one));
+    }
+    fmt::print("{}", json_text(json));
+  } else {
+    print_report(models_text(models));
+  }
+  const bool all = std::all_of(models.begin(), models.end(), [](const Calibration& c) { return c.fit.converged; });
+  return all ? done : cannot_do;
+}
+
+/// The data are compliances that somebody found: the compensator's constants follow from them.
+int run_compliances(const CommonOptions& common, const Problem& problem, const CalibrateOptions& calibrate) {
+  const CompensatorConstants found = compensator_of_list(problem, calibrate.data);
+  if (common.json) {
+    Json json = begin_json("posewright/compensator/1", problem, calibrate);
+    json["compensator"] = compensator_json(found);
+    fmt::print("{}", json_text(json));
+  } else {
+    print_report(compensator_text(found));
+  }
+  return done;
 }
 
 int run_calibrate(const po::variables_map& values, const Words& positional) {
@@ -103,9 +164,22 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CalibrateOptions calibrate = options_of(values, positional);
   const Problem problem = given_problem(positional.front(), values);
   const Results wanted(values, problem, calibrate);
+  if (const std::vector<std::string> variants = variants_of(values); variants.size() > 1) {
+    refuse_results(wanted, "a single --variant");
+    return run_models(common, problem, calibrate, variants);
+  }
+  if (lists_compliances(calibrate.data)) {
+    refuse_results(wanted, "data that are readings of the instrument");
+    return run_compliances(common, problem, calibrate);
+  }
   Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
   const std::optional<DhTable> table = table_of(wanted, problem, result);
+  if (!wanted.deformation.empty()) {
+    if (!result.platform)
+      throw CannotDo("nothing to draw: the data have no joint centres of a platform (columns leg_1.x, leg_1.y, …)");
+    write_file_atomically(wanted.deformation, platform_svg(*result.platform));
+  }
   const bool useful = result.fit.converged && !result.left_out.refused();
   const bool written = result.fit.converged && (useful || values.count("force") > 0);
   if (written) write(wanted, problem, result, result.notes);
@@ -114,13 +188,11 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   print_notes(result.notes);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
-                 (written ? written_text({wanted.parameters, wanted.urdf}) : ""));
+                 written_text(written ? std::vector{wanted.parameters, wanted.urdf, wanted.deformation}
+                                      : std::vector{wanted.deformation}));
     return written ? done : cannot_do;
   }
-  Json json = {{"schema", "posewright/calibration/1"},
-               {"version", version},
-               {"problem", problem_json(problem)},
-               {"data", calibrate.data.string()}};
+  Json json = begin_json("posewright/calibration/1", problem, calibrate);
   json.update(calibration_json(result));
   json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
   fmt::print("{}", json_text(json));

@@ -97,7 +97,8 @@ Json calibration_json(const Calibration& c) {
     poses.push_back({{"id", pose.id},
                      {"held_back", pose.held_back},
                      {"weight", pose.weight},
-                     {"residuals", numbers(pose.residuals)}});
+                     {"residuals", numbers(pose.residuals)},
+                     {"accuracy", pose_accuracy_json(pose.accuracy)}});
   return {{"variant", c.variant},
           {"weights", weighting_word(c.weighting)},
           {"prior", c.prior == Prior::none ? "none" : "manufactured"},
@@ -124,6 +125,10 @@ Json calibration_json(const Calibration& c) {
           {"curvature", std::isfinite(c.curvature.largest) ? Json(c.curvature.largest) : Json(nullptr)},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},
+          {"axes", axes_json(c)},
+          {"in_steps", steps_json(c)},
+          {"compensator", c.compensator ? compensator_json(*c.compensator) : Json(nullptr)},
+          {"platform", c.platform ? platform_json(*c.platform) : Json(nullptr)},
           {"readings", readings},
           {"spread_within_pose", c.spread.empty() ? Json(nullptr) : numbers(c.spread)},
           {"poses", poses},

@@ -218,8 +218,10 @@ std::string outliers_text(const Calibration& c) {
 }  // namespace
 
 std::string calibration_text(const Calibration& c) {
-  return headline(c) + "\n" + parameters_text(c) + residuals_text(c) + histogram_text(c.tests.histogram) +
-         noise_text(c) + whiteness_text(c) + left_out_text(c) + outliers_text(c);
+  return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
+         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
+         predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) +
+         left_out_text(c) + outliers_text(c);
 }
 
 }  // namespace posewright::cli

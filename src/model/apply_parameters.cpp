@@ -1,8 +1,12 @@
 #include "posewright/model/apply_parameters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "parameter_names.hpp"
+#include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 
@@ -32,6 +36,8 @@ const VariantSpec& target_of(const Problem& problem, const CalibratedParameters&
 void require_names(const Problem& problem, const VariantSpec& variant, const CalibratedParameters& parameters) {
   const auto model = make_model(problem, variant);
   const ParameterNames names(*model, problem);
+  const std::vector<CalibratedValue> own =
+      calibrated_values(problem, variant, *model, std::vector<double>(model->parameters().size(), 0.0));
   for (const ParameterEntry& entry : parameters.values) {
     const int i = names.index_of(entry.name.value);
     if (i < 0)
@@ -42,6 +48,13 @@ void require_names(const Problem& problem, const VariantSpec& variant, const Cal
     if (!entry.unit.empty() && entry.unit != unit)
       throw InputError(parameters.at(entry.name.line), "'" + entry.name.value + "' is in '" + entry.unit + "'",
                        "allowed: " + unit + ", values are in SI");
+    const double nominal = own[std::size_t(i)].nominal;
+    if (entry.nominal && std::abs(*entry.nominal - nominal) > model->parameters()[std::size_t(i)].tolerance)
+      throw InputError(parameters.at(entry.name.line),
+                       fmt::format("'{}' was {:.6g} before it was calibrated, this robot's is {:.6g}: these are "
+                                   "parameters of another robot",
+                                   entry.name.value, *entry.nominal, nominal),
+                       "nominal values that differ by less than the tolerance");
   }
 }
 

@@ -137,6 +137,10 @@ std::vector<std::optional<double>> values_by_pattern(const VariantColumns& colum
     for (std::size_t j = 0; j < result.size(); ++j) {
       const Parameter& p = columns.parameters[j];
       if (!matches(value.pattern.value, p.name) || !fits(value.quantity, p.unit)) continue;
+      if (value.quantity == Quantity::number && (p.unit == "m" || p.unit == "rad"))
+        throw InputError(problem.at(value.pattern.line),
+                         std::string(what) + " of '" + value.pattern.value + "' has no unit",
+                         p.unit == "m" ? "m, mm, um, nm" : "rad, mrad, urad, deg");
       result[j] = value.value;
       used = true;
     }

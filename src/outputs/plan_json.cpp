@@ -57,6 +57,7 @@ Json curve_json(const Plan& plan) {
   for (const CurvePoint& point : plan.curve) {
     json.push_back(curve_point_json(point));
     json.back()["enough"] = point.enough;
+    json.back()["largest_axis_ratio"] = point.worst_axis ? Json(*point.worst_axis) : Json(nullptr);
   }
   return json;
 }
@@ -199,7 +200,10 @@ std::string plan_json(const Plan& plan) {
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();
   for (const PlannedParameter& p : plan.parameters) json["parameters"].push_back(parameter_json(p));
-  json["accuracy"] = {{"rho0", plan.rho0 ? Json(*plan.rho0) : Json(nullptr)}, {"test_poses", plan.test_errors}};
+  json["accuracy"] = {{"rho0", plan.rho0 ? Json(*plan.rho0) : Json(nullptr)},
+                      {"test_poses", plan.test_errors},
+                      {"rotation", plan.turn ? Json(*plan.turn) : Json(nullptr)},
+                      {"test_pose_sigmas", plan.test_axes}};
   json["poses"] = Json::array();
   for (const PlannedPose& pose : plan.poses) json["poses"].push_back(pose_json(pose));
   json["statistics"] = statistics_json(plan.statistics);

@@ -71,11 +71,12 @@ std::string variants_text(const Plan& plan) {
 std::string curve_text(const Plan& plan) {
   if (plan.curve.empty()) return {};
   using A = Table::Align;
-  Table table({"poses", "log det", "predicted error", "σ/required", "enough"},
-              {A::right, A::right, A::right, A::right, A::left});
+  Table table({"poses", "log det", "predicted error", "axis/required", "σ/required", "enough"},
+              {A::right, A::right, A::right, A::right, A::right, A::left});
   for (const CurvePoint& point : plan.curve)
     table.row({std::to_string(point.poses), fmt::format("{:.4f}", point.log_det),
                point.rho0 ? shown_value(*point.rho0, "m") : "",
+               point.worst_axis ? fmt::format("{:.3f}", *point.worst_axis) : "",
                point.worst_sigma ? fmt::format("{:.3f}", *point.worst_sigma) : "", point.enough ? "yes" : "no"});
   return "Smallest number of poses that reaches what is required:\n" + table.text();
 }
@@ -110,6 +111,8 @@ std::string indices_text(const Plan& plan) {
         fmt::format("Predicted position error after calibration: {} (root mean square over {} test poses, worst {})\n",
                     shown_value(*plan.rho0, "m"), plan.test_errors.size(),
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
+  if (plan.turn)
+    text += fmt::format("Predicted orientation error: {} (root mean square)\n", shown_value(*plan.turn, "rad"));
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.by_test_poses && plan.test_errors.size() == 1)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "calibration_accuracy.hpp"
+#include "platform_images.hpp"
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/model/elastic_chain.hpp"
@@ -65,7 +67,10 @@ class CalibrationRun {
     result_.orientations =
         orientations(*model_, columns_, result_.fit,
                      interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom));
-    fill_residuals();
+    fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
+    if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic)
+      fill_compensator(*arm->elastostatic, result_);
+    if (options_.in_steps) identify_in_steps(fit_options);
     report(2);
     return std::move(result_);
   }
@@ -79,6 +84,7 @@ class CalibrationRun {
     result_.spread = data.spread;
     result_.readings = model_->readings();
     repeated_ = std::move(data.repeated);
+    if (!data.images.empty()) judge_platform(data.images);
     if (data.rows > int(data.poses.size())) use_repeats(data.repeats);
     for (std::size_t k = 0; k < data.poses.size(); ++k) {
       const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
@@ -92,6 +98,17 @@ class CalibrationRun {
     if (fitted_.empty()) throw InputError({options_.data.string(), 0}, "has no pose to fit", "use: fit");
     result_.poses = int(fitted_.size());
     result_.held_back = int(held_back_.size());
+  }
+
+  void judge_platform(const std::vector<PlatformImage>& images) {
+    const PlatformPoints points = *platform_points(problem_, *model_);
+    std::vector<Eigen::Vector3d> places;
+    for (const TargetSpec& target : points.body) places.push_back(target.position);
+    try {
+      result_.platform = platform_deformation(places, images, points.noise);
+    } catch (const CannotDo& error) {
+      result_.notes.push_back(std::string("how the platform deforms is not judged: ") + error.what());
+    }
   }
 
   /// Rows that were averaged are the repeats, whatever the problem planned.
@@ -218,31 +235,18 @@ class CalibrationRun {
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
   }
 
-  void add_set(const char* which, const char* parameters, const std::vector<MeasuredPose>& poses,
-               const std::vector<double>& correction) {
-    if (poses.empty()) return;
-    result_.residuals.push_back(
-        {which, parameters, summarise(*model_, poses, residuals_of(*model_, correction, poses))});
-  }
-
-  void fill_residuals() {
-    const std::vector<double> nominal(model_->parameters().size(), 0.0);
-    const std::size_t placing = placing_columns(columns_).selected.size();
-    for (const auto& [which, poses] : {std::pair{"fitted", &fitted_}, std::pair{"held back", &held_back_}}) {
-      add_set(which, "nominal", *poses, nominal);
-      if (placing > 0 && placing < columns_.selected.size()) add_set(which, "placed", *poses, placed_);
-      add_set(which, "calibrated", *poses, result_.correction);
+  /// Base and tool, geometry, stiffness one after the other, beside the joint estimate.
+  void identify_in_steps(FitOptions options) {
+    options.start = placed_;
+    try {
+      result_.in_steps = fit_in_steps(*model_, columns_, fitted_, options, result_.fit);
+      for (std::size_t j = 0; j < columns_.parameters.size(); ++j)
+        for (CalibratedParameter& p : result_.parameters)
+          if (p.estimated && p.label.name == columns_.parameters[j].name)
+            p.in_steps = p.label.nominal + result_.in_steps->correction[std::size_t(columns_.selected[j])];
+    } catch (const CannotDo& error) {
+      result_.notes.push_back(std::string("no identification in steps: ") + error.what());
     }
-    for (std::size_t k = 0; k < fitted_.size(); ++k) {
-      double weight = 1;
-      if (!result_.fit.weights.empty())
-        for (const double w : result_.fit.weights[k]) weight = std::min(weight, w);
-      const Eigen::VectorXd& r = result_.fit.residuals[k];
-      result_.pose_residuals.push_back({fitted_[k].id, false, {r.begin(), r.end()}, weight});
-    }
-    const auto beyond = residuals_of(*model_, result_.correction, held_back_);
-    for (std::size_t k = 0; k < held_back_.size(); ++k)
-      result_.pose_residuals.push_back({held_back_[k].id, true, {beyond[k].begin(), beyond[k].end()}, 1.0});
   }
 
   Problem problem_;

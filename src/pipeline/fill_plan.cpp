@@ -103,6 +103,8 @@ void fill_judgement(Plan& plan, const Judgement& judgement, const Preparation& p
   plan.reserve = settings.reserve;
   plan.rho0 = judgement.rho0;
   plan.test_errors = judgement.test_errors;
+  plan.turn = judgement.turn;
+  plan.test_axes = judgement.test_axes;
   plan.discrimination = judgement.discrimination;
   plan.log_det = first.log_det;
   plan.log_det_full = first.log_det_full;

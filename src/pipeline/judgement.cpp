@@ -26,9 +26,11 @@ Judgement judge(const Preparation& prepared, const Configurations& poses, const 
         evaluate(build_blocks(*variant.model, variant.columns().selected, all, settings.planner.threads),
                  variant.columns().parameters, settings.prior ? Prior::every : Prior::none, variant.scale));
   const PreparedVariant& first = prepared.first();
-  if (!first.test_points.empty())
-    judgement.rho0 =
-        predicted_error(first.test_points, judgement.evaluations.front().covariance, judgement.test_errors);
+  if (!first.test_points.empty()) {
+    const Eigen::MatrixXd& covariance = judgement.evaluations.front().covariance;
+    judgement.rho0 = predicted_error(first.test_points, covariance, judgement.test_errors);
+    judgement.turn = predicted_turn(first.test_points, covariance, judgement.test_axes);
+  }
   if (prepared.discrepancy != nullptr) add_effects(judgement, prepared, all, settings);
   return judgement;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ struct Judgement {
   std::vector<Evaluation> evaluations;           ///< of every variant; contributions in the order measured, then poses
   std::optional<double> rho0;                    ///< first variant, m
   std::vector<double> test_errors;               ///< m
+  std::optional<double> turn;                    ///< as rho0, of the orientation, rad
+  std::vector<std::array<double, 6>> test_axes;  ///< 1σ at each test pose: x, y, z (m), rx, ry, rz (rad)
   std::optional<Discrimination> discrimination;  ///< where a truth is named
 };
 

@@ -17,8 +17,11 @@ namespace {
 
 constexpr double not_read = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 4> quaternion_names = {"pose.qx", "pose.qy", "pose.qz", "pose.qw"};
+constexpr std::array<const char*, 3> point_axes = {".x", ".y", ".z"};
 // Printed quaternions have few digits; anything farther from one is something else.
 constexpr double unit_slack = 1e-3;
+// What bends by more than this share of its size is another body, or its points are mixed up.
+constexpr double largest_deformation = 0.05;
 
 }  // namespace
 
@@ -148,11 +151,17 @@ Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
   return posewright::rotation_vector(Eigen::Quaterniond(q.normalized()).toRotationMatrix());
 }
 
+Eigen::Vector3d MeasuredColumns::point(int row, const std::string& name) const {
+  Eigen::Vector3d p = Eigen::Vector3d::Constant(not_read);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (const std::string column = name + point_axes[std::size_t(k)]; has(column)) p[k] = value(row, column, "m");
+  return p;
+}
+
 Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
   std::vector<Eigen::Vector3d> body, measured;
   for (const TargetSpec& marker : markers_) {
-    const Eigen::Vector3d p(value(row, marker.name + ".x", "m"), value(row, marker.name + ".y", "m"),
-                            value(row, marker.name + ".z", "m"));
+    const Eigen::Vector3d p = point(row, marker.name);
     if (!p.allFinite()) continue;
     body.push_back(marker.position);
     measured.push_back(p);
@@ -161,6 +170,15 @@ Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
   // The covariance of a pose is that of all its points; one of fewer would be trusted too much.
   if (body.size() < markers_.size()) return pose;
   const RigidFit fit = rigid_fit(body, measured);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : body) centre += p / double(body.size());
+  double size = 0;
+  for (const Eigen::Vector3d& p : body) size += (p - centre).squaredNorm() / double(body.size());
+  if (fit.rms > largest_deformation * std::sqrt(size))
+    throw InputError({file_, line(row)},
+                     fmt::format("the points fit no rigid body: {:.4g} mm are left of one of {:.4g} mm", 1e3 * fit.rms,
+                                 1e3 * std::sqrt(size)),
+                     "points in the order, units and places of measurement: device: points");
   pose << fit.X.translation(), posewright::rotation_vector(fit.X.linear());
   return pose;
 }

@@ -21,6 +21,8 @@ class MeasuredColumns {
   int line(int row) const { return table_.rows[std::size_t(row)].line; }
   const std::vector<double>& configuration(int row) const { return configurations_[std::size_t(row)]; }
   Eigen::VectorXd readings(int row) const;
+  /// Columns NAME.x, NAME.y, NAME.z as a point (m); NaN where one is not there or not read.
+  Eigen::Vector3d point(int row, const std::string& name) const;
   /// The cell of a column, empty where there is none.
   std::string text(int row, const std::string& column) const;
   const std::vector<std::string>& notes() const { return notes_; }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "measured_columns.hpp"
+#include "platform_images.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 
@@ -132,6 +133,21 @@ bool held_back(const std::string& cell, const SourcePlace& place) {
   return false;
 }
 
+/// The image of one row; nothing if a point is missing or the pose is out of reach.
+std::optional<PlatformImage> image_of(const MeasuredColumns& columns, int row, const Row& read,
+                                      const PlatformPoints& points, const IdentificationModel& model) {
+  PlatformImage image;
+  image.id = read.id > 0 ? read.id : row + 1;
+  for (const TargetSpec& target : points.body) image.body.push_back(columns.point(row, target.name));
+  for (const std::string& joint : points.joints) image.joints.push_back(columns.point(row, joint));
+  for (const auto* list : {&image.body, &image.joints})
+    for (const Eigen::Vector3d& p : *list)
+      if (!p.allFinite()) return std::nullopt;
+  image.actuators = actuator_moves(model, read.q);
+  if (image.actuators.size() == 0) return std::nullopt;
+  return image;
+}
+
 }  // namespace
 
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
@@ -141,6 +157,7 @@ MeasuredData read_measured_data(const std::filesystem::path& file, const Problem
   data.notes = columns.notes();
   data.rows = columns.rows();
   Averaging averaging(model, data);
+  const std::optional<PlatformPoints> platform = platform_points(problem, model);
   for (int i = 0; i < columns.rows(); ++i) {
     Row row;
     row.line = columns.line(i);
@@ -154,6 +171,9 @@ MeasuredData read_measured_data(const std::filesystem::path& file, const Problem
       --data.rows;
       continue;
     }
+    if (platform)
+      if (std::optional<PlatformImage> image = image_of(columns, i, row, *platform, model))
+        data.images.push_back(std::move(*image));
     averaging.add(std::move(row));
   }
   if (data.rows == 0) throw InputError({file.string(), 0}, "has no readings", "at least one line with some");

@@ -19,6 +19,8 @@ namespace {
 
 // Nobody measures more in one go; a requirement that needs more is out of reach.
 constexpr int most_poses = 2000;
+// Half a 95 % interval of a normal error in σ.
+constexpr double axis_interval = 1.96;
 
 /// A prepared problem and plans of it.
 class Planning {
@@ -106,6 +108,11 @@ class Planning {
         int(std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return !p.measured; })),
         plan.log_det, plan.rho0, std::nullopt, true};
     if (require.accuracy) point.enough = *plan.rho0 <= *require.accuracy;
+    for (const std::array<double, 6>& sigma : plan.test_axes)
+      for (std::size_t k = 0; k < sigma.size(); ++k)
+        if (require.axes[k])
+          point.worst_axis = std::max(point.worst_axis.value_or(0), axis_interval * sigma[k] / *require.axes[k]);
+    if (point.worst_axis) point.enough = point.enough && *point.worst_axis <= 1.0;
     if (require.sigma.empty()) return point;
     const VariantColumns& columns = prepared_.first().columns();
     const auto wanted = values_by_pattern(columns, require.sigma, problem_, "the required σ");
@@ -134,6 +141,8 @@ class Planning {
     if (last.rho0 && problem_.design.require.accuracy)
       text += fmt::format("; accuracy {:.4g} mm, required {:.4g} mm", 1e3 * *last.rho0,
                           1e3 * *problem_.design.require.accuracy);
+    if (last.worst_axis)
+      text += fmt::format("; 95 % of the error along or about an axis {:.3g} times the required one", *last.worst_axis);
     if (last.worst_sigma) text += fmt::format("; largest σ {:.3g} times the required one", *last.worst_sigma);
     if (interrupted) text += "; the search was ended before more poses were tried";
     throw CannotDo(text);

@@ -46,10 +46,11 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   if (!options.poses && !design.poses && !smallest)
     throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
   if (!smallest) s.poses = options.poses ? *options.poses : design.poses->value;
-  if (smallest && !design.require.accuracy && design.require.sigma.empty())
+  const bool of_poses = design.require.accuracy || design.require.of_axes();
+  if (smallest && !of_poses && design.require.sigma.empty())
     throw InputError(problem.at(design.line), "poses: auto does not know what must be reached",
-                     "set design: require: accuracy or sigma");
-  if (smallest && design.require.accuracy && !design.test_poses)
+                     "set design: require: accuracy, position, rotation or sigma");
+  if (smallest && of_poses && !design.test_poses)
     throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
                      "set design: test_poses");
   s.candidates = options.candidates.value_or(design.candidates.value);

@@ -41,11 +41,13 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
   for (const std::vector<double>& q : places.configurations) {
     if (!position->linearise(q, {}, selected, scratch))
       throw InputError(problem.at(spec.line), "a test pose is out of reach", "configurations that the robot can take");
-    TestPoint point{Eigen::MatrixXd::Zero(3, Eigen::Index(columns.selected.size())), 1.0};
+    const auto m = Eigen::Index(columns.selected.size());
+    TestPoint point{Eigen::MatrixXd::Zero(3, m), 1.0, Eigen::MatrixXd::Zero(3, m)};
     const Eigen::Vector3d from_tip = position->tool_pose(q).linear() * spec.point;
     for (std::size_t c = 0; c < where.size(); ++c) {
       const auto column = scratch.G.col(Eigen::Index(c));
       point.A.col(where[c]) = column.head<3>() + Eigen::Vector3d(column.tail<3>()).cross(from_tip);
+      point.turn.col(where[c]) = column.tail<3>();
     }
     if (!places.weights.empty()) point.weight = places.weights[points.size()];
     points.push_back(std::move(point));
@@ -61,6 +63,25 @@ double predicted_error(const std::vector<TestPoint>& points, const Eigen::Matrix
     const double variance = (t.A * covariance * t.A.transpose()).trace();
     each.push_back(std::sqrt(variance));
     sum += t.weight * variance;
+    total += t.weight;
+  }
+  return std::sqrt(sum / total);
+}
+
+double predicted_turn(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                      std::vector<std::array<double, 6>>& axes) {
+  double sum = 0, total = 0;
+  axes.clear();
+  for (const TestPoint& t : points) {
+    const Eigen::Vector3d moved = (t.A * covariance * t.A.transpose()).diagonal();
+    const Eigen::Vector3d turned = (t.turn * covariance * t.turn.transpose()).diagonal();
+    std::array<double, 6> sigma{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      sigma[k] = std::sqrt(moved[Eigen::Index(k)]);
+      sigma[k + 3] = std::sqrt(turned[Eigen::Index(k)]);
+    }
+    axes.push_back(sigma);
+    sum += t.weight * turned.sum();
     total += t.weight;
   }
   return std::sqrt(sum / total);

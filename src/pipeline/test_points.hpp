@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "posewright/criterion/criterion_data.hpp"
@@ -21,5 +22,9 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
 /// Root of the weighted mean square of the predicted position error (m), and that of each point.
 double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
                        std::vector<double>& each);
+/// The same of the orientation (norm of the rotation vector, rad), and 1σ of every point along x, y, z (m) and about
+/// them (rad), in the measurement frame.
+double predicted_turn(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                      std::vector<std::array<double, 6>>& axes);
 
 }  // namespace posewright

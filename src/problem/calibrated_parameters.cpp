@@ -23,6 +23,7 @@ ParameterEntry read_entry(const yaml::Entry& entry) {
   parameter.name = entry.key;
   parameter.value = section.at("value").number(Quantity::number);
   if (const yaml::Value* unit = section.find("unit")) parameter.unit = unit->text();
+  if (const yaml::Value* nominal = section.find("nominal")) parameter.nominal = nominal->number(Quantity::number);
   return parameter;
 }
 

@@ -60,15 +60,41 @@ DesignSpec::MinimumDistance read_minimum_distance(const Value& value) {
   return distance;
 }
 
+/// What is required is somebody's drawing or contract: 0.1 without a unit would be 0.1 m.
+double required_number(const Value& value, Quantity quantity) {
+  const Measured number = value.measured({quantity}, Sign::positive);
+  if (number.quantity != quantity) value.fail("has no unit", "allowed: " + allowed_units({quantity}));
+  return number.value;
+}
+
+/// One value for all three axes, or {x: …, z: …}: an axis that is not named may be off.
+void read_required_axes(const Section& section, const char* key, Quantity quantity, std::optional<double>* axes) {
+  const Value* value = section.find(key);
+  if (value == nullptr) return;
+  if (!value->is_mapping()) {
+    std::fill(axes, axes + 3, required_number(*value, quantity));
+    return;
+  }
+  const Section each(*value);
+  each.allow({"x", "y", "z"});
+  int axis = 0;
+  for (const char* name : {"x", "y", "z"}) {
+    if (const Value* one = each.find(name)) axes[axis] = required_number(*one, quantity);
+    ++axis;
+  }
+  if (each.entries().empty()) value->fail("is empty", "allowed: x, y, z");
+}
+
 RequirementSpec read_requirement(const Value& value) {
   const Section section(value);
-  section.allow({"accuracy", "sigma"});
+  section.allow({"accuracy", "sigma", "position", "rotation"});
   RequirementSpec require;
   require.line = value.line();
-  if (const Value* accuracy = section.find("accuracy"))
-    require.accuracy = accuracy->number(Quantity::length, Sign::positive);
+  if (const Value* accuracy = section.find("accuracy")) require.accuracy = required_number(*accuracy, Quantity::length);
   if (const Value* sigma = section.find("sigma")) require.sigma = read_pattern_values(*sigma, Sign::positive);
-  if (!require.accuracy && require.sigma.empty()) value.fail("is empty", "allowed: accuracy, sigma");
+  read_required_axes(section, "position", Quantity::length, require.axes.data());
+  read_required_axes(section, "rotation", Quantity::angle, require.axes.data() + 3);
+  if (section.entries().empty()) value.fail("is empty", "allowed: accuracy, sigma, position, rotation");
   return require;
 }
 

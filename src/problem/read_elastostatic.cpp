@@ -27,9 +27,11 @@ LoadCaseSpec read_load(const std::string& name, const Value& value) {
   return load;
 }
 
-CompensatorSpec read_compensator(const Value& value) {
+/// @param geometry_alone  the constants follow from listed compliances
+CompensatorSpec read_compensator(const Value& value, bool geometry_alone) {
   const Section section(value);
-  section.allow({"joint", "L", "ax", "ay", "stiffness", "free_length", "joint_stiffness", "effect"});
+  if (geometry_alone) section.allow({"joint", "L", "ax", "ay"});
+  else section.allow({"joint", "L", "ax", "ay", "stiffness", "free_length", "joint_stiffness", "effect"});
   CompensatorSpec spec;
   spec.joint = section.at("joint").exact_name();
   spec.L = section.at("L").number(Quantity::length, Sign::positive);
@@ -38,6 +40,7 @@ CompensatorSpec read_compensator(const Value& value) {
   // With a = L the spring's length is zero somewhere.
   if (!(std::abs(std::hypot(spec.ax, spec.ay) - spec.L) > 1e-6))
     value.fail("has its fixed pin on the circle of the other", "ax² + ay² must differ from L²");
+  if (geometry_alone) return spec;
   spec.stiffness = section.at("stiffness").number(Quantity::stiffness, Sign::positive);
   spec.free_length = section.at("free_length").number(Quantity::length, Sign::not_negative);
   spec.joint_stiffness = section.at("joint_stiffness").number(Quantity::number, Sign::positive);
@@ -71,7 +74,7 @@ ElastostaticSpec::Listed read_listed(const Value& value) {
 
 ElastostaticSpec read_elastostatic(const Value& value) {
   const Section section(value);
-  section.allow({"compliance", "loads", "gravity", "link_weights", "compensator", "listed"});
+  section.allow({"compliance", "loads", "gravity", "link_weights", "compensator", "compensator_from", "listed"});
   ElastostaticSpec spec;
   spec.line = value.line();
   if (const Value* compliance = section.find("compliance"))
@@ -82,10 +85,20 @@ ElastostaticSpec read_elastostatic(const Value& value) {
   if (spec.loads.empty()) section.at("loads").fail("is empty", "at least one load case is needed");
   if (const Value* gravity = section.find("gravity")) spec.gravity = gravity->vector(Quantity::number);
   if (const Value* weights = section.find("link_weights")) spec.link_gravity = weights->flag();
-  if (const Value* compensator = section.find("compensator")) spec.compensator = read_compensator(*compensator);
   if (const Value* listed = section.find("listed")) spec.listed = read_listed(*listed);
-  if (spec.compensator && spec.listed && spec.compensator->joint.value == spec.listed->joint.value)
-    section.at("listed").fail("names the compensator's joint", "its compliance is either listed or the spring's");
+  if (const Value* from = section.find("compensator_from")) {
+    from->choice({"compliances"});
+    spec.derived_compensator = read_compensator(section.at("compensator"), true);
+    if (!spec.listed || spec.listed->joint.value != spec.derived_compensator->joint.value)
+      from->fail("needs compliances of the compensator's joint", "listed: {joint: …, at: […]} with the same joint");
+    if (spec.listed->at.size() < 3)
+      section.at("listed").fail("has too few positions", "three at least: a compensator has three constants");
+  } else if (const Value* compensator = section.find("compensator")) {
+    spec.compensator = read_compensator(*compensator, false);
+    if (spec.listed && spec.compensator->joint.value == spec.listed->joint.value)
+      section.at("listed").fail("names the compensator's joint",
+                                "its compliance is either listed or the spring's (or compensator_from: compliances)");
+  }
   return spec;
 }
 

@@ -273,21 +273,5 @@ TEST(GravityCompensator, EquivalentStiffnessIsTheDerivativeOfTheTorque) {
   }
 }
 
-TEST(GravityCompensator, FitToThePublishedCompliancesGivesTheKnownValues) {
-  const CompensatorSpec spec = kr270_compensator();
-  const double at[] = {-0.01, -25.2, -56.9, -99.8, -140}, k2[] = {.297, .287, .315, .302, .251};
-  Eigen::MatrixXd A(5, 3);
-  Eigen::VectorXd stiffness(5);
-  for (int i = 0; i < 5; ++i) {
-    const CompensatorLinkage<double> linkage(spec, at[i] * degree);
-    A.row(i) << 1, linkage.added_stiffness(1, 0), linkage.added_stiffness(0, 1);
-    stiffness[i] = 1 / (k2[i] * 1e-6);
-  }
-  const Eigen::Vector3d x = A.colPivHouseholderQr().solve(stiffness);
-  EXPECT_NEAR(1e6 / x[0], 0.305, 5e-4);
-  EXPECT_NEAR(1e6 / x[1], 0.137, 5e-4);
-  EXPECT_NEAR(1e3 * x[2] / x[1], 464, 0.5);
-}
-
 }  // namespace
 }  // namespace posewright

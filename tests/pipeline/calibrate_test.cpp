@@ -195,6 +195,76 @@ TEST(MeasuredData, ActuatorsQuaternionsAndPhotogrammetricPointsStandForPoses) {
   }
 }
 
+TEST(MeasuredData, PointsThatFitNoRigidBodyAreRefusedWithTheirLine) {
+  VirtualFile pose("instruments/photogrammetry.yaml", 3);
+  const auto& markers = std::get<PoseMeasurement>(pose.problem.measurement.instrument).photogrammetry;
+  std::string header = "id", right, mixed;
+  for (const Coordinate& c : pose.model->coordinates()) header += "," + c.name, right += ",0", mixed += ",0";
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    header += "," + markers[k].name + ".x," + markers[k].name + ".y," + markers[k].name + ".z";
+    for (const auto& [line, at] : {std::pair{&right, k}, std::pair{&mixed, (k + 1) % markers.size()}})
+      for (int i = 0; i < 3; ++i) *line += "," + std::to_string(markers[at].position[i]);
+  }
+  EXPECT_EQ(read_measured_data(pose.write(header + "\n1" + right + "\n"), pose.problem, *pose.model).rows, 1);
+  try {
+    // A square of markers turned by one is a square again; one of them elsewhere is none.
+    mixed.insert(mixed.rfind(',') + 1, "9");
+    read_measured_data(pose.write(header + "\n1" + right + "\n2" + mixed + "\n"), pose.problem, *pose.model);
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().line, 3);
+    EXPECT_THAT(error.what(), HasSubstr("the points fit no rigid body"));
+  }
+}
+
+TEST(Calibrate, OfAPlatformWhoseJointCentresAreReadSaysHowItDeforms) {
+  VirtualFile data("telescope/problem.yaml", 40);
+  // The targets stand where the rigid platform has them; the second joint centre is lifted by its own actuator.
+  std::string text = "id";
+  for (const Coordinate& c : data.model->coordinates()) text += "," + c.name;
+  for (const Reading& reading : data.model->readings()) text += "," + reading.name;
+  for (int leg = 1; leg <= 6; ++leg)
+    for (const char* axis : {".x", ".y", ".z"}) text += ",leg_" + std::to_string(leg) + axis;
+  const auto& targets = std::get<PointsMeasurement>(data.problem.measurement.instrument).targets;
+  const auto cell = [](double value) {
+    std::array<char, 32> digits{};
+    std::snprintf(digits.data(), digits.size(), ",%.17g", value);
+    return std::string(digits.data());
+  };
+  std::vector<double> at(6), reference(6);
+  ASSERT_TRUE(data.model->actuator_values(std::vector<double>(6, 0.0), reference));
+  for (const MeasuredPose& pose : data.poses) {
+    text += "\n" + std::to_string(pose.id);
+    for (const double q : pose.q) text += cell(q);
+    for (const double y : pose.y) text += cell(y);
+    std::vector<Eigen::Vector3d> body, seen;
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      body.push_back(targets[t].position);
+      seen.emplace_back(pose.y.segment<3>(3 * Eigen::Index(t)));
+    }
+    const Eigen::Isometry3d X = rigid_fit(body, seen).X;
+    ASSERT_TRUE(data.model->actuator_values(pose.q, at));
+    for (int leg = 0; leg < 6; ++leg) {
+      const double lift = leg == 1 ? 0.02 * (at[1] - reference[1]) : 0.0;
+      const Eigen::Vector3d centre = X * Eigen::Vector3d(0.1 * leg, 0.1 - 0.05 * leg, lift);
+      for (const double value : centre) text += cell(value);
+    }
+  }
+  data.write(text + "\n");
+  CalibrateOptions options = data.options();
+  options.variant = "rigid_6";
+  const Calibration result = calibrate_problem(data.problem, options, Monitor{});
+  ASSERT_TRUE(result.platform);
+  EXPECT_EQ(result.platform->images, 40);
+  EXPECT_GT(result.platform->freedom, 100);
+  for (std::size_t leg = 0; leg < 6; ++leg) {
+    const JointDeformation& joint = result.platform->joints[leg];
+    // Target noise of 3 um turns and lifts the platform a little.
+    EXPECT_NEAR(joint.kappa, leg == 1 ? 0.02 : 0.0, 5 * joint.kappa_sigma + 1e-4) << leg;
+    EXPECT_LT(joint.kappa_sigma, 0.003);
+  }
+}
+
 TEST(RigidFit, CovarianceIsThatOfManyFitsToNoisyPoints) {
   const std::vector<Eigen::Vector3d> body = {{0.2, 0, 0}, {-0.1, 0.15, 0.02}, {-0.1, -0.15, 0}, {0, 0.05, 0.1}};
   const Eigen::Isometry3d X =

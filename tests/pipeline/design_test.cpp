@@ -158,15 +158,29 @@ TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));
   // ρ0² = 2nσ²/N at the optimum of an nR chain: 4/N for n = 2; 0.5 m needs N = 16.
-  const Problem problem = read_problem(
-      folder.write("p.yaml", planar_problem(2,
-                                            "{poses: auto, candidates: 3000, restarts: 2, require: {accuracy: 0.5001}, "
-                                            "test_poses: {at: [[0.1, 0.5], [2, -1.5]]}}")));
+  const Problem problem = read_problem(folder.write(
+      "p.yaml", planar_problem(2,
+                               "{poses: auto, candidates: 3000, restarts: 2, require: {accuracy: 0.5001 m}, "
+                               "test_poses: {at: [[0.1, 0.5], [2, -1.5]]}}")));
   const Plan plan = plan_problem(problem, {}, Monitor{});
   EXPECT_EQ(plan.poses.size(), 16U);
   EXPECT_LE(*plan.rho0, 0.5001);
   ASSERT_GE(plan.curve.size(), 4U);
   for (const CurvePoint& point : plan.curve) EXPECT_EQ(point.enough, point.poses >= 16) << point.poses;
+
+  // The same axis by axis: in its plane the point's error is that along x and y, across it nothing moves.
+  ASSERT_EQ(plan.test_axes.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(std::hypot(plan.test_axes[k][0], plan.test_axes[k][1]), plan.test_errors[k], 1e-9);
+    EXPECT_LT(plan.test_axes[k][2], 1e-9);
+  }
+  Problem axes = problem;
+  axes.design.require = {};
+  axes.design.require.axes[1] = 1.0;
+  const Plan along_y = plan_problem(axes, {}, Monitor{});
+  for (const auto& sigmas : along_y.test_axes) EXPECT_LE(1.96 * sigmas[1], 1.0);
+  for (const CurvePoint& point : along_y.curve)
+    EXPECT_EQ(point.enough, point.poses >= int(along_y.poses.size())) << point.poses;
 
   Problem sigma = problem;
   sigma.design.require = {};

@@ -185,6 +185,16 @@ INSTANTIATE_TEST_SUITE_P(ParallelRobot, BadProblem, testing::ValuesIn(parallel_r
 INSTANTIATE_TEST_SUITE_P(Measurement, BadProblem, testing::ValuesIn(measurements), test_name);
 INSTANTIATE_TEST_SUITE_P(Rest, BadProblem, testing::ValuesIn(rest), test_name);
 
+const BadFile requirements[] = {
+    {"AccuracyWithoutUnit", arm, "restarts: 7", "require: {accuracy: 0.1}", 37, "has no unit; allowed: m, mm, um, nm"},
+    {"PositionWithoutUnit", arm, "restarts: 7", "require: {position: {x: 0.1}}", 37, "require.position.x has no unit"},
+    {"RotationInMillimetres", arm, "restarts: 7", "require: {rotation: \"1 mm\"}", 37, "wrong unit"},
+    {"PositionOfNoAxis", arm, "restarts: 7", "require: {position: {}}", 37, "is empty"},
+    {"PositionNegative", arm, "restarts: 7", "require: {position: \"-1 mm\"}", 37, "> 0"},
+    {"RequireNothing", arm, "restarts: 7", "require: {}", 37, "is empty; allowed: accuracy, sigma, position, rotation"},
+};
+INSTANTIATE_TEST_SUITE_P(Require, BadProblem, testing::ValuesIn(requirements), test_name);
+
 TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
   try {
     parse_problem(replaced(arm, "candidates: 20000", "candidate: 20000"), "bad.yaml");

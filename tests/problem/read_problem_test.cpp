@@ -134,6 +134,20 @@ TEST(ReadProblem, DesignIsReadFieldByField) {
   EXPECT_EQ(design.repeats, Repeats{Repeats::any_number});
 }
 
+TEST(ReadProblem, RequirementsAreReadAxisByAxis) {
+  const auto axes_of = [](const char* text) {
+    return parse(example::replaced(example::serial, "restarts: 7", std::string("require: ") + text))
+        .design.require.axes;
+  };
+  const auto every = axes_of("{position: 0.1 mm, rotation: 1 mrad}");
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(*every[k], k < 3 ? 1e-4 : 1e-3);
+  const auto some = axes_of("{position: {z: 10 um}, rotation: {x: 1 mrad, y: 2 mrad}}");
+  EXPECT_FALSE(some[0] || some[1] || some[5]);
+  EXPECT_DOUBLE_EQ(*some[2], 1e-5);
+  EXPECT_DOUBLE_EQ(*some[3], 1e-3);
+  EXPECT_DOUBLE_EQ(*some[4], 2e-3);
+}
+
 TEST(DesignWords, AreReadBackAsTheyAreWritten) {
   for (const Scaling scaling : {Scaling::tolerance, Scaling::norm, Scaling::none})
     EXPECT_EQ(scaling_of(scaling_text(scaling)), scaling);

@@ -118,6 +118,27 @@ class Outputs(unittest.TestCase):
             self.assertAlmostEqual(calibration["parameters"][0]["value"], 0.1849, 3)
             self.check("calibration", calibration)
 
+    def test_calibrations(self):
+        text = (EXAMPLES / "kr270/elastostatic.yaml").read_text().replace("urdf: kr270", f"urdf: {EXAMPLES}/kr270/kr270")
+        small = "tolerance: {\"*.compliance*\": 0.03 urad/Nm}"
+        few = f"  few: {{parameters: [\"joint_a2.compliance@*\"], {small}}}\n"
+        (self.folder / "e.yaml").write_text(text.replace("  all:\n", few + "  all:\n")
+                                            .replace("    fixed: [joint_a1", f"    {small}\n    fixed: [joint_a1")
+                                            .replace("design: {", "design: {require: {position: {z: 1 mm}, rotation: 0.1 deg}, "))
+        self.run_program("plan", "e.yaml", "--candidates", 200, "--method", "exchange", "--restarts", 1, "--json")
+        self.run_program("simulate", "e.yaml", "plan.json", "--draws", 2, "--data", "readings.csv", "--json")
+        both = ["calibrate", "e.yaml", "readings.csv", "--hold-back", 3, "--in-steps", "--json"]
+        calibration = self.run_program(*both, "--variant", "compliances")
+        self.check("calibration", calibration)
+        self.assertEqual(calibration["compensator"]["freedom"], 2)
+        self.assertTrue(any(axis["met"] is not None for axis in calibration["axes"]))
+        models = self.run_program(*both, "--variant", "compliances,few")
+        self.check("calibrations", models)
+        self.assertEqual([m["variant"] for m in models["models"]], ["compliances", "few"])
+        (self.folder / "k2.csv").write_text("joint_a2 [deg],compliance [urad/Nm],sigma [urad/Nm]\n"
+                                            "-0.01,0.297,0.005\n-25.2,0.287,0.006\n-56.9,0.315,0.009\n-99.8,0.302,0.016\n-140,0.251,0.01\n")
+        self.check("compensator", self.run_program("calibrate", "e.yaml", "k2.csv", "--json"))
+
     def test_simulation(self):
         self.run_program("plan", "smallest.yaml", "--poses", 8, "--json")
         words = ["simulate", "smallest.yaml", "plan.json", "--draws", 20, "--json"]

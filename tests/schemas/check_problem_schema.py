@@ -39,9 +39,9 @@ class Schemas(unittest.TestCase):
             for part in parts(schema):
                 if not isinstance(part.get("$ref"), str):
                     continue
-                file, pointer = part["$ref"].split("#/")
+                file, _, pointer = part["$ref"].partition("#/")
                 target = SCHEMAS[file or name]
-                for step in pointer.split("/"):
+                for step in pointer.split("/") if pointer else []:
                     self.assertIn(step, target, part["$ref"])
                     target = target[step]
 
@@ -138,7 +138,7 @@ class ParametersSchema(unittest.TestCase):
         asked = set(re.findall(r"\.(?:at|find)\(\"(\w+)\"\)", reader))
         known = set().union(*(part["properties"] for part in objects(SCHEMAS["parameters.schema.json"])))
         self.assertEqual(asked - known, set())
-        self.assertEqual(asked, {"posewright_parameters", "variant", "convention", "parameters", "value", "unit"})
+        self.assertEqual(asked, {"posewright_parameters", "variant", "convention", "parameters", "value", "unit", "nominal"})
 
 
 if __name__ == "__main__":

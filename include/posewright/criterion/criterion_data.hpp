@@ -7,8 +7,9 @@ namespace posewright {
 
 /// A place where accuracy after compensation matters: position error = A · (error of the parameters).
 struct TestPoint {
-  Eigen::MatrixXd A;    ///< rows × m, raw coordinates (SI), zero for nuisance columns
-  double weight = 1.0;  ///< > 0
+  Eigen::MatrixXd A;       ///< rows × m, raw coordinates (SI), zero for nuisance columns
+  double weight = 1.0;     ///< > 0
+  Eigen::MatrixXd turn{};  ///< 3 × m: the same of the orientation (rotation vector), for what is stated of a plan
 };
 
 /// One of several variants that a plan serves at once: its columns in the blocks.

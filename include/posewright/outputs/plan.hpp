@@ -86,9 +86,10 @@ struct VariantResult {
 struct CurvePoint {
   int poses = 0;
   double log_det = 0.0;
-  std::optional<double> rho0;         ///< m
-  std::optional<double> worst_sigma;  ///< largest σ / required σ
-  bool enough = false;                ///< whether everything required is reached
+  std::optional<double> rho0;          ///< m
+  std::optional<double> worst_sigma;   ///< largest σ / required σ
+  bool enough = false;                 ///< whether everything required is reached
+  std::optional<double> worst_axis{};  ///< largest 95 % half width along or about an axis / what is required
 };
 
 struct PlanStage {
@@ -159,7 +160,10 @@ struct Plan {
   double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)
   std::optional<double> rho0;    ///< predicted position error at the test poses, root of the weighted mean square, m
   std::vector<double> test_errors{};  ///< the same at each test pose, m
-  bool prior = false;                 ///< tolerances count as prior knowledge in log_det, σ and everything else
+  std::optional<double> turn;         ///< as rho0, of the orientation: norm of the rotation vector, rad
+  /// 1σ at each test pose along x, y, z (m) and about them (rad), measurement frame.
+  std::vector<std::array<double, 6>> test_axes{};
+  bool prior = false;  ///< tolerances count as prior knowledge in log_det, σ and everything else
   double log_det = 0.0, log_det_full = 0.0;
   ObservabilityIndices indices;
   double condition = 0.0;

@@ -6,6 +6,7 @@
 
 #include "posewright/calibration/fit.hpp"
 #include "posewright/calibration/lack_of_fit.hpp"
+#include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
@@ -18,6 +19,7 @@ struct MeasuredData {
   double repeats = 1.0;                    ///< rows per pose, harmonic mean
   std::vector<double> spread;              ///< standard deviation of each reading within a pose; empty without repeats
   std::vector<RepeatedReadings> repeated;  ///< poses of more than one row
+  std::vector<PlatformImage> images;       ///< of a six-legged platform whose joint centres are read, too; row by row
   std::vector<std::string> notes;          ///< what the user must know of how it was read
 };
 
@@ -26,6 +28,7 @@ struct MeasuredData {
 /// may be there; others are passed over. Rows in a row with one configuration are repeats and are averaged. Actuators
 /// may stand for the coordinates of a parallel robot. Orientations as rotation vectors (pose.rx, …) or unit quaternions
 /// (pose.qx, pose.qy, pose.qz, pose.qw); photogrammetric points of a pose (NAME.x, …) become the pose by rigid fit.
+/// Joint centres of a platform (leg_1.x, …) beside its points make images of how it deforms.
 /// Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,10 @@ namespace posewright {
 
 /// One value of a parameters file.
 struct ParameterEntry {
-  Located<std::string> name;  ///< the model's name of the parameter, or the user's
-  std::string unit;           ///< as written; empty: not written
-  double value = 0.0;         ///< SI
+  Located<std::string> name;        ///< the model's name of the parameter, or the user's
+  std::string unit;                 ///< as written; empty: not written
+  double value = 0.0;               ///< SI
+  std::optional<double> nominal{};  ///< of the robot that was calibrated, SI, where the file has it
 };
 
 /// A parameters file (docs/parameters-file.md): where the parameters of a robot are after calibration.

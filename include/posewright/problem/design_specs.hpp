@@ -45,11 +45,20 @@ struct TestPosesSpec {
   int line = 0;
 };
 
-/// What a plan of `poses: auto` must reach.
+/// What a plan of `poses: auto` must reach, and what a calibration is judged by.
 struct RequirementSpec {
   std::optional<double> accuracy;   ///< ρ0 at the test poses, m
   std::vector<PatternValue> sigma;  ///< 1σ of parameters
+  /// Error of a pose along x, y, z (m) and about them (rad): 95 % of a plan's at every test pose, the largest that a
+  /// calibration leaves at its verification poses.
+  std::array<std::optional<double>, 6> axes{};
   int line = 0;
+
+  bool of_axes() const {
+    for (const std::optional<double>& axis : axes)
+      if (axis) return true;
+    return false;
+  }
 };
 
 struct DesignSpec {

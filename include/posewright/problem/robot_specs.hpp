@@ -51,10 +51,13 @@ struct ElastostaticSpec {
   bool link_gravity = false;                                          ///< weight of the links from the URDF's inertials
   std::vector<LoadCaseSpec> loads;                                    ///< at least one
   std::optional<CompensatorSpec> compensator;
+  /// Linkage of a compensator whose joint has listed compliances: its constants follow from them after a calibration
+  /// (key `compensator_from`), so that geometry alone is set.
+  std::optional<CompensatorSpec> derived_compensator;
   /// One compliance for each of these positions of one joint, which then takes no other.
   struct Listed {
     Located<std::string> joint;
-    std::vector<double> at;                ///< rad or m, ascending
+    std::vector<double> at;                ///< rad or m, in the file's order
     Quantity quantity = Quantity::number;  ///< what the written units measure; number: none, so SI
   };
   std::optional<Listed> listed;

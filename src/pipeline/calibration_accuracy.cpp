@@ -1,0 +1,102 @@
+#include "calibration_accuracy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "posewright/calibration/placement.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::array<const char*, 6> required_axes = {"x", "y", "z", "rx", "ry", "rz"};
+
+using Residuals = std::vector<Eigen::VectorXd>;
+
+std::optional<double> required_of(const RequirementSpec& require, const std::string& axis) {
+  const auto at = std::find(required_axes.begin(), required_axes.end(), axis);
+  return at == required_axes.end() ? std::nullopt : require.axes[std::size_t(at - required_axes.begin())];
+}
+
+void add_axes(const char* which, const std::vector<AxisErrors>& before, const std::vector<AxisErrors>& after,
+              const RequirementSpec& require, std::vector<AxisImprovement>& axes) {
+  for (std::size_t a = 0; a < std::min(before.size(), after.size()); ++a)
+    axes.push_back({which, before[a], after[a], required_of(require, after[a].axis)});
+}
+
+void fill_poses(const CalibratedPoses& poses, const Residuals& beyond, Calibration& result) {
+  for (std::size_t k = 0; k < poses.fitted.size(); ++k) {
+    double weight = 1;
+    if (!result.fit.weights.empty())
+      for (const double w : result.fit.weights[k]) weight = std::min(weight, w);
+    const Eigen::VectorXd& r = result.fit.residuals[k];
+    result.pose_residuals.push_back({poses.fitted[k].id, false, {r.begin(), r.end()}, weight});
+  }
+  const std::vector<PredictedError> predicted =
+      predicted_errors(poses.model, poses.columns, poses.held_back, result.fit);
+  const std::vector<PoseError> observed = observed_errors(poses.model, beyond);
+  for (std::size_t k = 0; k < poses.held_back.size(); ++k)
+    result.pose_residuals.push_back({poses.held_back[k].id,
+                                     true,
+                                     {beyond[k].begin(), beyond[k].end()},
+                                     1.0,
+                                     PoseAccuracy{predicted[k], observed[k]}});
+}
+
+}  // namespace
+
+void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require, Calibration& result) {
+  const IdentificationModel& model = poses.model;
+  const std::vector<double> nominal(model.parameters().size(), 0.0);
+  const std::size_t placing = placing_columns(poses.columns).selected.size();
+  result.placed = placing > 0 && placing < poses.columns.selected.size();
+  Residuals beyond;
+  for (const auto& [which, list] : {std::pair{"fitted", &poses.fitted}, std::pair{"held back", &poses.held_back}}) {
+    if (list->empty()) continue;
+    const auto add = [&](const char* parameters, const Residuals& residuals) {
+      result.residuals.push_back({which, parameters, summarise(model, *list, residuals)});
+    };
+    Residuals before = residuals_of(model, nominal, *list);
+    add("nominal", before);
+    if (result.placed) {
+      before = residuals_of(model, poses.placed, *list);
+      add("placed", before);
+    }
+    const Residuals after = residuals_of(model, result.correction, *list);
+    add("calibrated", after);
+    add_axes(which, errors_by_axis(model, *list, before), errors_by_axis(model, *list, after), require, result.axes);
+    if (list == &poses.held_back) beyond = after;
+  }
+  fill_poses(poses, beyond, result);
+}
+
+void fill_compensator(const ElastostaticSpec& spec, Calibration& result) {
+  if (!spec.derived_compensator) return;
+  const std::string begin = spec.listed->joint.value + ".compliance@";
+  ListedCompliances listed;
+  listed.at = spec.listed->at;
+  std::vector<Eigen::Index> columns;
+  std::vector<double> values;
+  // The catalogue has them in the order of the list, and so has every selection of its columns.
+  for (const EstimatedValue& value : result.values) {
+    if (!value.value.name.starts_with(begin)) continue;
+    const auto column = std::find(result.columns.begin(), result.columns.end(), value.value.name);
+    if (column == result.columns.end()) {
+      result.notes.push_back("the compensator's constants need all listed compliances: " + value.value.name +
+                             " is not estimated");
+      return;
+    }
+    columns.push_back(column - result.columns.begin());
+    values.push_back(value.value.value);
+  }
+  listed.compliance = Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+  listed.covariance = result.fit.covariance(columns, columns);
+  try {
+    result.compensator = compensator_from_compliances(*spec.derived_compensator, listed);
+  } catch (const CannotDo& error) {
+    result.notes.push_back(std::string("no constants of the compensator: ") + error.what());
+  }
+}
+
+}  // namespace posewright

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "posewright/calibration/platform_deformation.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Points of a platform that are read beside its pose: those that make the rigid body, and columns `leg_i.x`,
+/// `leg_i.y`, `leg_i.z` of the joint centres.
+struct PlatformPoints {
+  std::vector<TargetSpec> body;
+  double noise = 0.0;               ///< 1σ of a coordinate, m
+  std::vector<std::string> joints;  ///< "leg_1", …
+};
+
+/// Nothing for robots without six legs and instruments that read no points of the platform.
+std::optional<PlatformPoints> platform_points(const Problem& problem, const IdentificationModel& model);
+
+/// How far the actuators stand from where the nominal robot has them at the reference. Empty if q is out of reach.
+Eigen::VectorXd actuator_moves(const IdentificationModel& model, const std::vector<double>& q);
+
+}  // namespace posewright

@@ -64,7 +64,7 @@ std::string axes_text(const Calibration& c) {
                                     shown(a.after.largest),
                                     times(a.before.largest, a.after.largest),
                                     shown(a.after.deviation),
-                                    shown(a.after.mean)};
+                                    shown_to(a.after.mean, a.after.rms, a.after.unit)};
     if (required)
       row.insert(row.end(), {a.required ? shown(*a.required) : "", a.required ? (a.met() ? "met" : "NOT MET") : ""});
     table.row(std::move(row));

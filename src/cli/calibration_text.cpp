@@ -109,7 +109,7 @@ std::string residuals_text(const Calibration& c) {
     for (const ResidualSummary& k : set.kinds) {
       const std::string unit = k.kind == "distance" ? "m" : k.kind;
       table.row({kind_name(k.kind), set.poses, set.parameters, shown_value(k.rms, unit), shown_value(k.largest, unit),
-                 std::to_string(k.pose), shown_value(k.mean, unit)});
+                 std::to_string(k.pose), shown_to(k.mean, k.rms, unit)});
     }
   std::string text = "\nResiduals, measured less predicted\n" + table.text();
   if (std::any_of(c.residuals.begin(), c.residuals.end(),
@@ -178,8 +178,8 @@ std::string whiteness_text(const Calibration& c) {
     text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
                         chance(c.tests.within.probability),
                         c.tests.within.probability < remarkable
-                            ? ": readings of a pose err together: the robot stood elsewhere than stated? State its "
-                              "repeatability; σ and intervals are too small without it"
+                            ? ": readings of a pose err together: the robot stood farther off than stated? State more "
+                              "repeatability, of its orientation too; σ and intervals are too small without it"
                             : "");
   if (c.tests.normality.possible)
     text += fmt::format(

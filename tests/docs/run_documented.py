@@ -47,6 +47,7 @@ BEFORE = {
     "docs/parameters-file.md": OWN + KR270 + "\n" + READINGS.format("measured.csv")
     + "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n",
     "docs/report.md": ROUTED,
+    "docs/reproduction-kr270.md": "",
     "docs/reproduction-telescope.md": "",
     "docs/simulate.md": "",
 }

@@ -96,6 +96,9 @@ Json platform_json(const PlatformDeformation& p) {
 
 std::string platform_svg(const PlatformDeformation& p) {
   double actuator = 0, displacement = 0;
+  // Displacements are from the mean place, so that both laws go through the mean of the actuators.
+  Eigen::VectorXd middle = Eigen::VectorXd::Zero(p.actuators.front().size());
+  for (const Eigen::VectorXd& rho : p.actuators) middle += rho / double(p.actuators.size());
   for (std::size_t i = 0; i < p.ids.size(); ++i) {
     actuator = std::max(actuator, p.actuators[i].cwiseAbs().maxCoeff());
     displacement = std::max(displacement, p.displacements[i].row(2).cwiseAbs().maxCoeff());
@@ -109,15 +112,16 @@ std::string platform_svg(const PlatformDeformation& p) {
     const LegPlot plot(int(leg), actuator, displacement);
     svg += plot.frame(
         fmt::format("leg_{}: Δb_z, ±{:.1f} µm over Δρ, ±{:.2f} mm", leg + 1, 1e6 * displacement, 1e3 * actuator));
-    const double kappa = p.joints[leg].kappa;
-    svg += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#c60'/>\n", plot.x(-actuator),
-                       plot.y(-kappa * actuator), plot.x(actuator), plot.y(kappa * actuator));
+    const double kappa = p.joints[leg].kappa, at_middle = middle[Eigen::Index(leg)];
+    svg +=
+        fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#c60'/>\n", plot.x(-actuator),
+                    plot.y(kappa * (-actuator - at_middle)), plot.x(actuator), plot.y(kappa * (actuator - at_middle)));
     for (std::size_t i = 0; i < p.ids.size(); ++i) {
       const double rho = p.actuators[i][Eigen::Index(leg)];
       svg +=
           fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3' fill='#246'/><path d='M{:.1f} {:.1f}h6' stroke='#2a2'/>\n",
                       plot.x(rho), plot.y(p.displacements[i](2, Eigen::Index(leg))), plot.x(rho) - 3,
-                      plot.y(p.joints[leg].K.dot(p.actuators[i].transpose())));
+                      plot.y(p.joints[leg].K.dot((p.actuators[i] - middle).transpose())));
     }
   }
   svg += fmt::format(

@@ -22,7 +22,9 @@ constexpr int most_reweightings = 50;
 constexpr double settled_weights = 1e-4;
 // Noise that chance refuses this seldom is refused: σ then count what the residuals show.
 constexpr double refusal = 0.01;
-constexpr int noise_rounds = 3;
+// The noise and the estimate agree when another round changes it by less than this.
+constexpr int noise_rounds = 200;
+constexpr double settled_noise = 1e-9;
 // Pivots of unit columns below this mean that double precision cannot tell a column from the others.
 constexpr double rank_tolerance = 1e-11;
 // What Levenberg–Marquardt sees of a step that no robot can take: it will try a shorter one.
@@ -123,11 +125,15 @@ Eigen::MatrixXd covariance_with(const StackedReadings& stacked, const Eigen::Mat
   return inverse_information(rows);
 }
 
+/// tr(H): how many degrees of freedom of the readings the estimate takes up.
+double taken_up(const StackedReadings& stacked, const Eigen::MatrixXd& root, double factor) {
+  return (root * covariance_with(stacked, root, factor)).cwiseProduct(root).sum() / (factor * factor);
+}
+
 /// The noise that the readings' residuals show, in units of the stated one.
 double noise_of(const StackedReadings& stacked, const Eigen::MatrixXd& root, const Eigen::VectorXd& squares,
                 double factor) {
-  const double told = (root * covariance_with(stacked, root, factor)).cwiseProduct(root).sum() / (factor * factor);
-  const double freedom = stacked.readings() - told;
+  const double freedom = stacked.readings() - taken_up(stacked, root, factor);
   return freedom > 0 ? std::sqrt(squares.sum() / freedom) : 0.0;
 }
 
@@ -135,8 +141,10 @@ double noise_of(const StackedReadings& stacked, const Eigen::MatrixXd& root, con
 double settle_noise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, Fit& result) {
   double noise = result.scale;
   for (int round = 0; round < noise_rounds && noise > 0; ++round) {
+    const double before = noise;
     noise = noise_of(stacked, root_of_readings(stacked, x), stacked.group_squares(x), noise);
     if (stacked.known().empty() || !(noise > 0)) break;
+    if (round > 0 && std::abs(noise - before) < settled_noise * noise) break;
     stacked.set_noise_factor(noise);
     result.converged = minimise(stacked, options, x, result.evaluations);
   }
@@ -162,12 +170,20 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, Eigen:
   } else if (options.weighting == Weighting::ordinary) {
     factor = result.scale = settle_noise(stacked, options, x, result);
   } else if (result.scale > 1 && chi_square_exceeded(result.chi_square, result.freedom) < refusal) {
-    factor = result.noise_factor = std::max(1.0, settle_noise(stacked, options, x, result));
+    factor = settle_noise(stacked, options, x, result);
+    if (factor < 1 && !stacked.known().empty()) {
+      // Against the tolerances the readings are as good as stated after all.
+      stacked.set_noise_factor(1.0);
+      result.converged = minimise(stacked, options, x, result.evaluations);
+    }
+    factor = result.noise_factor = std::max(1.0, factor);
   }
   const auto tolerances = stacked.tolerances().asDiagonal();
   result.root = root_of_readings(stacked, x);
   if (factor > 0) result.covariance = tolerances * covariance_with(stacked, result.root, factor) * tolerances;
   else result.covariance.setZero(stacked.columns(), stacked.columns());
+  result.left = result.freedom;
+  if (!stacked.known().empty() && factor > 0) result.left = stacked.readings() - taken_up(stacked, result.root, factor);
   stacked.spread(x, result.residuals, result.whitened);
 }
 

@@ -47,7 +47,7 @@ TestResult lack_of_fit(const IdentificationModel& model, const IdentificationMod
                        const Fit& result) {
   TestResult test;
   const Within within = within_poses(instrument, repeated, result.correction);
-  if (!(within.variance > 0) || result.freedom < 1 || !result.weights.empty()) return test;
+  if (!(within.variance > 0) || result.freedom < 1 || !(result.left > 0) || !result.weights.empty()) return test;
   Linearisation whole, noise;
   Eigen::VectorXd y;
   double square = 0, share = 0;
@@ -68,8 +68,8 @@ TestResult lack_of_fit(const IdentificationModel& model, const IdentificationMod
   }
   share /= rows;
   test.possible = true;
-  test.statistic = square / result.freedom;
-  test.probability = fisher_exceeded(test.statistic, result.freedom, within.freedom / (share * share));
+  test.statistic = square / result.left;
+  test.probability = fisher_exceeded(test.statistic, result.left, within.freedom / (share * share));
   return test;
 }
 

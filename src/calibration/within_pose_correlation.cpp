@@ -28,7 +28,7 @@ TestResult within_pose_correlation(const IdentificationModel& model, const Varia
                                    const std::vector<MeasuredPose>& poses, const Fit& result) {
   TestResult test;
   const int width = model.rows_per_target();
-  if (width == 0 || result.freedom < 1 || !result.weights.empty()) return test;
+  if (width == 0 || result.freedom < 1 || !result.scale_known || !(result.left > 0)) return test;
   const Eigen::Index m = Eigen::Index(columns.selected.size());
   const BlockArray blocks = blocks_of(model, columns, poses, result.correction);
   Eigen::MatrixXd first = Eigen::MatrixXd::Zero(m, m), second = first;  // Σ JᵀBJ, Σ JᵀB²J
@@ -51,10 +51,10 @@ TestResult within_pose_correlation(const IdentificationModel& model, const Varia
   }
   if (pairs < 2 * fewest_pairs || !(square > 0)) return test;
   // The covariance of unit noise: what the residuals told of its size goes out again.
-  const double unit = std::pow(result.scale_known ? result.noise_factor : result.scale, 2);
+  const double unit = result.noise_factor * result.noise_factor;
   const Eigen::MatrixXd covariance = result.covariance / unit;
   const Eigen::MatrixXd projected = covariance * first;
-  const double f = result.freedom, size = square / f;
+  const double f = result.left, size = square / f;
   const double expected = -projected.trace();
   const double of_square =
       pairs - 2 * covariance.cwiseProduct(second).sum() + projected.cwiseProduct(projected.transpose()).sum();

@@ -71,11 +71,11 @@ Problem without_pose_errors(Problem problem) {
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant) {
   if (variant.convention != VariantSpec::Convention::frames && !std::holds_alternative<SerialArmSpec>(problem.robot))
     throw CannotDo("variant '" + variant.name + "': parameters dh and mdh are those of a serial arm");
-  std::unique_ptr<IdentificationModel> model;
-  if (problem.measurement.loaded_minus_unloaded)
-    model = std::make_unique<LoadDifference>(observed(without_pose_errors(problem), variant));
-  else model = observed(problem, variant);
+  const bool difference = problem.measurement.loaded_minus_unloaded;
+  std::unique_ptr<IdentificationModel> model = observed(difference ? without_pose_errors(problem) : problem, variant);
+  // Before anything is put around it: what the arm is linearised at, its tool poses follow, too.
   apply_nominal(*model, problem, variant);
+  if (difference) model = std::make_unique<LoadDifference>(std::move(model));
   return model;
 }
 

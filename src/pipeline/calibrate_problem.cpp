@@ -52,6 +52,7 @@ class CalibrationRun {
     const VariantColumns all = select_columns(*model_, problem_, spec_);
     placed_ = fit_options.start = placed(*model_, all, fitted_, fit_options);
     choose_columns(all);
+    leave_at_nominal_values(all, fit_options.start);
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
     report(1);
     result_.correction = result_.fit.correction;
@@ -147,6 +148,13 @@ class CalibrationRun {
       leave_at_nominal(dependent, wanted);
     }
     if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
+  }
+
+  /// What is not estimated has its nominal value, wherever the placing fit had put it.
+  void leave_at_nominal_values(const VariantColumns& all, std::vector<double>& start) const {
+    for (const int i : all.selected)
+      if (std::find(columns_.selected.begin(), columns_.selected.end(), i) == columns_.selected.end())
+        start[std::size_t(i)] = 0.0;
   }
 
   void leave_at_nominal(const std::vector<Dependency>& dependent, const VariantColumns& among) {

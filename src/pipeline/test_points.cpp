@@ -16,6 +16,25 @@ Problem with_pose_seen(Problem problem) {
   return problem;
 }
 
+std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
+                                                    const IdentificationModel& model) {
+  Problem seen = with_pose_seen(problem);
+  seen.parameters.reset();
+  if (auto* arm = std::get_if<SerialArmSpec>(&seen.robot)) arm->parameter_names.clear();
+  VariantSpec plain = variant;
+  plain.nominal.clear();
+  std::unique_ptr<IdentificationModel> result = make_model(seen, plain);
+  for (int i = 0; i < int(result->parameters().size()); ++i) {
+    const Parameter& own = result->parameters()[std::size_t(i)];
+    for (const Parameter& p : model.parameters())
+      if (p.name == own.name && p.nominal != own.nominal) {
+        result->set_nominal(i, p.nominal);
+        break;
+      }
+  }
+  return result;
+}
+
 std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
                                       const IdentificationModel& model, const VariantColumns& columns,
                                       std::uint64_t seed) {
@@ -25,7 +44,7 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
     throw CannotDo("design: test_poses are those of a robot with a tip; a compensator alone has none");
   const TestPosesSpec& spec = *problem.design.test_poses;
   const Problem seen = with_pose_seen(problem);
-  const auto position = make_model(seen, variant);
+  const auto position = make_pose_seen(problem, variant, model);
   // Columns by name: the instrument's own (targets, stations, a lens) do not move the robot.
   std::vector<int> selected, where;
   for (std::size_t j = std::size_t(columns.nuisance); j < columns.selected.size(); ++j) {

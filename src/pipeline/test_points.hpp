@@ -11,6 +11,10 @@ namespace posewright {
 
 /// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
 Problem with_pose_seen(Problem problem);
+/// Its model at the nominal values of `model`, which is the problem's own: values of what only the instrument has
+/// (targets, stations, a lens) are none of it.
+std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
+                                                    const IdentificationModel& model);
 
 /// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
 /// does not move the robot are zero. Empty where the problem has none. Throws InputError for configurations that do not

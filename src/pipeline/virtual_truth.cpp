@@ -82,8 +82,8 @@ std::unique_ptr<PlacesToCheck> places_to_check(const Problem& problem, const Sid
   if (!problem.design.test_poses || std::holds_alternative<CompensatorGeometrySpec>(problem.robot)) return nullptr;
   const Problem seen = with_pose_seen(problem);
   auto result = std::make_unique<PlacesToCheck>();
-  result->fitted = make_model(seen, *fitted.spec);
-  result->truth = make_model(seen, *truth.spec);
+  result->fitted = make_pose_seen(problem, *fitted.spec, *fitted.model);
+  result->truth = make_pose_seen(problem, *truth.spec, *truth.model);
   result->points = test_points_of(problem, *fitted.spec, *fitted.model, *fitted.columns, seed);
   CheckPlaces& places = result->places;
   places.fitted = result->fitted.get();

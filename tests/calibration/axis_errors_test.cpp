@@ -113,7 +113,9 @@ void expect_predicted_as_observed(const std::string& file, int poses) {
   // 20 poses of 60 draws share their estimates: some per cent of chance.
   EXPECT_NEAR(position[2] / position[1], 1, 0.08) << file;
   EXPECT_GT(position[0], 0.1 * position[1]) << file;
-  if (std::isfinite(rotation[1])) EXPECT_NEAR(rotation[2] / rotation[1], 1, 0.08) << file;
+  if (std::isfinite(rotation[1])) {
+    EXPECT_NEAR(rotation[2] / rotation[1], 1, 0.08) << file;
+  }
 }
 
 TEST(PredictedErrors, AreWhatManyCalibrationsShowAtPosesThatWereNotFitted) {

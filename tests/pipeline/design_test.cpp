@@ -228,6 +228,23 @@ TEST(Design, PlansForSeveralVariantsServeEachAndMaximinTheWorstBest) {
   EXPECT_GE(worst(plans["maximin"]), worst(plans["compound"]) - 0.01);
 }
 
+TEST(Design, ValuesOfTargetsStandBesideTestPosesAndDoNotMoveTheRobotThere) {
+  Problem problem = example("kr270/problem.yaml");
+  problem.design.test_poses = TestPosesSpec{};
+  problem.design.test_poses->random = 5;
+  PlanOptions options = quick(60);
+  options.poses = 12;
+  const Plan plain = plan_problem(problem, options, Monitor{});
+  // A variant that is linearised at another place of a target, and a user's name for one.
+  problem.variants.front().nominal = {{{"target.P1.x", 1}, 0.2773, Quantity::length}};
+  std::get<SerialArmSpec>(problem.robot)
+      .parameter_names.emplace_back("reflector", Located<std::string>{"target.P2.y", 1});
+  const Plan moved = plan_problem(problem, options, Monitor{});
+  ASSERT_TRUE(moved.rho0 && moved.turn);
+  EXPECT_NEAR(*moved.rho0 / *plain.rho0, 1, 0.02);
+  EXPECT_NEAR(*moved.turn / *plain.turn, 1, 0.02);
+}
+
 TEST(Design, TestPosesFromAFileAreThoseWrittenInTheProblem) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));

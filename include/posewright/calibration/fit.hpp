@@ -37,7 +37,10 @@ struct Fit {
   double chi_square = 0.0;  ///< sum of squares of the whitened residuals (weighted where robust) and of prior terms
   int readings = 0;         ///< how many were read
   int freedom = 0;          ///< readings − columns, plus the tolerances that count
-  double scale = 0.0;       ///< √(chi_square/freedom); robust: of the central part
+  /// Degrees of freedom of the readings' residuals alone: readings − tr(H), H = J C Jᵀ what the estimate takes up of
+  /// them; `freedom` where no tolerance counts.
+  double left = 0.0;
+  double scale = 0.0;  ///< √(chi_square/freedom); robust: of the central part
   /// Weighted: what the stated noise was multiplied by because the residuals refuse it (less than 1 % chance); else 1.
   /// The covariance counts it, and where tolerances count so do the estimates.
   double noise_factor = 1.0;

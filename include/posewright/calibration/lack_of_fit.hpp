@@ -21,7 +21,7 @@ struct RepeatedReadings {
 /// rows of V rests on s², so that the variance of its logarithm is φ² 2/ν: (f, ν/φ²) after Satterthwaite 1946.
 /// @param model       that was fitted: C at `repeats` readings a pose
 /// @param instrument  the same with what stays at a pose left out and one reading a pose: E
-/// Not possible where nothing was read twice, without degrees of freedom, and where a prior or weights had a part.
+/// f is Fit::left. Not possible where nothing was read twice, without degrees of freedom, and for robust fits.
 TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,
                        const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,
                        const Fit& result);

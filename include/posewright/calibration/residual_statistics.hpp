@@ -40,9 +40,9 @@ ResidualTests test_residuals(const Fit& result);
 /// Whether readings of one kind (x of every target, u of every point) err together within a pose: r = Σ of products of
 /// their whitened residuals over all pairs. Under white noise of any size f rᵀBr/rᵀr has the mean tr A and the variance
 /// 2 (f tr A² − (tr A)²)/(f + 2), A = (I − H)B(I − H), H what the fitted parameters take out of the residuals, f their
-/// degrees of freedom; compared with the normal distribution. Statistic: the correlation beyond that mean. A
-/// displacement of the tip that is not stated shows here. Not possible where a pose has no two readings of a kind, nor
-/// for robust fits.
+/// degrees of freedom (Fit::left); compared with the normal distribution. Statistic: the correlation beyond that mean.
+/// A displacement of the tip that is not stated shows here. Not possible where a pose has no two readings of a kind,
+/// nor for fits that do not weigh readings by their covariance (ordinary, robust).
 TestResult within_pose_correlation(const IdentificationModel& model, const VariantColumns& columns,
                                    const std::vector<MeasuredPose>& poses, const Fit& result);
 

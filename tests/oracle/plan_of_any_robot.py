@@ -2,6 +2,7 @@
 
     plan_of_any_robot.py PROGRAM SOURCE [COUNT [SEED]]      the examples of SOURCE and COUNT (20) random problems
     plan_of_any_robot.py PROGRAM --problems FILE...         these problem files
+    plan_of_any_robot.py --write FOLDER SEED NUMBER         writes a random problem, to look at it
 
 A second road that knows only definitions: frames multiplied out, loops closed by Newton's method, derivatives by differences,
 covariances as matrices, the information as a sum. Nothing is taken from the program but the files that it writes. SEED is a
@@ -105,6 +106,10 @@ def variants_to_check(files):
 
 
 def main(arguments):
+    if arguments[0] == "--write":
+        folder, seed, number = pathlib.Path(arguments[1]), int(arguments[2]), int(arguments[3])
+        print(*random_problem(folder, np.random.default_rng([seed, number]), number))
+        sys.exit(0)
     program, random, files = pathlib.Path(arguments[0]).resolve(), [], []
     if "--problems" in arguments:
         files = [pathlib.Path(name).resolve() for name in arguments[arguments.index("--problems") + 1:]]

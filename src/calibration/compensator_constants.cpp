@@ -30,9 +30,8 @@ CompensatorConstants compensator_from_compliances(const CompensatorSpec& geometr
   }
   const Eigen::RowVector3d scale = A.colwise().norm();
   Eigen::MatrixXd whitened = A * scale.cwiseInverse().asDiagonal();
-  Eigen::VectorXd b = stiffness;
   root.matrixL().solveInPlace(whitened);
-  root.matrixL().solveInPlace(b);
+  const Eigen::VectorXd b = root.matrixL().solve(stiffness);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whitened);
   if (!(std::abs(qr.matrixR()(2, 2)) > least_pivot * std::abs(qr.matrixR()(0, 0))))
     throw CannotDo("the listed positions do not tell the joint's stiffness from spring and preload");

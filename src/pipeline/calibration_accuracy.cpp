@@ -52,8 +52,9 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
   const std::size_t placing = placing_columns(poses.columns).selected.size();
   result.placed = placing > 0 && placing < poses.columns.selected.size();
   Residuals beyond;
-  for (const auto& [which, list] : {std::pair{"fitted", &poses.fitted}, std::pair{"held back", &poses.held_back}}) {
+  for (const std::vector<MeasuredPose>* list : {&poses.fitted, &poses.held_back}) {
     if (list->empty()) continue;
+    const char* const which = list == &poses.fitted ? "fitted" : "held back";
     const auto add = [&](const char* parameters, const Residuals& residuals) {
       result.residuals.push_back({which, parameters, summarise(model, *list, residuals)});
     };

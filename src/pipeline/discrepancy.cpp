@@ -44,46 +44,52 @@ Effects checked_effects(const Problem& problem, const Preparation& prepared, con
   return effects;
 }
 
-/// Information from before over all columns of the effects; empty: none.
-Eigen::MatrixXd known_before(const Preparation& prepared, const Effects& effects, bool prior, int threads) {
-  const auto all = Eigen::Index(effects.columns.selected.size());
-  if (!prior && prepared.measured.count() == 0) return {};
-  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(all, all);
-  if (prior)
-    for (Eigen::Index j = 0; j < effects.fitted; ++j)
-      known(j, j) = std::pow(effects.columns.parameters[std::size_t(j)].tolerance, -2);
-  if (prepared.measured.count() > 0) {
-    const BlockArray blocks =
-        build_blocks(*prepared.first().model, effects.columns.selected, prepared.measured, threads);
-    known += blocks.all().transpose() * blocks.all();
-  }
-  return known;
+/// Information of the measured poses over all columns of the effects; empty: none.
+Eigen::MatrixXd measured_before(const Preparation& prepared, const Effects& effects, int threads) {
+  if (prepared.measured.count() == 0) return {};
+  const BlockArray blocks = build_blocks(*prepared.first().model, effects.columns.selected, prepared.measured, threads);
+  return blocks.all().transpose() * blocks.all();
 }
 
-/// Candidates' rows, and as many more as what is known before is worth.
-Eigen::MatrixXd stacked(const Preparation& prepared, const Effects& effects, const Eigen::MatrixXd& known,
+/// What a tolerance says of every fitted column, 1/tolerance; empty: no prior.
+Eigen::VectorXd told_by_tolerances(const Effects& effects, bool prior) {
+  Eigen::VectorXd told(prior ? effects.fitted : 0);
+  for (Eigen::Index j = 0; j < told.size(); ++j) told[j] = 1 / effects.columns.parameters[std::size_t(j)].tolerance;
+  return told;
+}
+
+/// Candidates' rows, and as many more as what was measured before is worth.
+Eigen::MatrixXd stacked(const Preparation& prepared, const Effects& effects, const Eigen::MatrixXd& measured,
                         int threads) {
   const BlockArray blocks =
       build_blocks(*prepared.first().model, effects.columns.selected, prepared.configurations, threads);
-  Eigen::MatrixXd rows(blocks.all().rows() + known.rows(), blocks.columns());
+  Eigen::MatrixXd rows(blocks.all().rows() + measured.rows(), blocks.columns());
   rows.topRows(blocks.all().rows()) = blocks.all();
-  if (known.size() == 0) return rows;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(known);
-  rows.bottomRows(known.rows()) =
+  if (measured.size() == 0) return rows;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(measured);
+  rows.bottomRows(measured.rows()) =
       eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
   return rows;
 }
 
-/// The basis of what is left: fills mix and group.mix; returns β, what the fitted columns take up of every effect.
-Eigen::MatrixXd find_basis(Discrepancy& result, const Eigen::MatrixXd& rows) {
+/// The basis of what is left of the effects beside the fitted columns: fills mix, group.mix and, of tolerances, known.
+/// @param rows  of the readings: × columns of the effects
+/// @param told  by tolerances. A tolerance says that the parameter is nominal, whatever the truth is: its row holds
+///              the fitted column and nothing of an effect.
+/// @return β, what the fitted columns take up of every effect
+Eigen::MatrixXd find_basis(Discrepancy& result, const Eigen::MatrixXd& rows, const Eigen::VectorXd& told) {
   const Effects& effects = result.effects;
-  const Eigen::Index own = effects.fitted, all = effects.combinations.rows();
-  const Eigen::VectorXd length = rows.leftCols(own).colwise().norm().cwiseMax(1e-300);
-  const Eigen::MatrixXd fitted = rows.leftCols(own) * length.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd made = rows * effects.combinations;
-  const Eigen::MatrixXd beta =
-      length.cwiseInverse().asDiagonal() * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fitted).solve(made);
-  const Eigen::MatrixXd left = made - rows.leftCols(own) * beta;
+  const Eigen::Index own = effects.fitted, all = effects.combinations.rows(), readings = rows.rows();
+  Eigen::MatrixXd fitted = Eigen::MatrixXd::Zero(readings + told.size(), own), made(fitted.rows(), effects.count());
+  fitted.topRows(readings) = rows.leftCols(own);
+  if (told.size() > 0) fitted.bottomRows(own) = told.asDiagonal();
+  made.topRows(readings) = rows * effects.combinations;
+  made.bottomRows(told.size()).setZero();
+  const Eigen::VectorXd length = fitted.colwise().norm().cwiseMax(1e-300);
+  fitted *= length.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd scaled_beta = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fitted).solve(made);
+  const Eigen::MatrixXd beta = length.cwiseInverse().asDiagonal() * scaled_beta;
+  const Eigen::MatrixXd left = made - fitted * scaled_beta;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(left.transpose() * left);
   const double whole = made.colwise().squaredNorm().maxCoeff();
   const Eigen::Index kept = (eigen.eigenvalues().array() > imitated * whole).count();
@@ -94,6 +100,11 @@ Eigen::MatrixXd find_basis(Discrepancy& result, const Eigen::MatrixXd& rows) {
   result.mix.topRightCorner(own, kept) -= beta * U;
   result.group.columns = int(kept);
   result.group.mix = U.transpose();
+  if (told.size() == 0) return beta;
+  Eigen::MatrixXd prior_rows(own, own + kept);
+  prior_rows.leftCols(own) = told.asDiagonal();
+  prior_rows.rightCols(kept) = -(told.asDiagonal() * (beta * U));
+  result.known = prior_rows.transpose() * prior_rows;
   return beta;
 }
 
@@ -138,10 +149,13 @@ std::shared_ptr<const Discrepancy> make_discrepancy(const Problem& problem, cons
   require_a_residual(prepared, *result, settings);
   result->test_points =
       test_points_of(problem, *fitted.spec, *fitted.model, result->effects.columns, settings.planner.seed);
-  const Eigen::MatrixXd known = known_before(prepared, result->effects, settings.prior, threads);
-  const Eigen::MatrixXd beta = find_basis(*result, stacked(prepared, result->effects, known, threads));
+  const Eigen::MatrixXd measured = measured_before(prepared, result->effects, threads);
+  const Eigen::MatrixXd rows = stacked(prepared, result->effects, measured, threads);
+  const Eigen::MatrixXd beta = find_basis(*result, rows, told_by_tolerances(result->effects, settings.prior));
   fill_errors(*result, fitted, beta);
-  if (known.size() > 0) result->known = result->mix.transpose() * known * result->mix;
+  if (measured.size() == 0) return result;
+  const Eigen::MatrixXd known = result->mix.transpose() * measured * result->mix;
+  result->known = result->known.size() > 0 ? Eigen::MatrixXd(result->known + known) : known;
   return result;
 }
 

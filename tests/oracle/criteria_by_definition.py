@@ -46,9 +46,6 @@ def random_case(folder, random):
               "variants": {"few": 1, "more": 3} if random.random() < 0.5 else ["few", "more"],
               "scaling": str(random.choice(["tolerance", "norm", "none"])), "prior": str(random.choice(["none", "tolerance"])),
               "repeats": "allow" if random.random() < 0.3 else "forbid", "reserve": bool(random.random() < 0.25)}
-    if design["prior"] == "tolerance":
-        # How a prior counts against a shift of what is estimated is the program's choice (docs/theory.md), no definition.
-        del problem["variants"]["truth"]["nominal"][order[0]]
     if random.random() < 0.7:
         design["test_poses"] = {"at": random.uniform(-2, 2, (4, joints)).round(4).tolist(), "point": [0.01, 0.02, 0.1]}
         if random.random() < 0.5:

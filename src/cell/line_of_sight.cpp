@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "posewright/cell/collision.hpp"
+#include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -68,7 +69,9 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
   if (!spec_.axis) spec_.axis = is_camera ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
   for (const StationSpec& station : stations) {
     station_names_.push_back(station.name);
-    X_CarrierStation_.push_back(isometry(station.placement));
+    // The camera's own parameters are camera.*, those of trackers station.NAME.*.
+    X_CarrierStation_.push_back(nominal_placement(model.parameters(), is_camera ? "camera" : "station." + station.name,
+                                                  isometry(station.placement)));
   }
   for (std::size_t i = 0; i < model.coordinates().size(); ++i)
     if (model.coordinates()[i].choice() && model.coordinates()[i].name == "station") station_coordinate_ = int(i);
@@ -79,12 +82,14 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
 }
 
 void LineOfSight::add_points(const std::vector<TargetSpec>& targets) {
-  for (const TargetSpec& target : targets) targets_.push_back({target.name, target.position, std::nullopt});
+  for (const TargetSpec& target : targets)
+    targets_.push_back(
+        {target.name, nominal_position(model_.parameters(), "target." + target.name, target.position), std::nullopt});
 }
 
 void LineOfSight::add_board(const CameraMeasurement& camera) {
   targets_on_tip_ = !camera.on_hand;
-  X_CarrierTarget_ = isometry(camera.board);
+  X_CarrierTarget_ = nominal_placement(model_.parameters(), "board", isometry(camera.board));
   for (int r = 0; r < camera.rows; ++r)
     for (int c = 0; c < camera.columns; ++c)
       targets_.push_back({"point " + std::to_string(r + 1) + "," + std::to_string(c + 1),

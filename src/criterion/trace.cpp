@@ -1,5 +1,6 @@
 #include "posewright/criterion/trace.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,10 @@ Eigen::MatrixXd whitened(const CriterionData& data, const Eigen::MatrixXd& A) {
 void require_test_points(const CriterionData& data) {
   if (data.test_points.empty())
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
+  if (std::ranges::all_of(data.test_points, [](const TestPoint& t) { return t.A.isZero(0); }))
+    throw CannotDo(
+        "no parameter that is identified moves the robot at the test poses, so that every plan is as accurate there: "
+        "other test_poses (an elastic arm: another load_case) or another criterion");
 }
 
 class TraceExpansion : public Expansion {

@@ -60,7 +60,8 @@ Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
 
 constexpr std::size_t norm_sample = 2000;
 
-/// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings, or 1.
+/// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings (where it has none and only
+/// its tolerance is known: that), or 1.
 Eigen::VectorXd scale_of(const PreparedVariant& variant, const Configurations& configurations, Scaling scaling,
                          int threads) {
   const VariantColumns& columns = variant.columns();
@@ -69,7 +70,8 @@ Eigen::VectorXd scale_of(const PreparedVariant& variant, const Configurations& c
   if (scaling == Scaling::none) return Eigen::VectorXd::Ones(m);
   const BlockArray sample =
       build_blocks(*variant.model, columns.selected, thinned(configurations, norm_sample), threads);
-  return (sample.all().colwise().squaredNorm() / double(sample.count())).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd effect = (sample.all().colwise().squaredNorm() / double(sample.count())).cwiseSqrt();
+  return (effect.array() > 0).select(effect.cwiseInverse(), tolerances_of(columns));
 }
 
 void resolve(Preparation& prepared, PreparedVariant& variant, const Problem& problem, const Settings& settings) {

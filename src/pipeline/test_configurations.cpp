@@ -1,6 +1,7 @@
 #include "test_configurations.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,31 @@ constexpr std::uint64_t other_stream = 0x7e57;
 constexpr std::size_t drawn_starts = 2000, starts_per_point = 20;
 constexpr double reached = 1e-7;  // m
 constexpr int newton_steps = 60;
+
+bool loads_the_arm(const LoadCaseSpec& load) { return !load.force.isZero() || !load.moment.isZero() || load.mass > 0; }
+
+/// Its place among the coordinates and its value; nothing where there is no choice.
+using Load = std::optional<std::pair<std::size_t, double>>;
+
+/// The load case under which the robot works at the test poses: what is asked for, or the first that loads it.
+Load load_case_of(const Problem& seen, const std::vector<Coordinate>& coordinates) {
+  const TestPosesSpec& spec = *seen.design.test_poses;
+  const auto found = std::ranges::find(coordinates, "load_case", &Coordinate::name);
+  const auto* arm = std::get_if<SerialArmSpec>(&seen.robot);
+  if (found == coordinates.end() || arm == nullptr || !arm->elastostatic) {
+    if (!spec.load_case) return std::nullopt;
+    throw InputError(seen.at(spec.load_case->line), "design.test_poses.load_case: there is no choice of load cases",
+                     "robot.elastostatic with at least two loads");
+  }
+  const std::vector<LoadCaseSpec>& loads = arm->elastostatic->loads;
+  const auto load = std::ranges::find_if(loads, [&](const LoadCaseSpec& l) {
+    return spec.load_case ? l.name == spec.load_case->value : loads_the_arm(l);
+  });
+  if (load == loads.end() && spec.load_case)
+    throw InputError(seen.at(spec.load_case->line), "'" + spec.load_case->value + "' is no load case",
+                     fmt::format("allowed: {}", fmt::join(found->labels, ", ")));
+  return std::pair(std::size_t(found - coordinates.begin()), load == loads.end() ? 0.0 : double(load - loads.begin()));
+}
 
 std::vector<double> configuration_of(const std::vector<Measured>& written, const std::vector<Coordinate>& coordinates,
                                      const SourcePlace& place) {
@@ -60,8 +86,11 @@ Configurations draw(const Workspace& workspace, std::size_t count, std::uint64_t
 /// kinematics from the nearest of many feasible configurations; what lies beyond the limits is drawn back.
 class Reach {
  public:
-  Reach(const IdentificationModel& model, const Workspace& workspace, const Eigen::Vector3d& point, std::uint64_t seed)
+  Reach(const IdentificationModel& model, const Workspace& workspace, const Eigen::Vector3d& point, const Load& load,
+        std::uint64_t seed)
       : model_(model), workspace_(workspace), point_(point), starts_(draw(workspace, drawn_starts, seed)) {
+    for (std::size_t i = 0; load && i < starts_.count(); ++i)
+      starts_.values[i * starts_.dimension + load->first] = load->second;
     for (std::size_t i = 0; i < starts_.count(); ++i) places_.push_back(place({starts_[i].begin(), starts_[i].end()}));
   }
 
@@ -182,9 +211,9 @@ Points points_from(const std::filesystem::path& file) {
 }
 
 TestConfigurations reach(const Points& points, const Problem& seen, const IdentificationModel& model,
-                         const Workspace& workspace, std::uint64_t seed) {
+                         const Workspace& workspace, const Load& load, std::uint64_t seed) {
   const TestPosesSpec& spec = *seen.design.test_poses;
-  const Reach reach(model, workspace, spec.point, seed);
+  const Reach reach(model, workspace, spec.point, load, seed);
   TestConfigurations result;
   result.weights = points.weights;
   for (const Eigen::Vector3d& target : points.at) {
@@ -204,8 +233,11 @@ TestConfigurations test_configurations(const Problem& seen, const Identification
   const TestPosesSpec& spec = *seen.design.test_poses;
   TestConfigurations result;
   result.weights = spec.weights;
-  for (const auto& written : spec.at)
+  const Load load = load_case_of(seen, model.coordinates());
+  for (const auto& written : spec.at) {
     result.configurations.push_back(configuration_of(written, model.coordinates(), seen.at(spec.line)));
+    if (load) result.configurations.back()[load->first] = load->second;
+  }
   const Workspace workspace(model, seen);
   for (std::size_t i = 0; i < result.configurations.size(); ++i)
     if (const int reason = workspace.violation(result.configurations[i]); reason >= 0)
@@ -213,16 +245,21 @@ TestConfigurations test_configurations(const Problem& seen, const Identification
                        fmt::format("test pose {} is not feasible: {}", i + 1, workspace.reasons()[std::size_t(reason)]),
                        "configurations within the workspace");
   if (!spec.at.empty()) return result;
-  if (spec.grid) return reach(points_of(*spec.grid), seen, model, workspace, seed);
+  if (spec.grid) return reach(points_of(*spec.grid), seen, model, workspace, load, seed);
   if (!spec.file.empty()) {
     if (lists_points(spec.file, workspace.coordinates()))
-      return reach(points_from(spec.file), seen, model, workspace, seed);
+      return reach(points_from(spec.file), seen, model, workspace, load, seed);
+    if (spec.load_case)
+      throw InputError(seen.at(spec.load_case->line),
+                       "design.test_poses.load_case stands beside a file of configurations", "its column load_case");
     PoseList list = read_poses(spec.file, workspace.coordinates());
     return {std::move(list.configurations), std::move(list.weights)};
   }
   const Configurations drawn = draw(workspace, std::size_t(spec.random), seed);
   for (std::size_t i = 0; i < std::min(drawn.count(), std::size_t(spec.random)); ++i)
     result.configurations.emplace_back(drawn[i].begin(), drawn[i].end());
+  if (spec.load_case)
+    for (std::vector<double>& q : result.configurations) q[load->first] = load->second;
   return result;
 }
 

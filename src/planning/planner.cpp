@@ -18,7 +18,8 @@ Design Planner::plan(const DesignTask& task, const PlannerOptions& options, cons
   Design design = do_plan(task, options, monitor);
   if (!std::isfinite(design.value))
     throw CannotDo("no set of " + std::to_string(task.poses) + " candidates was found that identifies all " +
-                   std::to_string(task.candidates.blocks->columns()) + " parameters; more poses are needed");
+                   std::to_string(task.candidates.blocks->columns()) +
+                   " parameters: more poses, another method (exchange) or criterion (o1) may find one");
   std::sort(design.members.begin(), design.members.end());
   return design;
 }

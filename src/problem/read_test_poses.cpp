@@ -39,7 +39,7 @@ TestPosesSpec::Grid read_grid(const Value& value) {
 
 TestPosesSpec read_test_poses(const Value& value, const std::filesystem::path& folder) {
   const Section section(value);
-  section.allow({"at", "random", "file", "grid", "weights", "point"});
+  section.allow({"at", "random", "file", "grid", "weights", "point", "load_case"});
   TestPosesSpec spec;
   spec.line = value.line();
   int ways = 0;
@@ -52,6 +52,7 @@ TestPosesSpec read_test_poses(const Value& value, const std::filesystem::path& f
   if (const Value* file = section.find("file")) spec.file = folder / file->text("a file name is expected");
   if (const Value* grid = section.find("grid")) spec.grid = read_grid(*grid);
   if (const Value* point = section.find("point")) spec.point = point->vector(Quantity::length);
+  if (const Value* load = section.find("load_case")) spec.load_case = load->located_text();
   return spec;
 }
 

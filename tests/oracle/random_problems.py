@@ -76,6 +76,9 @@ def design(random, robot, measurement):
         chosen["test_poses"] = {"at": at, "weights": [1, 2.5, 0.5]} if chance(random, 0.5) else {"at": at}
         if chance(random, 0.5):
             chosen["test_poses"]["point"] = rounded(random, 0.3 * robot.size)
+        loads = list(robot.spec.get("elastostatic", {}).get("loads", {}))
+        if len(loads) > 1 and chance(random, 0.4):
+            chosen["test_poses"]["load_case"] = pick(random, loads)
         chosen["criterion"] = pick(random, ["o1", "test_pose", "test_pose_max", "a"])
     return chosen
 

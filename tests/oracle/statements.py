@@ -138,8 +138,9 @@ def test_visits(problem, experiment):
     """The listed test poses, their weights, and the point of the tip whose position counts."""
     spec = problem.get("design", {}).get("test_poses") or {}
     visits = []
+    loads = problem["robot"].get("elastostatic", {}).get("loads", {})
+    load = spec.get("load_case", next((name for name, case in loads.items() if case), next(iter(loads), None)))
     for values in spec.get("at", []):
-        load = next(iter(problem["robot"]["elastostatic"]["loads"])) if "elastostatic" in problem["robot"] else None
         visits.append(experiment.visit(experiment.robot.coordinates, [si(v) for v in values], load))
     weights = np.array(spec.get("weights", np.ones(len(visits))), float)
     return visits, weights, vector(spec.get("point", [0, 0, 0]))

@@ -255,6 +255,24 @@ TEST(Refusals, TestPosesThatDoNotFitTheRobotAreNamed) {
               testing::HasSubstr("set design: test_poses"));
 }
 
+TEST(Refusals, TestPosesUnderALoadThatIsNotThereOrDoesNothingAreNamed) {
+  const auto under = [](const std::string& load) {
+    return [load](Problem& p) {
+      TestPosesSpec& tests = p.design.test_poses.emplace();
+      tests.random = 3;
+      tests.load_case = Located<std::string>{load, 33};
+      p.design.criterion.value = "test_pose";
+      p.design.poses = Located<int>{12, 34};
+    };
+  };
+  EXPECT_THAT(refusal("delta/problem.yaml", under("tool")),
+              testing::HasSubstr("problem.yaml:33: design.test_poses.load_case: there is no choice of load cases"));
+  EXPECT_THAT(refusal("kr270/elastostatic.yaml", under("tool")),
+              testing::HasSubstr("'tool' is no load case; allowed: unloaded, at_the_flange, beside_it"));
+  EXPECT_THAT(refusal("kr270/elastostatic.yaml", under("unloaded")),
+              testing::HasSubstr("no parameter that is identified moves the robot at the test poses"));
+}
+
 TEST(Refusals, AnAutomaticVariantWithNothingLeftSaysWhy) {
   EXPECT_THAT(refusal("kr270/problem.yaml",
                       [](Problem& p) {

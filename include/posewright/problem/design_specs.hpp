@@ -42,6 +42,8 @@ struct TestPosesSpec {
   std::optional<Grid> grid;
   std::vector<double> weights;                      ///< one for each of `at`; empty: all 1
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame: whose position counts
+  /// Of an elastic arm; not given: the first that loads it (random configurations: any).
+  std::optional<Located<std::string>> load_case;
   int line = 0;
 };
 

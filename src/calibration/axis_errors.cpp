@@ -110,11 +110,26 @@ std::optional<Eigen::Vector3d> turn_of_targets(const Sorted& measured, const Sor
   }
 }
 
-PoseError rooted(double length_squares, int lengths, double angle_squares, int angles) {
-  // Per target, three coordinates; what is read in part counts as far as it is read.
-  return {lengths > 0 ? std::sqrt(3 * length_squares / lengths) : std::nan(""),
-          angles > 0 ? std::sqrt(3 * angle_squares / angles) : std::nan("")};
-}
+/// Squares of a pose's errors, lengths and angles apart.
+class PoseSquares {
+ public:
+  void add(std::size_t axis, double square) {
+    const std::size_t kind = axis < distance_at ? 0 : 1;
+    sums_[kind] += square;
+    ++counts_[kind];
+  }
+  /// Per target, three coordinates; what is read in part counts as far as it is read.
+  PoseError rooted() const {
+    const auto root = [this](std::size_t kind) {
+      return counts_[kind] > 0 ? std::sqrt(3 * sums_[kind] / counts_[kind]) : std::nan("");
+    };
+    return {root(0), root(1)};
+  }
+
+ private:
+  std::array<double, 2> sums_{};
+  std::array<int, 2> counts_{};
+};
 
 }  // namespace
 
@@ -138,21 +153,16 @@ std::vector<PredictedError> predicted_errors(const IdentificationModel& model, c
   Linearisation at;
   Eigen::VectorXd y;
   for (const MeasuredPose& pose : poses) {
-    if (!model.predict_and_linearise(pose.q, fit.correction, columns.selected, at, y))
-      throw CannotDo("a pose is out of reach");
-    double length[2] = {0, 0}, angle[2] = {0, 0};
-    int lengths = 0, angles = 0;
+    if (!linearise_at(model, pose, fit.correction, columns.selected, at, y)) throw CannotDo("a pose is out of reach");
+    PoseSquares by_estimate, with_noise;
     for (const int i : indices_read(pose.y)) {
       const std::optional<std::size_t> axis = axis_of(model.readings()[std::size_t(i)]);
       if (!axis) continue;
       const double variance = at.G.row(i) * fit.covariance * at.G.row(i).transpose();
-      const double noise = unit * at.covariance(i, i);
-      (*axis < distance_at ? lengths : angles) += 1;
-      double* const sums = *axis < distance_at ? length : angle;
-      sums[0] += variance;
-      sums[1] += variance + noise;
+      by_estimate.add(*axis, variance);
+      with_noise.add(*axis, variance + unit * at.covariance(i, i));
     }
-    result.push_back({rooted(length[0], lengths, angle[0], angles), rooted(length[1], lengths, angle[1], angles)});
+    result.push_back({by_estimate.rooted(), with_noise.rooted()});
   }
   return result;
 }
@@ -161,15 +171,11 @@ std::vector<PoseError> observed_errors(const IdentificationModel& model,
                                        const std::vector<Eigen::VectorXd>& residuals) {
   std::vector<PoseError> result;
   for (const Eigen::VectorXd& residual : residuals) {
-    double length = 0, angle = 0;
-    int lengths = 0, angles = 0;
-    for (const int i : indices_read(residual)) {
-      const std::optional<std::size_t> axis = axis_of(model.readings()[std::size_t(i)]);
-      if (!axis) continue;
-      (*axis < distance_at ? lengths : angles) += 1;
-      (*axis < distance_at ? length : angle) += residual[i] * residual[i];
-    }
-    result.push_back(rooted(length, lengths, angle, angles));
+    PoseSquares squares;
+    for (const int i : indices_read(residual))
+      if (const std::optional<std::size_t> axis = axis_of(model.readings()[std::size_t(i)]))
+        squares.add(*axis, residual[i] * residual[i]);
+    result.push_back(squares.rooted());
   }
   return result;
 }

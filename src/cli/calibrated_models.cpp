@@ -33,19 +33,20 @@ std::string models_text(const std::vector<Calibration>& models) {
               c.left_out.groups > 0 ? shown_share(c.left_out.estimated) : "",
               c.left_out.groups > 0 ? shown_share(c.left_out.placed) : "", verdict_of(c)});
   text += "\n\n" + fits.text();
-  Table errors(
-      {"error", "model", "RMS before", "after", "better by", "largest before", "after", "better by"},
-      {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
+  std::vector<std::string> header = improvement_columns();
+  header.insert(header.begin(), {"error", "model"});
+  std::vector<Align> align(header.size(), Align::right);
+  align[0] = align[1] = Align::left;
+  Table errors(header, align);
   // Axis by axis, so that the models stand under each other.
   for (std::size_t i = 0; i < models.front().axes.size(); ++i)
     for (const Calibration& c : models) {
       if (i >= c.axes.size()) continue;
       const AxisImprovement& a = c.axes[i];
       if (a.poses != (validated ? "held back" : "fitted")) continue;
-      const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
-      errors.row({a.after.axis, c.variant, shown(a.before.rms), shown(a.after.rms),
-                  fmt::format("{:.2g}", a.before.rms / a.after.rms), shown(a.before.largest), shown(a.after.largest),
-                  fmt::format("{:.2g}", a.before.largest / a.after.largest)});
+      std::vector<std::string> row = improvement_cells(a);
+      row.insert(row.begin(), {a.after.axis, c.variant});
+      errors.row(std::move(row));
     }
   return text + fmt::format("\nErrors of the poses {}, before and after\n", validated ? "not fitted" : "fitted") +
          errors.text();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibration_report.hpp"
+#include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/distributions.hpp"
 
@@ -13,8 +14,6 @@ namespace {
 using Align = Table::Align;
 using Json = nlohmann::ordered_json;
 
-// A test that chance fails this seldom is worth a sentence.
-constexpr double refused = 0.01;
 // More poses than this are not read one by one; --json has all.
 constexpr std::size_t most_shown = 40;
 
@@ -24,7 +23,10 @@ std::string error_or_blank(double value, const std::string& unit) {
   return std::isfinite(value) ? shown_value(value, unit) : "";
 }
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
 
 Json axis_json(const AxisErrors& e) {
   return {{"mean", e.mean},
@@ -35,17 +37,27 @@ Json axis_json(const AxisErrors& e) {
 }
 
 Json pose_error_json(const PoseError& e) {
-  return {{"position", finite(e.position)}, {"rotation", finite(e.rotation)}};
+  return {{"position", finite_or_null(e.position)}, {"rotation", finite_or_null(e.rotation)}};
 }
 
 }  // namespace
+
+std::vector<std::string> improvement_columns() {
+  return {"RMS before", "after", "better by", "largest before", "after", "better by"};
+}
+
+std::vector<std::string> improvement_cells(const AxisImprovement& a) {
+  const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
+  return {shown(a.before.rms),     shown(a.after.rms),     times(a.before.rms, a.after.rms),
+          shown(a.before.largest), shown(a.after.largest), times(a.before.largest, a.after.largest)};
+}
 
 std::string axes_text(const Calibration& c) {
   if (c.axes.empty()) return "";
   const bool required =
       std::any_of(c.axes.begin(), c.axes.end(), [](const AxisImprovement& a) { return a.required.has_value(); });
-  std::vector<std::string> header = {"error",          "poses", "RMS before", "after",   "better by",
-                                     "largest before", "after", "better by",  "σ after", "mean after"};
+  std::vector<std::string> header = joined({"error", "poses"}, improvement_columns());
+  header.insert(header.end(), {"σ after", "mean after"});
   std::vector<Align> align(header.size(), Align::right);
   align[0] = align[1] = Align::left;
   if (required) {
@@ -55,16 +67,8 @@ std::string axes_text(const Calibration& c) {
   Table table(header, align);
   for (const AxisImprovement& a : c.axes) {
     const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
-    std::vector<std::string> row = {a.after.axis,
-                                    a.poses,
-                                    shown(a.before.rms),
-                                    shown(a.after.rms),
-                                    times(a.before.rms, a.after.rms),
-                                    shown(a.before.largest),
-                                    shown(a.after.largest),
-                                    times(a.before.largest, a.after.largest),
-                                    shown(a.after.deviation),
-                                    shown_to(a.after.mean, a.after.rms, a.after.unit)};
+    std::vector<std::string> row = joined({a.after.axis, a.poses}, improvement_cells(a));
+    row.insert(row.end(), {shown(a.after.deviation), shown_to(a.after.mean, a.after.rms, a.after.unit)});
     if (required)
       row.insert(row.end(), {a.required ? shown(*a.required) : "", a.required ? (a.met() ? "met" : "NOT MET") : ""});
     table.row(std::move(row));
@@ -137,7 +141,7 @@ std::string compensator_text(const CompensatorConstants& k) {
   if (k.freedom > 0)
     text += fmt::format("Chi-square of what the compliances leave: {:.4g} for {} degrees of freedom{}.\n", k.chi_square,
                         k.freedom,
-                        chi_square_exceeded(k.chi_square, k.freedom) < refused
+                        chi_square_exceeded(k.chi_square, k.freedom) < seldom
                             ? ": no spring fits them within their σ, and the σ above are too small"
                             : "");
   return text;

@@ -9,10 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN: what was not read is null.
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
-  for (const double value : values) list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+  for (const double value : values) list.push_back(finite_or_null(value));
   return list;
 }
 
@@ -69,13 +68,10 @@ Json orientations_json(const Calibration& c) {
 }
 
 Json left_out_json(const LeaveOut& left_out) {
-  return {{"groups", left_out.groups},
-          {"estimated",
-           left_out.groups > 0 && std::isfinite(left_out.estimated) ? Json(left_out.estimated) : Json(nullptr)},
-          {"placed", left_out.groups > 0 ? Json(left_out.placed) : Json(nullptr)},
-          {"gain", left_out.groups > 0 && std::isfinite(left_out.gain) ? Json(left_out.gain) : Json(nullptr)},
-          {"refused", left_out.refused()},
-          {"why_not", text_or_null(left_out.why_not)}};
+  const auto judged = [&](double value) { return left_out.groups > 0 ? finite_or_null(value) : Json(nullptr); };
+  return {{"groups", left_out.groups},         {"estimated", judged(left_out.estimated)},
+          {"placed", judged(left_out.placed)}, {"gain", judged(left_out.gain)},
+          {"refused", left_out.refused()},     {"why_not", text_or_null(left_out.why_not)}};
 }
 
 Json covariance_json(const Calibration& c) {
@@ -122,7 +118,7 @@ Json calibration_json(const Calibration& c) {
             {"normality", test_json(c.tests.normality)}}},
           {"left_out", left_out_json(c.left_out)},
           {"weakest_combination", text_or_null(c.weakest)},
-          {"curvature", std::isfinite(c.curvature.largest) ? Json(c.curvature.largest) : Json(nullptr)},
+          {"curvature", finite_or_null(c.curvature.largest)},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},
           {"axes", axes_json(c)},

@@ -2,10 +2,16 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "posewright/pipeline/calibrate_problem.hpp"
 
 namespace posewright::cli {
+
+/// A test that chance fails this seldom is worth a sentence.
+inline constexpr double seldom = 0.01;
+/// "= 0.12", "below 1e-6": after a p.
+std::string chance_text(double probability);
 
 /// What a person reads: parameters with intervals, residuals before and after, what the residuals say of the model.
 std::string calibration_text(const Calibration& calibration);
@@ -16,6 +22,9 @@ nlohmann::ordered_json calibration_json(const Calibration& calibration);
 /// Parts of both: errors by axis before and after, poses that were not fitted, the identification in steps, constants
 /// of a compensator from listed compliances. Text is empty where there is nothing of the kind.
 std::string axes_text(const Calibration& calibration);
+/// RMS and largest error before and after and by how much they are better: names and cells of these columns.
+std::vector<std::string> improvement_columns();
+std::vector<std::string> improvement_cells(const AxisImprovement& improvement);
 std::string predicted_poses_text(const Calibration& calibration);
 std::string steps_text(const Calibration& calibration);
 std::string compensator_text(const CompensatorConstants& constants);

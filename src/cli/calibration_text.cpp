@@ -11,13 +11,7 @@ namespace {
 
 using Align = Table::Align;
 
-// A test that chance fails this seldom is worth a sentence.
-constexpr double remarkable = 0.01;
 constexpr int bar_width = 40;
-
-std::string chance(double probability) {
-  return probability < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", probability);
-}
 
 const char* weighting_name(Weighting weighting) {
   switch (weighting) {
@@ -138,15 +132,15 @@ std::string histogram_text(const std::vector<int>& counts) {
 std::string noise_text(const Calibration& c) {
   std::string text = "\n";
   if (c.tests.chi_square.possible) {
-    text +=
-        fmt::format("Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
-                    c.tests.chi_square.statistic, c.fit.freedom, chance(c.tests.chi_square.probability), c.fit.scale);
+    text += fmt::format(
+        "Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
+        c.tests.chi_square.statistic, c.fit.freedom, chance_text(c.tests.chi_square.probability), c.fit.scale);
     if (c.fit.noise_factor > 1)
       text += fmt::format(
           ".\n  The model or the stated noise is refused; σ and intervals above count {:.3g} times the noise, which is "
           "what the residuals show.\n",
           c.fit.noise_factor);
-    else if (c.tests.chi_square.probability < remarkable)
+    else if (c.tests.chi_square.probability < seldom)
       text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
     else text += ": as they should be.\n";
   } else if (c.fit.scale_known) {
@@ -159,8 +153,8 @@ std::string noise_text(const Calibration& c) {
     text += fmt::format(
         "Lack of fit: F = {:.3g} (p {}) of residuals against the scatter of readings within a pose and what is stated "
         "to stay at one{}.\n",
-        c.lack_of_fit.statistic, chance(c.lack_of_fit.probability),
-        c.lack_of_fit.probability < remarkable
+        c.lack_of_fit.statistic, chance_text(c.lack_of_fit.probability),
+        c.lack_of_fit.probability < seldom
             ? ": more stays at a pose than is stated (repeatability of the robot, a missing effect)"
             : ": they explain the residuals");
   return text;
@@ -170,22 +164,22 @@ std::string whiteness_text(const Calibration& c) {
   std::string text;
   if (c.tests.serial.possible)
     text += fmt::format("Correlation from pose to pose {:+.2f} (p {}){}.\n", c.tests.serial.statistic,
-                        chance(c.tests.serial.probability),
-                        c.tests.serial.probability < remarkable
+                        chance_text(c.tests.serial.probability),
+                        c.tests.serial.probability < seldom
                             ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
                             : "");
   if (c.tests.within.possible)
     text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
-                        chance(c.tests.within.probability),
-                        c.tests.within.probability < remarkable
+                        chance_text(c.tests.within.probability),
+                        c.tests.within.probability < seldom
                             ? ": readings of a pose err together: the robot stood farther off than stated? State more "
                               "repeatability, of its orientation too; σ and intervals are too small without it"
                             : "");
   if (c.tests.normality.possible)
-    text += fmt::format(
-        "Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic,
-        chance(c.tests.normality.probability),
-        c.tests.normality.probability < remarkable ? ": not normal: gross errors? try --weights robust" : "");
+    text +=
+        fmt::format("Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic,
+                    chance_text(c.tests.normality.probability),
+                    c.tests.normality.probability < seldom ? ": not normal: gross errors? try --weights robust" : "");
   if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
     const auto at = std::size_t(c.curvature.parameter);
     text += fmt::format(
@@ -216,6 +210,10 @@ std::string outliers_text(const Calibration& c) {
 }
 
 }  // namespace
+
+std::string chance_text(double probability) {
+  return probability < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", probability);
+}
 
 std::string calibration_text(const Calibration& c) {
   return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +

@@ -13,8 +13,6 @@ namespace {
 using Align = Table::Align;
 using Json = nlohmann::ordered_json;
 
-constexpr double seldom = 0.01;
-
 Json list_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return std::vector<double>(values.begin(), values.end());
 }
@@ -52,9 +50,9 @@ std::string platform_text(const PlatformDeformation& p) {
       fmt::format("\nPlatform in {} images: its points keep one shape to {}", p.images, shown_value(p.rms, "m"));
   if (p.freedom > 0 && p.chi_square > 0) {
     const double probability = chi_square_exceeded(p.chi_square, p.freedom);
-    text += fmt::format("; chi-square {:.4g} for {} degrees of freedom (p {}): {}", p.chi_square, p.freedom,
-                        probability < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", probability),
-                        probability < seldom ? "NOT RIGID" : "rigid as far as the noise shows");
+    text +=
+        fmt::format("; chi-square {:.4g} for {} degrees of freedom (p {}): {}", p.chi_square, p.freedom,
+                    chance_text(probability), probability < seldom ? "NOT RIGID" : "rigid as far as the noise shows");
   }
   Table table({"joint centre", "largest Δb_z", "σ of x", "y", "z", "κ", "σ", "left by κ", "left by K"},
               {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,

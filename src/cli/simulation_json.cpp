@@ -88,7 +88,7 @@ Json simulation_json(const Simulation& s, const SimulateOptions& options) {
           {"chi_square", chi_square_json(s.summary)},
           {"curvature",
            // No number stands for an axis that leaves the robot's reach.
-           {{"largest", std::isfinite(s.curvature.largest) ? Json(s.curvature.largest) : Json(nullptr)},
+           {{"largest", finite_or_null(s.curvature.largest)},
             {"parameter", bent ? Json(s.parameters[std::size_t(s.curvature.parameter)].label.name) : Json(nullptr)}}},
           {"confirmed", s.confirmed},
           {"verdict", s.verdict}};

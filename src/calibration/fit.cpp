@@ -236,7 +236,7 @@ BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& col
   Linearisation out;
   Eigen::VectorXd y;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (!model.predict_and_linearise(poses[k].q, correction, columns.selected, out, y))
+    if (!linearise_at(model, poses[k], correction, columns.selected, out, y))
       throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the parameters at hand");
     const std::vector<int> read = indices_read(poses[k].y);
     Eigen::MatrixXd rows = out.G(read, Eigen::all);

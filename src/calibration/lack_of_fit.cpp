@@ -21,7 +21,7 @@ struct Within {
 };
 
 Within within_poses(const IdentificationModel& instrument, const std::vector<RepeatedReadings>& repeated,
-                    const std::vector<double>& correction) {
+                    const std::vector<double>& correction, int repeats) {
   Within within;
   Linearisation at;
   Eigen::VectorXd y;
@@ -30,7 +30,7 @@ Within within_poses(const IdentificationModel& instrument, const std::vector<Rep
     if (visit.deviations.cols() < 2 || read.empty() ||
         !instrument.predict_and_linearise(visit.q, correction, {}, at, y))
       continue;
-    factorise_covariance(at.covariance(read, read), at.factor);
+    factorise_covariance(repeats * at.covariance(read, read), at.factor);
     Eigen::MatrixXd whitened = visit.deviations(read, Eigen::all);
     at.factor.matrixL().solveInPlace(whitened);
     within.variance += whitened.squaredNorm();
@@ -46,7 +46,7 @@ TestResult lack_of_fit(const IdentificationModel& model, const IdentificationMod
                        const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,
                        const Fit& result) {
   TestResult test;
-  const Within within = within_poses(instrument, repeated, result.correction);
+  const Within within = within_poses(instrument, repeated, result.correction, repeats);
   if (!(within.variance > 0) || result.freedom < 1 || !(result.left > 0) || !result.weights.empty()) return test;
   Linearisation whole, noise;
   Eigen::VectorXd y;
@@ -54,10 +54,10 @@ TestResult lack_of_fit(const IdentificationModel& model, const IdentificationMod
   int rows = 0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::vector<int> read = indices_read(poses[k].y);
-    if (!model.predict_and_linearise(poses[k].q, result.correction, {}, whole, y) ||
-        !instrument.predict_and_linearise(poses[k].q, result.correction, {}, noise, y))
+    if (!linearise_at(model, poses[k], result.correction, {}, whole, y) ||
+        !linearise_at(instrument, poses[k], result.correction, {}, noise, y))
       return test;
-    const Eigen::MatrixXd E = noise.covariance(read, read) / repeats;
+    const Eigen::MatrixXd E = noise.covariance(read, read);
     const Eigen::MatrixXd V = whole.covariance(read, read) + (within.variance - 1) * E;
     whole.factor.compute(V);
     if (whole.factor.info() != Eigen::Success) return test;

@@ -38,7 +38,7 @@ void add_squares(const IdentificationModel& model, const std::vector<double>& co
   Eigen::VectorXd y;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::vector<int> read = judging(model, poses[k].y);
-    if (!model.predict_and_linearise(poses[k].q, correction, {}, at, y)) throw CannotDo("a pose is out of reach");
+    if (!linearise_at(model, poses[k], correction, {}, at, y)) throw CannotDo("a pose is out of reach");
     factorise_covariance(at.covariance(read, read), at.factor);
     Eigen::VectorXd r = residuals[k](read);
     at.factor.matrixL().solveInPlace(r);

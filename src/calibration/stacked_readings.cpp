@@ -17,6 +17,12 @@ std::vector<int> indices_read(const Eigen::VectorXd& y) {
   return read;
 }
 
+bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
+                  std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y) {
+  out.reading_share = pose.reading_share;
+  return model.predict_and_linearise(pose.q, correction, selected, out, y);
+}
+
 StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
                                  const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start)
     : model_(model), columns_(columns), poses_(poses), correction_(start) {
@@ -64,7 +70,7 @@ const std::vector<double>& StackedReadings::correction_of(const Eigen::VectorXd&
 void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
   correction_of(x);
   for (std::size_t k = 0; k < poses_.size(); ++k) {
-    if (!model_.predict_and_linearise(poses_[k].q, correction_, {}, linearisation_, y_)) refuse(k);
+    if (!linearise_at(model_, poses_[k], correction_, {}, linearisation_, y_)) refuse(k);
     const std::vector<int>& read = read_[k];
     const Eigen::MatrixXd covariance = linearisation_.covariance(read, read);
     root_[k].compute(covariance);
@@ -122,7 +128,7 @@ bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < poses_.size(); ++k) {
     if (read_[k].empty()) continue;
-    if (!model_.predict_and_linearise(poses_[k].q, correction_, columns_.selected, linearisation_, y_)) return false;
+    if (!linearise_at(model_, poses_[k], correction_, columns_.selected, linearisation_, y_)) return false;
     rows_ = linearisation_.G(read_[k], Eigen::all);
     root_[k].matrixL().solveInPlace(rows_);
     for (Eigen::Index i = 0; i < rows_.rows(); ++i, ++row)

@@ -9,6 +9,10 @@ namespace posewright {
 /// Which readings are there.
 std::vector<int> indices_read(const Eigen::VectorXd& y);
 
+/// model.predict_and_linearise() with the covariance of what was read at this pose.
+bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
+                  std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y);
+
 /// All readings of a calibration as one vector of whitened residuals of the parameters x in units of tolerance.
 class StackedReadings {
  public:

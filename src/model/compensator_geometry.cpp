@@ -100,6 +100,7 @@ bool CompensatorGeometry::do_linearise(std::span<const double> q, std::span<cons
   out.covariance.setZero(rows_, rows_);
   out.covariance.topLeftCorner<3, 3>() = point_covariance(noise_, P0) / repeats_;
   out.covariance.bottomRightCorner<3, 3>() = point_covariance(noise_, P1) / repeats_;
+  out.share_readings();
   // The fixed pin stays; the link's pin stands elsewhere at every visit.
   out.covariance.diagonal().tail<3>().array() += repeatability_ * repeatability_;
   const Eigen::Vector3d swing = spec_.encoder_noise * L * (frame.R * across);

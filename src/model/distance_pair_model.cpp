@@ -69,6 +69,10 @@ bool DistancePairModel::end(std::span<const double> q, std::span<const double> c
                          result.X, result.twists, &result.reading_twists);
 }
 
+void DistancePairModel::do_take_loads_at(std::span<const double> correction) {
+  tip_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)));
+}
+
 bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const double> correction,
                                      std::span<const int> selected, Linearisation& out) const {
   static thread_local End ends[2];
@@ -108,6 +112,7 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
       of_end.tail(displacement) = along[i].transpose() * ends[i].displacement;
     }
   }
+  out.share_readings();
   out.covariance.noalias() += out.rows * out.rows.transpose();
   return true;
 }

@@ -17,6 +17,7 @@ class DistancePairModel : public IdentificationModel {
   DistancePairModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& spec);
 
  private:
+  void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
   bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;

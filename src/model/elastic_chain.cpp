@@ -161,17 +161,38 @@ void ElasticChain::add_springs(const SourcePlace& place) {
   }
 }
 
+/// The corrections of the chain alone.
+void ElasticChain::geometric_part(std::span<const double> correction, std::vector<double>& rigid) const {
+  rigid.clear();
+  if (correction.empty()) return;
+  const auto springs = correction.begin() + first_;
+  rigid.assign(correction.begin(), springs);
+  rigid.insert(rigid.end(), springs + std::ptrdiff_t(springs_.size()), correction.end());
+}
+
+void ElasticChain::take_loads_at(std::span<const double> correction) {
+  geometric_part(correction, loaded_at_);
+  if (!loaded_at_.empty()) loaded_at_.resize(std::size_t(chain_.layout().count), 0.0);
+}
+
 void ElasticChain::torques(std::span<const double> q, int load, bool link_weights, std::span<double> out) const {
   const ChainDescription& chain = chain_.description();
   const LoadCaseSpec& w = spec_.loads[std::size_t(load)];
   std::array<Twist, max_joints> motion;
   std::array<Wrench, max_joints> weight;
   Frame<double> frame;
+  const auto part = [&](int index) { return loaded_at_.empty() ? nullptr : loaded_at_.data() + index; };
+  const ChainLayout& layout = chain_.layout();
   frame.then(chain.X_MeasureBase);
+  displace(frame, part(0));
   for (std::size_t k = 0; k < chain.joints.size(); ++k) {
     const ChainJoint& joint = chain.joints[k];
+    const auto coordinate = std::size_t(joint.coordinate);
     frame.then(joint.X_ParentJoint);
-    const double value = joint.multiplier * q[std::size_t(joint.coordinate)] + joint.offset;
+    displace(frame, part(layout.displacement[k]));
+    const double* own = part(layout.offset[coordinate]);
+    const double turned = own == nullptr ? q[coordinate] : (1 + own[1]) * q[coordinate] + own[0];
+    const double value = joint.multiplier * turned + joint.offset;
     const Eigen::Vector3d axis = frame.R * joint.axis;
     motion[k] = joint.prismatic ? prismatic(axis) : revolute(axis, frame.p);
     if (joint.prismatic) frame.p += axis * value;
@@ -180,6 +201,7 @@ void ElasticChain::torques(std::span<const double> q, int load, bool link_weight
                              : Wrench(Wrench::Zero());
   }
   frame.then(chain.X_LastTip);
+  displace(frame, part(layout.tool));
   Wrench beyond = force_at(w.force, frame.R * w.point + frame.p) +
                   force_at(w.mass * spec_.gravity, frame.R * w.centre_of_mass + frame.p);
   beyond.tail<3>() += w.moment;
@@ -240,11 +262,7 @@ bool ElasticChain::linearise(std::span<const double> q, std::span<const double> 
   const auto elastic = correction.empty() ? correction : correction.subspan(first, count);
   deflect(q, elastic, std::span(deflection).first(joints), derivative);
 
-  rigid.clear();
-  if (!correction.empty()) {
-    rigid.assign(correction.begin(), correction.begin() + std::ptrdiff_t(first));
-    rigid.insert(rigid.end(), correction.begin() + std::ptrdiff_t(first + count), correction.end());
-  }
+  geometric_part(correction, rigid);
   geometric.clear();
   for (const int index : selected) {
     if (index < first_) geometric.push_back(index);

@@ -76,6 +76,7 @@ bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> select
   }
   out.covariance.resize(rows_, rows_);
   measurement_->covariance(sighting, out.covariance);
+  out.share_readings();
   if (repeatability_.independent > 0) displace_alone(sighting, out);
   const Eigen::Index readings = reading_noise_ ? out.reading_twists.cols() : 0;
   const int displacement = displacement_size(repeatability_);
@@ -95,6 +96,10 @@ void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, L
     const auto own = out.rows.middleRows(first, each);
     out.covariance.block(first, first, each, each) += own * own.transpose();
   }
+}
+
+void ExplicitModel::do_take_loads_at(std::span<const double> correction) {
+  tip_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)));
 }
 
 bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,

@@ -39,7 +39,15 @@ void IdentificationModel::set_nominal(int index, double value) {
   Parameter& p = parameters_.at(std::size_t(index));
   shift_[std::size_t(index)] += value - p.nominal;
   p.nominal = value;
+  do_take_loads_at(shift_);
 }
+
+void IdentificationModel::take_loads_at(std::span<const double> correction) {
+  std::vector<double> sum;
+  do_take_loads_at(total(correction, sum));
+}
+
+void IdentificationModel::do_take_loads_at(std::span<const double>) {}
 
 std::span<const double> IdentificationModel::total(std::span<const double> correction,
                                                    std::vector<double>& scratch) const {

@@ -43,6 +43,8 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
   unmeasurable_reason_ = near_singularity();
 }
 
+void JointSensorModel::do_take_loads_at(std::span<const double> correction) { tip_->take_loads_at(correction); }
+
 bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const double> correction,
                                     std::span<const int> selected, Linearisation& out) const {
   static thread_local Eigen::MatrixXd rows, reading_rows;
@@ -54,8 +56,10 @@ bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const d
     out.rows.row(i) = reading_rows.row(sensors_[std::size_t(i)]);
   }
   for (Eigen::Index j = 0; j < out.rows.cols(); ++j) out.rows.col(j) *= tip_->reading_noise()[std::size_t(j)];
-  out.covariance = out.rows * out.rows.transpose();
+  out.covariance.setZero(rows_, rows_);
   out.covariance.diagonal().array() += variance_;
+  out.share_readings();
+  out.covariance.noalias() += out.rows * out.rows.transpose();
   return true;
 }
 

@@ -24,12 +24,15 @@ LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : in
   load->lower = load->values.front();
 }
 
+void LoadDifference::do_take_loads_at(std::span<const double> correction) { inside_->take_loads_at(correction); }
+
 bool LoadDifference::do_linearise(std::span<const double> q, std::span<const double> correction,
                                   std::span<const int> selected, Linearisation& out) const {
   static thread_local Linearisation unloaded;
   static thread_local std::vector<double> same;
   same.assign(q.begin(), q.end());
   same[load_] = 0.0;
+  unloaded.reading_share = out.reading_share;
   if (!inside_->linearise(q, correction, selected, out) || !inside_->linearise(same, correction, selected, unloaded))
     return false;
   out.G -= unloaded.G;
@@ -48,7 +51,9 @@ bool LoadDifference::do_read(std::span<const double> q, std::span<const double> 
 }
 
 bool LoadDifference::do_measurable(std::span<const double> q, std::span<const double>) const {
-  return inside_->measurable(q);
+  std::vector<double> same(q.begin(), q.end());
+  same[load_] = 0.0;
+  return inside_->measurable(q) && inside_->measurable(same);
 }
 
 Eigen::Isometry3d LoadDifference::do_tool_pose(std::span<const double> q, std::span<const double>) const {

@@ -15,6 +15,7 @@ class LoadDifference : public IdentificationModel {
   explicit LoadDifference(std::unique_ptr<IdentificationModel> inside);
 
  private:
+  void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                     Linearisation& out) const override;
   bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;

@@ -5,6 +5,8 @@
 
 namespace posewright {
 
+void TipModel::take_loads_at(std::span<const double>) {}
+
 bool TipModel::actuator_values(std::span<const double>, std::span<const double>, std::span<double>) const {
   return true;
 }

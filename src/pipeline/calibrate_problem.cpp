@@ -50,7 +50,7 @@ class CalibrationRun {
     fit_options.weighting = options_.weighting;
     fit_options.prior = result_.prior;
     const VariantColumns all = select_columns(*model_, problem_, spec_);
-    placed_ = fit_options.start = placed(*model_, all, fitted_, fit_options);
+    place(all, fit_options);
     choose_columns(all);
     leave_at_nominal_values(all, fit_options.start);
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
@@ -61,7 +61,7 @@ class CalibrationRun {
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     note_end();
     result_.tests = test_residuals(result_.fit);
-    result_.tests.within = within_pose_correlation(*model_, columns_, fitted_, result_.fit);
+    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     judge_noise();
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
     fill_parameters();
@@ -86,7 +86,7 @@ class CalibrationRun {
     result_.readings = model_->readings();
     repeated_ = std::move(data.repeated);
     if (!data.images.empty()) judge_platform(data.images);
-    if (data.rows > int(data.poses.size())) use_repeats(data.repeats);
+    note_repeats(data);
     for (std::size_t k = 0; k < data.poses.size(); ++k) {
       const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
       (back ? held_back_ : fitted_).push_back(std::move(data.poses[k]));
@@ -101,6 +101,16 @@ class CalibrationRun {
     result_.held_back = int(held_back_.size());
   }
 
+  /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there.
+  void place(const VariantColumns& all, FitOptions& fit_options) {
+    placed_ = placed(*model_, all, fitted_, fit_options);
+    if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic) {
+      model_->take_loads_at(placed_);
+      placed_ = placed(*model_, all, fitted_, fit_options);
+    }
+    fit_options.start = placed_;
+  }
+
   void judge_platform(const std::vector<PlatformImage>& images) {
     const PlatformPoints points = *platform_points(problem_, *model_);
     std::vector<Eigen::Vector3d> places;
@@ -113,17 +123,15 @@ class CalibrationRun {
   }
 
   /// Rows that were averaged are the repeats, whatever the problem planned.
-  void use_repeats(double repeats) {
-    const int rounded = std::max(1, int(std::lround(repeats)));
-    if (std::abs(repeats - rounded) > 1e-9)
-      result_.notes.push_back(
-          fmt::format("poses have different numbers of readings; each counts as the mean of {} (harmonic mean {:.3g})",
-                      rounded, repeats));
-    if (rounded == problem_.measurement.repeats) return;
-    result_.notes.push_back(fmt::format("{} readings a pose are averaged, not {} as the problem says", rounded,
-                                        problem_.measurement.repeats));
-    problem_.measurement.repeats = rounded;
-    model_ = make_model(problem_, spec_);
+  void note_repeats(const MeasuredData& data) {
+    if (data.repeated.empty()) return;
+    if (!data.same_repeats)
+      result_.notes.push_back(fmt::format(
+          "poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own",
+          data.repeats));
+    else if (data.repeats != problem_.measurement.repeats)
+      result_.notes.push_back(fmt::format("{:.0f} readings a pose are averaged, not {} as the problem says",
+                                          data.repeats, problem_.measurement.repeats));
   }
 
   void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }
@@ -206,10 +214,8 @@ class CalibrationRun {
   void judge_noise() {
     const Fit& fit = result_.fit;
     if (!repeated_.empty()) {
-      Problem alone = without_pose_errors(problem_);
-      alone.measurement.repeats = 1;
-      result_.lack_of_fit =
-          lack_of_fit(*model_, *make_model(alone, spec_), problem_.measurement.repeats, fitted_, repeated_, fit);
+      result_.lack_of_fit = lack_of_fit(*model_, *make_model(without_pose_errors(problem_), spec_),
+                                        problem_.measurement.repeats, fitted_, repeated_, fit);
     }
     if (fit.scale > absurd)
       result_.notes.push_back(fmt::format(

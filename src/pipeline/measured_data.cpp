@@ -28,7 +28,9 @@ struct Row {
 /// Rows of one configuration that follow each other become one pose with their mean.
 class Averaging {
  public:
-  Averaging(const IdentificationModel& model, MeasuredData& data) : model_(model), data_(data) {
+  /// @param repeats  readings that a row is the mean of where no configuration has several rows
+  Averaging(const IdentificationModel& model, int repeats, MeasuredData& data)
+      : model_(model), repeats_(repeats), data_(data) {
     squares_.setZero(Eigen::Index(model.readings().size()));
     counts_ = squares_;
   }
@@ -41,7 +43,10 @@ class Averaging {
   void finish() {
     if (!group_.empty()) close();
     data_.repeats = double(data_.poses.size()) / inverse_repeats_;
-    if (counts_.sum() == 0) return;
+    if (data_.repeated.empty()) {
+      for (MeasuredPose& pose : data_.poses) pose.reading_share.resize(0, 0);
+      return;
+    }
     for (Eigen::Index i = 0; i < squares_.size(); ++i)
       data_.spread.push_back(counts_[i] > 0 ? std::sqrt(squares_[i] / counts_[i])
                                             : std::numeric_limits<double>::quiet_NaN());
@@ -50,8 +55,12 @@ class Averaging {
  private:
   void close() {
     inverse_repeats_ += 1.0 / double(group_.size());
+    if (data_.poses.empty()) first_rows_ = group_.size();
+    data_.same_repeats = data_.same_repeats && group_.size() == first_rows_;
     const int id = group_.front().id > 0 ? group_.front().id : int(data_.poses.size()) + 1;
-    data_.poses.push_back({id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()});
+    MeasuredPose pose{id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()};
+    share_readings(pose);
+    data_.poses.push_back(std::move(pose));
     data_.held_back.push_back(group_.front().held_back);
     group_.clear();
   }
@@ -97,6 +106,19 @@ class Averaging {
     data_.repeated.push_back(std::move(visit));
   }
 
+  /// How many rows each reading, and each two of them, are the mean of.
+  void share_readings(MeasuredPose& pose) const {
+    const Eigen::Index all = pose.y.size();
+    Eigen::MatrixXd was_read(all, Eigen::Index(group_.size()));
+    for (const Row& row : group_)
+      was_read.col(&row - group_.data()) =
+          row.y.array().isFinite().cast<double>() * pose.y.array().isFinite().cast<double>();
+    const Eigen::MatrixXd together = was_read * was_read.transpose();
+    const Eigen::VectorXd alone = together.diagonal().cwiseMax(1.0);
+    if ((together.array() == double(repeats_)).all()) return;
+    pose.reading_share = repeats_ * together.cwiseQuotient(alone * alone.transpose());
+  }
+
   double plain_mean(Eigen::Index i) const {
     double sum = 0;
     int number = 0;
@@ -109,10 +131,12 @@ class Averaging {
   }
 
   const IdentificationModel& model_;
+  int repeats_;
   MeasuredData& data_;
   std::vector<Row> group_;
   Eigen::VectorXd squares_, counts_;
   double inverse_repeats_ = 0.0;
+  std::size_t first_rows_ = 0;
 };
 
 const std::string& label_of(const Coordinate& c, double value) {
@@ -156,7 +180,7 @@ MeasuredData read_measured_data(const std::filesystem::path& file, const Problem
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();
-  Averaging averaging(model, data);
+  Averaging averaging(model, problem.measurement.repeats, data);
   const std::optional<PlatformPoints> platform = platform_points(problem, model);
   for (int i = 0; i < columns.rows(); ++i) {
     Row row;

@@ -108,6 +108,33 @@ TEST(ElasticChain, TorquesAreTheDerivativeOfTheLoadsWork) {
   }
 }
 
+TEST(ElasticChain, LoadsBendTheArmAsItStands) {
+  const std::vector<double> d = {0.4, -0.2, 0.1, 1.9, -0.4, 2.6};  // base.x … base.rz: put down on a slope
+  const ChainDescription chain = heavy_chain();
+  ChainDescription turned = chain;
+  Frame<double> base;
+  base.then(chain.X_MeasureBase);
+  base.then_displace(d.data());
+  turned.X_MeasureBase.linear() = base.R;
+  turned.X_MeasureBase.translation() = base.p;
+  ElasticChain model(chain, springs(), {});
+  const ElasticChain expected(turned, springs(), {});
+  std::vector<double> correction(model.parameters().size(), 0.0);
+  std::copy(d.begin(), d.end(), correction.begin());
+  const auto offset = std::ranges::find(model.parameters(), "j3.offset", &Parameter::name);
+  ASSERT_NE(offset, model.parameters().end());
+  correction[std::size_t(offset - model.parameters().begin())] = 0.3;
+  model.take_loads_at(correction);
+  Random random(3, 0);
+  for (int i = 0; i < 20; ++i) {
+    std::vector<double> q = random_configuration(model.coordinates(), random), moved = q, torque(6), as_built(6);
+    moved[2] += 0.3;
+    model.torques(q, int(q.back()), torque);
+    expected.torques(moved, int(q.back()), as_built);
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(torque[c], as_built[c], 1e-9 * (1 + std::abs(as_built[c])));
+  }
+}
+
 PointsMeasurement elastic_points() {
   PointsMeasurement p;
   p.targets = {{"A", {0.1, 0.2, -0.3}, 0}, {"B", {-0.2, 0.05, 0.4}, 0}};

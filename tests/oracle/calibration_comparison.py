@@ -128,13 +128,13 @@ def compare_tests(run, estimate, first, check):
     whitened = np.where(estimate.read, estimate.whitened(), np.nan)
     # Few readings say nothing, and the program then says nothing.
     if tests["serial_correlation"]:
-        check.test("serial", judgement.serial_correlation(whitened), tests["serial_correlation"])
+        check.test("serial", judgement.pose_by_pose(estimate) if run.weights == "wls" else judgement.serial_correlation(whitened), tests["serial_correlation"])
     if tests["normality"]:
         check.test("normality", judgement.jarque_bera(whitened[estimate.read]), tests["normality"])
     if tests["within_pose_correlation"]:
         check.test("within a pose", judgement.within_pose(estimate), tests["within_pose_correlation"])
     if run.repeated:
-        check.test("lack of fit", judgement.lack_of_fit(estimate, run.lines, run.poses, run.way["lines"]), tests["lack_of_fit"])
+        check.test("lack of fit", judgement.lack_of_fit(estimate, run.lines, run.poses), tests["lack_of_fit"])
     check.close("freedom", estimate.freedom() + 1, run.result["freedom"] + 1)
     if run.weights == "wls":
         check.close("χ²", first.chi_square(), run.result["chi_square"])

@@ -18,7 +18,8 @@ def jarque_bera(values):
 
 
 def serial_correlation(whitened):
-    """Of readings with the same ones one pose later, nan where nothing was read; chance: normal, one over the pairs."""
+    """Of readings with the same ones one pose later, nan where nothing was read; chance: normal, one over the pairs (for fits
+    that do not weigh by the covariance)."""
     products = whitened[:-1] * whitened[1:]
     pairs = np.isfinite(products).sum()
     statistic = np.nanmean(products) / np.nanmean(whitened**2)
@@ -34,7 +35,7 @@ def instrument_alone(arm, poses, change):
     return E
 
 
-def lack_of_fit(estimate, lines, where, repeats):
+def lack_of_fit(estimate, lines, where):
     """F of residuals against the scatter within poses and what is stated to stay at one; lines[i]: readings at where[i],
     fitted or not.
 
@@ -45,11 +46,14 @@ def lack_of_fit(estimate, lines, where, repeats):
     square, freedom = 0.0, 0
     for here, E in zip(lines, instrument_alone(arm, where, change)):
         always = np.flatnonzero(~np.isnan(here).any(axis=0))
+        if len(always) == 0 or len(here) < 2:
+            continue
         L = np.linalg.cholesky(E[np.ix_(always, always)])
         square += np.sum(np.linalg.solve(L, (here[:, always] - here[:, always].mean(axis=0)).T) ** 2)
         freedom += len(always) * (len(here) - 1)
     fit, share, residuals = 0.0, 0.0, estimate.residuals()
-    for i, (E, A) in enumerate(zip(instrument_alone(arm, poses, change) / repeats * square / freedom, arm.stays(poses, change))):
+    means = instrument_alone(arm, poses, change) * poses.shares
+    for i, (E, A) in enumerate(zip(means * square / freedom, arm.stays(poses, change))):
         there = np.flatnonzero(estimate.read[i])
         V = (E + A @ A.T)[np.ix_(there, there)]
         fit += residuals[i, there] @ np.linalg.solve(V, residuals[i, there])
@@ -59,22 +63,31 @@ def lack_of_fit(estimate, lines, where, repeats):
     return fit / left, stats.f.sf(fit / left, left, freedom / share**2)
 
 
-def within_pose(estimate):
-    """Do readings of one kind (x of every target) err together? The sum of products of whitened residuals of the same axis
-    at a pose, r'Br, over their mean square, against what it is where the whitened readings are independent: residuals
-    are (1 − H) times them, H = J (JᵀJ)⁻¹ Jᵀ, so that E r'Br = tr B(1 − H), var r'Br = 2 tr (B(1 − H))²; for a ratio of two
-    quadratic forms of f = tr(1 − H) degrees of freedom the variance is 2 (f tr C² − tr² C) / (f + 2), C = B(1 − H)."""
-    read = estimate.read
-    r = estimate.whitened()[read] / estimate.factor
-    where = np.argwhere(read)
-    B = ((where[:, None, 0] == where[None, :, 0]) & (where[:, None, 1] % 3 == where[None, :, 1] % 3)).astype(float)
-    B -= np.eye(len(r))
+def correlation(estimate, B):
+    """Do readings err together where B is 1? The sum of products of whitened residuals, r'Br, over their mean square,
+    against what it is where the whitened readings are independent: residuals are (1 − H) times them, H = J (JᵀJ)⁻¹ Jᵀ, so
+    that E r'Br = tr B(1 − H), var r'Br = 2 tr (B(1 − H))²; for a ratio of two quadratic forms of f = tr(1 − H) degrees of
+    freedom the variance is 2 (f tr C² − tr² C) / (f + 2), C = B(1 − H)."""
+    r = estimate.whitened()[estimate.read] / estimate.factor
     J = estimate.J[:len(r)]
     rest = np.eye(len(r)) - J @ np.linalg.solve(estimate.J.T @ estimate.J, J.T)
     C, f = B @ rest, np.trace(rest)
     expected, off = np.trace(C), r @ B @ r / (r @ r / f)
     variance = 2 * (f * np.sum(C * C.T) - expected**2) / (f + 2)
     return (off - expected) / B.sum(), 2 * stats.norm.sf(abs(off - expected) / np.sqrt(variance))
+
+
+def within_pose(estimate):
+    """Readings of one kind (x of every target) at one pose."""
+    pose, reading = np.argwhere(estimate.read).T
+    together = (pose[:, None] == pose) & (reading[:, None] % 3 == reading % 3)
+    return correlation(estimate, together - np.eye(len(pose)))
+
+
+def pose_by_pose(estimate):
+    """The same reading at two poses, one after the other."""
+    pose, reading = np.argwhere(estimate.read).T
+    return correlation(estimate, ((np.abs(pose[:, None] - pose) == 1) & (reading[:, None] == reading)).astype(float))
 
 
 def left_out(estimate, placed, weights):

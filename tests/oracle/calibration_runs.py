@@ -17,8 +17,9 @@ def random_way(random, arm, variant, small):
         # Few poses, each left out; half of the robots are as good as nominal: nothing is to be gained there.
         return way | {"off": 0.01 if random.random() < 0.5 else 1.0, "options": way["options"][:2]}
     way["lines"] = int(random.integers(2, 5)) if random.random() < 0.4 else 1
-    # Means of few and of many readings count alike (docs/calibrate.md), so that repeats of unequal number are no least squares.
-    way["missing"] = 0.1 if random.random() < 0.3 and way["lines"] == 1 else 0.0
+    # As many of every pose, or of each what there was time for.
+    way["uneven"] = way["lines"] > 1 and random.random() < 0.5
+    way["missing"] = 0.1 if random.random() < 0.3 else 0.0
     way["hold"] = [None, None, "--validate", "--hold-back"][random.integers(4)]
     # A base that stands anywhere, where nobody says that it does not.
     way["turned"] = random.random() < 0.2 and not arm.tolerance("base.rx", variant)[1]
@@ -42,7 +43,7 @@ class Run:
             truth |= dict(zip(["base.rx", "base.ry", "base.rz"], random.uniform([-3, -1.4, -3], [3, 1.4, 3])))
         self.truth, self.poses = truth, drawn.drawn_poses(arm, random, count)
         kinds = {key: way[key] for key in ("larger", "hidden_shift", "independent")}
-        lines = [way["lines"]] * count
+        lines = random.integers(1, way["lines"] + 2, count) if way.get("uneven") else [way["lines"]] * count
         everything = drawn.drop_cells(drawn.drawn_readings(arm, self.poses, truth, lines, random, **kinds), random, way["missing"])
         drawn.written(folder / "data.csv", arm, self.poses, everything, random)
         self.lines = [np.array([z for k, z in everything if k == i]) for i in range(count)]

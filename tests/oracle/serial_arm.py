@@ -122,9 +122,9 @@ class Springs:
         return f"{self.listed['joint']}.compliance@{np.degrees(si(place)):.6g}deg"
 
     def torques(self, pose, links):
-        """By virtual work on the undeflected nominal arm, by coordinate; with the weight of the links or without."""
+        """By virtual work on the undeflected arm with its nominal values, by coordinate; with the weight of the links or without."""
         case = self.spec["loads"][pose.load] or {}
-        frames, tip = self.arm.frames(self.arm.moved(pose.q, self.arm.nominal), self.arm.nominal)
+        frames, tip = self.arm.frames(self.arm.moved(pose.q, pose.nominal), pose.nominal)
         forces = [(vector(case.get("force", [0, 0, 0])), point(tip, vector(case.get("point", [0, 0, 0])))),
                   (case.get("mass", 0) * self.gravity, point(tip, vector(case.get("centre_of_mass", [0, 0, 0]))))]
         moment, found = vector(case.get("moment", [0, 0, 0])), dict.fromkeys(self.arm.coordinates, 0.0)

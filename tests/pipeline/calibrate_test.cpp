@@ -134,6 +134,11 @@ TEST(MeasuredData, PosesAreNumberedByOrderAndHolesInRepeatsAreNoReadings) {
   EXPECT_NEAR(back.spread[0], 1e-4 / std::sqrt(3.0), 1e-9);
   ASSERT_EQ(back.repeated.size(), 6U);
   EXPECT_EQ(back.repeated[0].deviations.array().isNaN().count(), 1);
+  // P1.x is the mean of three readings, the others of four, three of them read with P1.x.
+  const Eigen::MatrixXd share = back.poses[0].reading_share / data.problem.measurement.repeats;
+  EXPECT_DOUBLE_EQ(share(0, 0), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(share(1, 1), 1.0 / 4);
+  EXPECT_DOUBLE_EQ(share(0, 1), 3.0 / (3 * 4));
 }
 
 TEST(MeasuredData, ActuatorsQuaternionsAndPhotogrammetricPointsStandForPoses) {

@@ -13,6 +13,9 @@ struct MeasuredPose {
   int id = 0;             ///< of the user's list
   std::vector<double> q;  ///< SI, in the order of the model's coordinates
   Eigen::VectorXd y;      ///< size readings() of the model, SI; NaN: not read
+  /// Readings that are means of other numbers than the model's repeats n: factors n · n_ij/(n_i n_j) of the covariance
+  /// of the readings, n_i how many readings i were taken and n_ij how often i and j together. Empty: all means of n.
+  Eigen::MatrixXd reading_share{};
 };
 
 /// What a residual counts: `ordinary` the same for all readings of a unit, `weighted` the instrument's covariance,

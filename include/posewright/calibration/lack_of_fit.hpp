@@ -19,8 +19,9 @@ struct RepeatedReadings {
 /// d‖²/ν over all deviations d, ν = (rows − 1) a reading; V = S + s² E/n; F = Σ rᵀ V⁻¹ r/f with f the fit's degrees of
 /// freedom. Where nothing stays at a pose F is exactly Fisher's (f, ν). Otherwise only the share φ = Σ tr(V⁻¹ s² E/n)/Σ
 /// rows of V rests on s², so that the variance of its logarithm is φ² 2/ν: (f, ν/φ²) after Satterthwaite 1946.
-/// @param model       that was fitted: C at `repeats` readings a pose
-/// @param instrument  the same with what stays at a pose left out and one reading a pose: E
+/// @param model       that was fitted: C
+/// @param instrument  the same with what stays at a pose left out: E/n
+/// @param repeats     readings a pose that both count with
 /// f is Fit::left. Not possible where nothing was read twice, without degrees of freedom, and for robust fits.
 TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,
                        const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,

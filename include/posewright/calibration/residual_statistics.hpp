@@ -29,22 +29,23 @@ struct TestResult {
 /// What the whitened residuals say of model and noise. Of the fit's poses in measuring order.
 struct ResidualTests {
   TestResult chi_square;  ///< Σr² against `freedom`, both sides: are residuals as large as the stated noise?
-  TestResult serial;      ///< correlation of readings with those of the same kind one pose later (√n r1 is normal)
-  TestResult within;      ///< within_pose_correlation(), where the caller asked for it
-  TestResult normality;   ///< Jarque & Bera 1987, χ² of 2
+  TestResult serial;  ///< do readings err as the same ones one pose later? test_correlations(); else √n r1 is normal
+  TestResult within;  ///< do readings of one kind (x of every target) err together within a pose? test_correlations()
+  TestResult normality;        ///< Jarque & Bera 1987, χ² of 2
   std::vector<int> histogram;  ///< counts in half-σ bins from −4.5 to 4.5 σ, the ends hold what is beyond too
 };
 
 ResidualTests test_residuals(const Fit& result);
 
-/// Whether readings of one kind (x of every target, u of every point) err together within a pose: r = Σ of products of
-/// their whitened residuals over all pairs. Under white noise of any size f rᵀBr/rᵀr has the mean tr A and the variance
+/// Fills the correlations over pairs of whitened residuals, 1 in B for each: readings one pose apart, and those of one
+/// kind within a pose. Under white noise of any size f rᵀBr/rᵀr has the mean tr A and the variance
 /// 2 (f tr A² − (tr A)²)/(f + 2), A = (I − H)B(I − H), H what the fitted parameters take out of the residuals, f their
 /// degrees of freedom (Fit::left); compared with the normal distribution. Statistic: the correlation beyond that mean.
-/// A displacement of the tip that is not stated shows here. Not possible where a pose has no two readings of a kind,
-/// nor for fits that do not weigh readings by their covariance (ordinary, robust).
-TestResult within_pose_correlation(const IdentificationModel& model, const VariantColumns& columns,
-                                   const std::vector<MeasuredPose>& poses, const Fit& result);
+/// A displacement of the tip that is not stated shows within poses, an effect that the model lacks from pose to pose.
+/// Leaves as they are what has fewer than 20 pairs, and fits that do not weigh readings by their covariance (ordinary,
+/// robust).
+void test_correlations(const IdentificationModel& model, const VariantColumns& columns,
+                       const std::vector<MeasuredPose>& poses, const Fit& result, ResidualTests& tests);
 
 /// What every stated interval holds the truth with.
 inline constexpr double interval_probability = 0.95;

@@ -18,8 +18,8 @@ bool is_numbered_place(std::string_view name);
 std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates);
 
 /// Serial arm whose joints give way (virtual joint springs, design §3.3): each joint stands deflected by δ = k·τ, with
-/// the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the nominal, undeflected
-/// arm: the difference is of second order.
+/// the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the undeflected arm
+/// with its nominal parameters (take_loads_at()): the difference is of second order.
 ///
 /// Configuration: the chain's, then the load case. Parameters: the chain's without tool.*; for each coordinate
 /// NAME.compliance (rad/(N·m) or m/N), or NAME.compliance@-25.2deg, … for listed positions (in the order in which they
@@ -36,7 +36,9 @@ class ElasticChain : public TipModel {
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
 
-  /// Torque (N·m or N) at every coordinate under load case `load`, nominal arm; with the links' weight where it counts.
+  void take_loads_at(std::span<const double> correction) override;
+
+  /// Torque (N·m or N) at every coordinate under load case `load`; with the links' weight where it counts.
   void torques(std::span<const double> q, int load, std::span<double> out) const {
     torques(q, load, spec_.link_gravity, out);
   }
@@ -50,6 +52,7 @@ class ElasticChain : public TipModel {
     int listed = 0;  ///< which of the listed positions
   };
   void add_springs(const SourcePlace& place);
+  void geometric_part(std::span<const double> correction, std::vector<double>& rigid) const;
   /// Torque at one coordinate by the load case, without the weight of links.
   double load_alone(std::span<const double> q, std::size_t coordinate) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
@@ -59,7 +62,8 @@ class ElasticChain : public TipModel {
   SerialChain chain_;
   ElastostaticSpec spec_;
   std::vector<Spring> springs_;
-  int first_ = 0;  ///< index of the first elastostatic parameter
+  int first_ = 0;                  ///< index of the first elastostatic parameter
+  std::vector<double> loaded_at_;  ///< corrections of the chain's parameters for the torques; empty: zero
 };
 
 }  // namespace posewright

@@ -42,6 +42,9 @@ struct Reading {
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
+  /// Input, r × r; empty: all one. Factors of the covariance of the readings alone (of what stays at a pose none),
+  /// where they are means of other numbers of readings than the model's repeats.
+  Eigen::MatrixXd reading_share;
   Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
   Eigen::MatrixXd covariance;  ///< r × r: G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ, symmetric positive definite
   Eigen::MatrixXd basis;       ///< r × c, c < r, where the model offers G = basis · coefficients
@@ -58,6 +61,11 @@ struct Linearisation {
   std::vector<double> correction, settled;                  ///< scratch
   Eigen::LLT<Eigen::MatrixXd> factor, small_factor;         ///< scratch of the whitening
   Eigen::HouseholderQR<Eigen::MatrixXd> compression;        ///< scratch of the whitening
+
+  /// For models, once `covariance` holds the readings' own and nothing else.
+  void share_readings() {
+    if (reading_share.size() > 0) covariance.array() *= reading_share.array();
+  }
 };
 
 /// Which of an instrument's targets can be seen. Const and callable from several threads.
@@ -93,6 +101,9 @@ class IdentificationModel {
 
   /// Takes `value` as the nominal one of parameter `index`: from now on all that follows is linearised there.
   void set_nominal(int index, double value);
+  /// From now on loads bend an elastic robot as they do with these corrections (of all parameters): what parameters
+  /// change of the torques is of second order while corrections are small, but a base may be found to stand anywhere.
+  void take_loads_at(std::span<const double> correction);
 
   /// Fills out.G (columns in the order of `selected`, indices into parameters()) and out.covariance.
   /// @param q           configuration, size coordinates()
@@ -174,6 +185,7 @@ class IdentificationModel {
   virtual void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
   virtual bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
                                    std::span<const double> correction, std::span<double> q) const;
+  virtual void do_take_loads_at(std::span<const double> correction);
   virtual int do_block_rows(std::span<const int> selected) const;
   virtual bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
                                      std::span<const int> selected, Linearisation& out) const;

@@ -38,6 +38,9 @@ class TipModel {
   virtual bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                          Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const = 0;
 
+  /// From now on loads bend the robot as they do with these corrections (all parameters, maybe without tool.*).
+  virtual void take_loads_at(std::span<const double> correction);
+
   /// Actuators at q; false where q is unreachable.
   virtual bool actuator_values(std::span<const double> q, std::span<const double> correction,
                                std::span<double> values) const;

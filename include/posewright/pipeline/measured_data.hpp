@@ -17,6 +17,7 @@ struct MeasuredData {
   std::vector<bool> held_back;             ///< per pose: for validation only (column `use`)
   int rows = 0;                            ///< of the file
   double repeats = 1.0;                    ///< rows per pose, harmonic mean
+  bool same_repeats = true;                ///< whether every pose has as many rows
   std::vector<double> spread;              ///< standard deviation of each reading within a pose; empty without repeats
   std::vector<RepeatedReadings> repeated;  ///< poses of more than one row
   std::vector<PlatformImage> images;       ///< of a six-legged platform whose joint centres are read, too; row by row
@@ -25,11 +26,12 @@ struct MeasuredData {
 
 /// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every
 /// reading of the model (`P1.x [mm]`); an empty cell was not read. Columns `id` (or `pose`) and `use` (fit | validate)
-/// may be there; others are passed over. Rows in a row with one configuration are repeats and are averaged. Actuators
-/// may stand for the coordinates of a parallel robot. Orientations as rotation vectors (pose.rx, …) or unit quaternions
-/// (pose.qx, pose.qy, pose.qz, pose.qw); photogrammetric points of a pose (NAME.x, …) become the pose by rigid fit.
-/// Joint centres of a platform (leg_1.x, …) beside its points make images of how it deforms.
-/// Throws InputError with file and line.
+/// may be there; others are passed over. Rows in a row with one configuration are repeats and are averaged: their
+/// `reading_share` says of how many, against the problem's repeats. Without such rows every row is the mean of the
+/// problem's repeats. Actuators may stand for the coordinates of a parallel robot. Orientations as rotation vectors
+/// (pose.rx, …) or unit quaternions (pose.qx, pose.qy, pose.qz, pose.qw); photogrammetric points of a pose (NAME.x, …)
+/// become the pose by rigid fit. Joint centres of a platform (leg_1.x, …) beside its points make images of how it
+/// deforms. Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);
 

@@ -16,8 +16,10 @@ namespace {
 
 // Ends of Levenberg–Marquardt, relative: far below the noise, well above rounding.
 constexpr double tolerance = 1e-11;
-// Weights follow the solution: so many times they are taken anew. The covariance hardly changes with the parameters.
-constexpr int weight_rounds = 2;
+// Weights follow the solution: they are taken anew until that moves it by less than a thousandth of its σ all in all.
+// The covariance hardly changes with the parameters, unless a base was found elsewhere.
+constexpr int most_weight_rounds = 10;
+constexpr double settled_squares = 1e-6;
 constexpr int most_reweightings = 50;
 constexpr double settled_weights = 1e-4;
 // Noise that chance refuses this seldom is refused: σ then count what the residuals show.
@@ -146,6 +148,7 @@ double settle_noise(StackedReadings& stacked, const FitOptions& options, Eigen::
     if (stacked.known().empty() || !(noise > 0)) break;
     if (round > 0 && std::abs(noise - before) < settled_noise * noise) break;
     stacked.set_noise_factor(noise);
+    stacked.weigh(x, options.weighting);
     result.converged = minimise(stacked, options, x, result.evaluations);
   }
   return noise;
@@ -199,9 +202,12 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
     throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weights wls");
   Fit result;
   Eigen::VectorXd x = stacked.start();
-  for (int round = 0; round < weight_rounds; ++round) {
+  Eigen::VectorXd f;
+  for (int round = 0; round < most_weight_rounds; ++round) {
     stacked.weigh(x, options.weighting);
+    const double before = stacked.residual(x, f) ? f.squaredNorm() : out_of_reach;
     result.converged = minimise(stacked, options, x, result.evaluations);
+    if (round > 0 && stacked.residual(x, f) && before - f.squaredNorm() < settled_squares) break;
   }
   if (options.weighting == Weighting::robust) {
     result.converged = settle_weights(stacked, options, RobustShape::huber, x, result.evaluations) && result.converged;

@@ -53,6 +53,7 @@ class CalibrationRun {
     place(all, fit_options);
     choose_columns(all);
     leave_at_nominal_values(all, fit_options.start);
+    place_again(fit_options);
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
     report(1);
     result_.correction = result_.fit.correction;
@@ -109,6 +110,13 @@ class CalibrationRun {
       placed_ = placed(*model_, all, fitted_, fit_options);
     }
     fit_options.start = placed_;
+  }
+
+  /// What the estimate is judged against has its columns of where things stand and no others.
+  void place_again(const FitOptions& fit_options) {
+    const VariantColumns place = placing_columns(columns_);
+    placed_ = fit_options.start;
+    if (!place.selected.empty()) placed_ = fit(*model_, place, fitted_, fit_options).correction;
   }
 
   void judge_platform(const std::vector<PlatformImage>& images) {

@@ -12,7 +12,7 @@ from statistics_by_definition import displaced
 ALLOWED = {"model / m": 1e-12, "tolerance": 1e-12, "rank": 0, "estimate / σ": 1e-2, "turned / σ": 1e-2, "σ": 1e-3, "interval": 1e-6,
            "covariance": 2e-3, "file / tolerance": 1e-9, "residual / RMS": 1e-2, "RMS": 1e-3, "placed RMS": 5e-3, "held-out RMS": 5e-3,
            "χ²": 1e-3, "freedom": 0, "p of χ²": 1e-3, "lack of fit": 1e-2, "within a pose": 1e-2, "serial": 1e-2, "normality": 1e-2,
-           "spread": 1e-6, "left out": 1e-2, "decision": 0, "noise factor": 1e-2, "settled / σ": 0.05}
+           "spread": 1e-6, "left out": 1e-2, "decision": 0, "noise factor": 1e-2}
 
 
 MOST_DEPENDENT = 1e5  # Beyond that derivatives by differences say nothing of σ.
@@ -110,6 +110,8 @@ def compare_residuals(run, estimate, placed, check):
     nominal = estimate.z - run.arm.readings(estimate.poses, estimate.nominal)
     for name, residuals, what in (("nominal", nominal, "RMS"), ("placed", placed.residuals(), "placed RMS"),
                                   ("calibrated", estimate.residuals(), "RMS")):
+        if name == "placed" and placed.names == estimate.names:
+            continue
         for kind, rms in rms_by_kind(residuals).items():
             check.close(what, rms if np.isfinite(rms) else None, tables.get(("fitted", name, kind)))
     away = run.later
@@ -119,6 +121,8 @@ def compare_residuals(run, estimate, placed, check):
     if away is None:
         return
     for name, change in (("nominal", estimate.nominal), ("placed", placed.change(placed.x)), ("calibrated", estimate.change(estimate.x))):
+        if name == "placed" and placed.names == estimate.names:
+            continue
         for kind, rms in rms_by_kind(away[1] - run.arm.readings(away[0], change)).items():
             check.close("held-out RMS", rms if np.isfinite(rms) else None, tables.get(("held back", name, kind)))
 
@@ -142,14 +146,23 @@ def compare_tests(run, estimate, first, check):
                     tests["chi_square"]["probability"])
 
 
-def stated_noise(run, settled):
+def stated_noise(run, first):
     """What the program says that the noise is: a multiple of the stated covariance; ols: in m, of the mean stated variance."""
     if run.weights == "wls":
         return run.result["noise_factor"]
-    if not settled.counted.any():
-        return settled.factor
-    stated = run.arm.covariances(settled.poses, settled.change(settled.x))
-    return run.result["noise_scale"] * np.sqrt(np.diagonal(stated, axis1=1, axis2=2)[settled.read].mean())
+    if not first.counted.any():
+        return first.noise_shown()
+    stated = run.arm.covariances(first.poses, first.change(first.x))
+    return run.result["noise_scale"] * np.sqrt(np.diagonal(stated, axis1=1, axis2=2)[first.read].mean())
+
+
+def check_noise(run, first, estimate, check):
+    """The noise is as stated unless chance refuses that; then (ols: always) what the residuals of the estimate with it show,
+    but never less than stated. Few readings beside tolerances may agree with more than one noise."""
+    shown, noise = estimate.noise_shown(), estimate.factor
+    if run.weights == "wls":
+        shown = max(1.0, shown) if first.refused() else 1.0
+    check.close("noise factor", shown, noise)
 
 
 def compare_rest(run, brute_force, estimate, placed, check):
@@ -191,14 +204,12 @@ def compare(run, brute_force):
     check.note("model / m", run.arm.differs_from_arm(poses.Q[0], {n: v for n, v in run.truth.items() if not n.startswith("station")}))
     # From where the robot was drawn: base, tool and targets; everything else from its nominal value.
     start = {n: v for n, v in run.truth.items() if n.split(".")[0] in ("base", "target")}
-    settled, first = calibrated(run.arm, run.variant, names, poses, z, counts, run.weights, start)
+    first = Estimate(run.arm, run.variant, names, poses, z, counts, run.weights, 1.0, start)
     if np.linalg.cond(first.J / np.linalg.norm(first.J, axis=0)) > MOST_DEPENDENT:
         return None
-    noise = stated_noise(run, settled)
-    check.close("noise factor", settled.factor, noise)
-    off = np.array([p["value"] - p["nominal"] for p in stated]) - settled.x * settled.units
-    check.note("settled / σ", (off / settled.sigma)[[p["interval"] is not None for p in stated]])
-    estimate = Estimate(run.arm, run.variant, names, poses, z, counts, run.weights, noise, settled.differences())
+    noise = stated_noise(run, first)
+    estimate = Estimate(run.arm, run.variant, names, poses, z, counts, run.weights, noise, start)
+    check_noise(run, first, estimate, check)
     roles = {p["name"]: p["role"] for p in stated}
     places = [n for n in names if n.split(".")[0] in ("base", "tool", "target", "station") or roles[n] == "nuisance"]
     placed, _ = calibrated(run.arm, run.variant, places, poses, z, [n for n in counts if n in places], run.weights, start)

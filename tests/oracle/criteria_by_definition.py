@@ -86,7 +86,9 @@ def check_listed(program, folder, poses, name, options, evaluate, check):
     plan = json.loads(plan_file.read_text())
     chosen = [p["candidate"] for p in plan["poses"]]
     meaning, among = Definitions(arm, plan, poses), np.arange(len(poses.Q))
-    check.same("value", meaning.value(name, np.array([chosen]), among)[0], plan["criterion"]["value"])
+    # A mean logarithm may be nothing but rounding.
+    plain = np.exp if name == "compound" else float
+    check.same("value", plain(meaning.value(name, np.array([chosen]), among)[0]), plain(plan["criterion"]["value"]))
     check_numbers(plan, meaning, chosen, among, check)
     check_certificate(name, plan, meaning, chosen, len(poses.Q), check)
     check_shares(name, plan, meaning, chosen, among, check)
@@ -127,7 +129,8 @@ def check_case(program, folder, told, random):
         if meaning and name == "o1":
             determined = possible(meaning, len(poses.Q), arm.problem["design"])
         if not meaning and name not in ("compound", "maximin"):
-            check.holds(f"{done.stderr.strip()} But {determined} sets do", determined == 0)
+            # Greedy steps may end where no step is left that they can see.
+            check.holds(f"{done.stderr.strip()} But {determined} sets do", determined == 0 or method == "greedy")
         good = check.report(f"{told} {name} {method}", done) and good
     return good
 

@@ -44,7 +44,9 @@ class Fitted:
     def information(self, sets):
         """sets: rows of indices of poses. Those that determine nothing become nan, so that nothing is hidden."""
         M = self.grams[sets].sum(axis=-3) + self.prior
-        values = np.linalg.eigvalsh(M)
+        # Whatever units the columns have.
+        size = np.sqrt(np.diagonal(M, axis1=-2, axis2=-1)) + 1e-300
+        values = np.linalg.eigvalsh(M / (size[..., :, None] * size[..., None, :]))
         return np.where((values[..., 0] > 1e-9 * values[..., -1])[..., None, None], M, np.nan)
 
     def inverse(self, sets):

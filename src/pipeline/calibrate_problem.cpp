@@ -102,14 +102,11 @@ class CalibrationRun {
     result_.held_back = int(held_back_.size());
   }
 
-  /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there.
+  /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there; how little
+  /// that moves it is found by place_again().
   void place(const VariantColumns& all, FitOptions& fit_options) {
-    placed_ = placed(*model_, all, fitted_, fit_options);
-    if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic) {
-      model_->take_loads_at(placed_);
-      placed_ = placed(*model_, all, fitted_, fit_options);
-    }
-    fit_options.start = placed_;
+    placed_ = fit_options.start = placed(*model_, all, fitted_, fit_options);
+    model_->take_loads_at(placed_);
   }
 
   /// What the estimate is judged against has its columns of where things stand and no others.

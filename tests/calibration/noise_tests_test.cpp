@@ -130,11 +130,12 @@ class LevelOf : public testing::TestWithParam<Setting> {};
 
 TEST_P(LevelOf, TestsOfGoodDataIsFivePercent) {
   const Rates rates = rejected_at_five_percent(GetParam());
-  // One of 24 rates of 500 draws lies outside 1.8 to 8.2 % once in 40 times; of 10,000 draws outside 4 to 6 % never.
-  const double margin = draws() >= 10000 ? 0.01 : 0.032;
+  // 500 draws of a 5 % test lie within 3 to 7 % but once in 25 times; the seed is fixed.
+  const double margin = draws() >= 10000 ? 0.01 : 0.02;
   EXPECT_NEAR(rates.lack_of_fit, 0.05, margin);
   EXPECT_NEAR(rates.within, 0.05, margin);
-  EXPECT_NEAR(rates.serial, 0.05, margin);
+  // One of eight settings lies outside 3 to 7 % here (7.8 %; 4.7 % of 10,000 draws): three standard errors and a bit.
+  EXPECT_NEAR(rates.serial, 0.05, draws() >= 10000 ? margin : 0.032);
 }
 std::vector<Setting> settings() {
   std::vector<Setting> all;

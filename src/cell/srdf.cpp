@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 #include "scene.hpp"
 
 namespace posewright {
@@ -13,7 +13,7 @@ std::vector<std::pair<std::string, std::string>> read_srdf_pairs(const std::file
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code))
     throw InputError(place, "srdf '" + file.string() + "' is not there", "an SRDF file is needed");
-  const std::string text = read_file(file, 20'000'000);
+  const std::string text = read_xml_text(file, 20'000'000);
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     throw InputError({file.string(), document.ErrorLineNum()}, "is no well-formed XML", "an SRDF file is needed");

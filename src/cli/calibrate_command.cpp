@@ -8,10 +8,10 @@
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/pipeline/compliance_list.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "weighting.hpp"
@@ -59,7 +59,6 @@ struct Results {
     std::vector<std::filesystem::path> inputs = files_of(problem);
     inputs.push_back(calibrate.data);
     if (!calibrate.validate.empty()) inputs.push_back(calibrate.validate);
-    if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) inputs.push_back(arm->urdf);
     check_output_files(values, {parameters, urdf, deformation}, inputs);
   }
 };
@@ -70,17 +69,20 @@ std::vector<CalibratedValue> values_of(const Calibration& result) {
   return values;
 }
 
-/// Writes the files; what a URDF cannot say goes to `notes`.
-void write(const Results& wanted, const Problem& problem, const Calibration& result, std::vector<std::string>& notes) {
+/// The robot's files; what a URDF cannot say goes to `notes`.
+std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& problem, const Calibration& result,
+                                        std::vector<std::string>& notes) {
+  std::vector<FileToWrite> files;
   const VariantSpec& variant = find_variant(problem, result.variant);
   if (!wanted.urdf.empty()) {
     const auto& arm = std::get<SerialArmSpec>(problem.robot);
     const CorrectedUrdf urdf = corrected_urdf(arm, problem.at(arm.line), variant.convention, values_of(result));
     for (const std::string& left_out : urdf.left_out) notes.push_back("not in the URDF: " + left_out);
-    write_file_atomically(wanted.urdf, urdf.text);
+    files.push_back({wanted.urdf, urdf.text});
   }
   if (!wanted.parameters.empty())
-    write_file_atomically(wanted.parameters, parameters_yaml(problem, variant, result.values));
+    files.push_back({wanted.parameters, parameters_yaml(problem, variant, result.values)});
+  return files;
 }
 
 std::optional<DhTable> table_of(const Results& wanted, const Problem& problem, const Calibration& result) {
@@ -175,16 +177,20 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   Calibration result =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
   const std::optional<DhTable> table = table_of(wanted, problem, result);
+  std::vector<FileToWrite> files;
   if (!wanted.deformation.empty()) {
     if (!result.platform)
       throw CannotDo("nothing to draw: the data have no joint centres of a platform (columns leg_1.x, leg_1.y, …)");
-    write_file_atomically(wanted.deformation, platform_svg(*result.platform));
+    files.push_back({wanted.deformation, platform_svg(*result.platform)});
   }
   const bool useful = result.fit.converged && !result.left_out.refused();
   const bool written = result.fit.converged && (useful || values.count("force") > 0);
-  if (written) write(wanted, problem, result, result.notes);
+  if (written)
+    for (FileToWrite& file : files_to_write(wanted, problem, result, result.notes)) files.push_back(std::move(file));
   else if (!wanted.parameters.empty() || !wanted.urdf.empty())
     result.notes.emplace_back("nothing is written: these are no parameters to go on with");
+  // These files do not belong together as a program and its points do: one at a time, each replaces its own.
+  for (const FileToWrite& file : files) write_results({file});
   print_notes(result.notes);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +

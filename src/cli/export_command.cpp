@@ -8,8 +8,9 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -78,7 +79,7 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   result.tool = whole_number(values, "tool", 0, 255);
   result.base = whole_number(values, "base", 0, 255);
   if (const std::string file = text_of(values, "controller"); !file.empty())
-    result.controller = parse_controller_settings(read_file(file, settings_limit), file);
+    result.controller = parse_controller_settings(read_text(file, settings_limit), file);
   // A program is called as its file.
   if (result.name.empty() && format.controller && !format.extension.empty() && output.extension() == format.extension &&
       std::find(format.options.begin(), format.options.end(), "name") != format.options.end())
@@ -129,12 +130,30 @@ class Folders {
   bool kept_ = false;
 };
 
-/// What was measured and put into a file is not replaced by predictions.
+/// What was measured and put into a file is not replaced by predictions. Such a file still begins as ours does.
 void keep_measurements(const PoseFormat& format, const std::vector<fs::path>& files, const Exported& exported) {
   if (!format.to_be_filled) return;
-  for (std::size_t i = 0; i < files.size(); ++i)
-    if (fs::is_regular_file(files[i]) && read_file(files[i], plan_limit) != exported.files[i].bytes)
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& bytes = exported.files[i].bytes;
+    if (begins_with(files[i], bytes.substr(0, bytes.find('\n'))) && !holds(files[i], bytes))
       throw CannotDo(files[i].string() + " exists and may hold measurements by now; --force replaces it");
+  }
+}
+
+/// Those of the files that are not there as they would be written.
+std::vector<fs::path> changed(const std::vector<fs::path>& files, const Exported& exported) {
+  std::vector<fs::path> result;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (!holds(files[i], exported.files[i].bytes)) result.push_back(files[i]);
+  return result;
+}
+
+/// The first file is the program, or what opens the others: it is written when they are there.
+std::vector<FileToWrite> with_program_last(const std::vector<fs::path>& files, const Exported& exported) {
+  std::vector<FileToWrite> result;
+  for (std::size_t i = 0; i < files.size(); ++i) result.push_back({files[i], exported.files[i].bytes});
+  std::rotate(result.begin(), result.begin() + 1, result.end());
+  return result;
 }
 
 void require_ending(const PoseFormat& format, const fs::path& output) {
@@ -201,7 +220,7 @@ int run_export(const po::variables_map& values, const Words& positional) {
   const fs::path output = to_stdout ? fs::path() : fs::path(given);
   const ExportOptions export_settings = export_options(format, values, output);
   require_ending(format, output);
-  const PoseSequence sequence = parse_sequence(read_file(plan, plan_limit), plan.string());
+  const PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
   Exported exported = export_poses(format, sequence, export_settings);
   if (format.controller) exported.notes.emplace_back(no_controller);
   if (to_stdout) {
@@ -213,9 +232,9 @@ int run_export(const po::variables_map& values, const Words& positional) {
   std::vector<fs::path> inputs = {plan};
   if (values.count("controller") > 0) inputs.emplace_back(text_of(values, "controller"));
   Folders folders(format.several_files ? files : std::vector<fs::path>());
-  check_outputs(files, inputs, values.count("force") > 0);
   if (values.count("force") == 0) keep_measurements(format, files, exported);
-  for (std::size_t i = 0; i < files.size(); ++i) write_file_atomically(files[i], exported.files[i].bytes);
+  check_outputs(changed(files, exported), inputs, values.count("force") > 0);
+  write_results(with_program_last(files, exported));
   folders.keep();
   print_notes(exported.notes);
   if (common.json) {

@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "command.hpp"
 #include "help.hpp"
 #include "posewright/version.hpp"
 #include "session.hpp"
+#include "signals.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
@@ -58,7 +60,7 @@ int run_command(const Command& command, const Words& words) {
 
 int run_program(const Words& words) {
   if (words.empty()) {
-    fmt::print(stderr, "{}", general_help());
+    print_aside(general_help());
     return bad_input;
   }
   const std::string& first = words.front();
@@ -85,6 +87,7 @@ int run_program(const Words& words) {
 
 int main(int count, char** arguments) {
   using namespace posewright;
+  cli::prepare_process();
   const auto complain = [](const std::string& text, int code) {
     cli::print_error(text);
     return code;
@@ -101,6 +104,10 @@ int main(int count, char** arguments) {
     return complain(error.what(), cli::cannot_do);
   } catch (const std::bad_alloc&) {
     return complain("not enough memory; ask for fewer candidates", cli::cannot_do);
+  } catch (const std::system_error& error) {
+    // Of the formatting library if a stream does not take what it prints; else of a thread that cannot be made.
+    return complain(std::ferror(stdout) != 0 ? std::string("standard output cannot be written") : error.what(),
+                    cli::cannot_do);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), cli::cannot_do);
   }

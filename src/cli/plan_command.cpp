@@ -64,10 +64,6 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   std::vector<std::filesystem::path> inputs = files_of(problem);
   if (!augment.empty()) inputs.push_back(augment);
   if (!list.empty()) inputs.push_back(list);
-  if (problem.design.candidates_from) inputs.push_back(*problem.design.candidates_from);
-  if (problem.design.measured) inputs.push_back(*problem.design.measured);
-  if (problem.design.test_poses && !problem.design.test_poses->file.empty())
-    inputs.push_back(problem.design.test_poses->file);
   const std::optional<int> validation = whole_number(values, "validation", 1, 1000000);
   const Outputs outputs(values, inputs, true, validation.has_value());
   std::function<Plan(const Plan&, const Monitor&)> validate;

@@ -79,7 +79,20 @@ Problem problem_for_plan(const std::filesystem::path& file, const po::variables_
 
 std::vector<std::filesystem::path> files_of(const Problem& problem) {
   std::vector<std::filesystem::path> files{problem.file};
-  if (problem.parameters) files.push_back(problem.parameters->file);
+  const auto add = [&](const std::filesystem::path& file) {
+    if (!file.empty()) files.push_back(file);
+  };
+  if (problem.parameters) add(problem.parameters->file);
+  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) add(arm->urdf);
+  if (problem.design.candidates_from) add(*problem.design.candidates_from);
+  if (problem.design.measured) add(*problem.design.measured);
+  if (problem.design.test_poses) add(problem.design.test_poses->file);
+  if (!problem.workspace.collision) return files;
+  const CollisionSpec& collision = *problem.workspace.collision;
+  if (collision.srdf) add(collision.srdf->value);
+  for (const auto* bodies : {&collision.obstacles, &collision.tool})
+    for (const BodySpec& body : *bodies)
+      if (const auto* mesh = std::get_if<MeshShape>(&body.shape)) add(mesh->file);
   return files;
 }
 

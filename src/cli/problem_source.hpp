@@ -26,7 +26,7 @@ std::filesystem::path problem_file(const po::variables_map& values, const std::f
 Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
                          const std::filesystem::path& plan);
 
-/// Files that nothing may be written over: the problem file and its parameters.
+/// Files that nothing may be written over: the problem file and those it names.
 std::vector<std::filesystem::path> files_of(const Problem& problem);
 /// Key `problem` of results.
 nlohmann::ordered_json problem_json(const Problem& problem);

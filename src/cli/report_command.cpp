@@ -2,8 +2,8 @@
 
 #include "command.hpp"
 #include "posewright/pipeline/report_problem.hpp"
-#include "posewright/support/file.hpp"
 #include "problem_source.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -40,7 +40,7 @@ int run_report(const po::variables_map& values, const Words& positional) {
   const auto [report, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return report_problem(problem, plan, report_options, monitor);
   });
-  if (!page.empty()) write_file_atomically(page, report_html(report));
+  if (!page.empty()) write_results({{page, report_html(report)}});
   if (common.json) {
     fmt::print("{}", report_json(report));
   } else {

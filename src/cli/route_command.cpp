@@ -4,8 +4,8 @@
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/pipeline/route_problem.hpp"
-#include "posewright/support/file.hpp"
 #include "problem_source.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -57,9 +57,12 @@ int run_route(const po::variables_map& values, const Words& positional) {
                         return route_problem(problem, poses_in_file(plan, from), route_options, monitor);
                       }).result;
   print_notes(route.notes);
-  if (!json.empty()) write_file_atomically(json, route_json(route));
-  if (!csv.empty()) write_file_atomically(csv, route_csv(route));
-  if (common.json) fmt::print("{}", route_json(route));
+  std::vector<FileToWrite> files;
+  if (!csv.empty()) files.push_back({csv, route_csv(route)});
+  const std::string text = route_json(route, json.empty() ? std::vector<WrittenWith>() : written_with(json, files));
+  if (!json.empty()) files.push_back({json, text});
+  write_results(files);
+  if (common.json) fmt::print("{}", text);
   else print_report(route_summary(route) + written_text({json, csv}));
   return done;
 }

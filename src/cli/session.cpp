@@ -3,50 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <charconv>
 #include <cmath>
-#include <csignal>
-#include <fstream>
 
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/support/file.hpp"
+#include "signals.hpp"
+#include "terminal.hpp"
 
 namespace posewright::cli {
-namespace {
-
-namespace fs = std::filesystem;
-
-std::atomic<bool> interrupted_flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "the flag is set in a signal handler");
-
-extern "C" void on_signal(int signal) {
-  // The second signal finds the default action and ends the program.
-  interrupted_flag.store(true, std::memory_order_relaxed);
-  std::signal(signal, SIG_DFL);
-}
-
-/// First bytes of what this program writes: plan.json, poses.csv, and the comment in exported files that may hold one.
-bool is_earlier_result(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string head(2048, '\0');
-  in.read(head.data(), std::streamsize(head.size()));
-  head.resize(std::size_t(in.gcount()));
-  return head.starts_with("pose,") || head.starts_with("posewright,") ||
-         head.starts_with("posewright_parameters: 1\n") ||
-         head.starts_with("<!doctype html><!-- posewright report -->") ||
-         head.substr(0, 64).find("\"schema\": \"posewright/") != std::string::npos ||
-         head.find(export_mark) != std::string::npos;
-}
-
-}  // namespace
-
 Watch::Watch(const CommonOptions& common, double seconds)
     : begin_(Monitor::Clock::now()), last_(begin_), stage_begin_(begin_) {
-  interrupted_flag = false;
-  monitor_.interrupted = &interrupted_flag;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  begin_stage(SignalStage::searching);
+  monitor_.interrupted = &interrupted_flag();
   if (seconds > 0)
     monitor_.deadline =
         begin_ + std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(seconds));
@@ -55,9 +22,8 @@ Watch::Watch(const CommonOptions& common, double seconds)
 }
 
 Watch::~Watch() {
-  if (shown_) fmt::print(stderr, "\r\x1b[K");
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  if (shown_) print_aside("\r\x1b[K");
+  begin_stage(SignalStage::finishing);
 }
 
 void Watch::show(const Progress& progress) {
@@ -80,27 +46,12 @@ void Watch::show(const Progress& progress) {
   if (elapsed > 1 && progress.total > 0 && progress.done > 0 && progress.done < progress.total)
     line += fmt::format("  {:.0f} s left", std::ceil(elapsed * (progress.total - progress.done) / progress.done));
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  fmt::print(stderr, "{}{}{}", terminal ? "\r\x1b[K" : "", line, terminal ? "" : "\n");
+  print_aside(fmt::format("{}{}{}", terminal ? "\r\x1b[K" : "", line, terminal ? "" : "\n"));
   shown_ = terminal;
 }
 
-void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs, bool force) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    std::error_code code;
-    for (const fs::path& input : inputs)
-      if (fs::equivalent(outputs[i], input, code))
-        throw InputError({}, outputs[i].string() + " is an input", "write the result to another file");
-    for (std::size_t k = 0; k < i; ++k)
-      if (fs::weakly_canonical(outputs[i]) == fs::weakly_canonical(outputs[k]))
-        throw InputError({}, outputs[i].string() + " is named for two outputs", "give each a file of its own");
-    if (fs::is_regular_file(outputs[i]) && fs::file_size(outputs[i]) > 0 && !force && !is_earlier_result(outputs[i]))
-      throw CannotDo(outputs[i].string() + " exists and was not written by posewright; --force replaces it");
-    require_writable(outputs[i]);
-  }
-}
-
 void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "posewright: note: {}\n", note);
+  for (const std::string& note : notes) print_aside("posewright: note: " + note + "\n");
 }
 
 double time_limit(const po::variables_map& values) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,11 +54,6 @@ auto watched(const CommonOptions& common, double seconds, const Work& work)
     throw;
   }
 }
-
-/// Refuses to write over anything that is not an earlier result of this program, unless forced. Call before the search.
-/// Throws CannotDo naming the file, InputError where two outputs or an input and an output are the same file.
-void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs,
-                   bool force);
 
 /// What a result says to its user, on stderr.
 void print_notes(const std::vector<std::string>& notes);

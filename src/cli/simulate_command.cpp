@@ -5,10 +5,10 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 #include "problem_source.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "simulation_report.hpp"
 #include "terminal.hpp"
@@ -129,7 +129,7 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
     return simulate_problem(problem, poses_in_file(positional[1], from), simulate, monitor);
   });
   print_notes(result.notes);
-  if (!data.empty()) write_file_atomically(data, result.first_readings);
+  if (!data.empty()) write_results({{data, result.first_readings}});
   if (common.json) print_json(result, simulate, common, problem);
   else print_report(simulation_text(result, simulate) + written_text({data}));
   return was_interrupted ? interrupted : done;

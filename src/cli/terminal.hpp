@@ -11,6 +11,9 @@ bool has_colour(std::FILE* stream);
 /// A report on stdout, its first line bold where there are colours.
 void print_report(const std::string& text);
 
+/// Text on stderr. Nothing happens if it cannot be written.
+void print_aside(const std::string& text);
+
 /// One line on stderr with the program's name before it, red where there are colours.
 void print_error(const std::string& text);
 

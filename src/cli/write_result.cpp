@@ -4,7 +4,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/design_words.hpp"
-#include "posewright/support/file.hpp"
+#include "result_files.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
@@ -77,18 +77,31 @@ Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesys
   check_output_files(values, {plan_, poses_, validation_plan_, validation_poses_}, inputs);
 }
 
-void Outputs::write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) const {
-  if (!json.empty()) write_file_atomically(json, plan_json(plan));
-  if (!csv.empty()) write_file_atomically(csv, poses_csv(plan));
+std::string Outputs::write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) {
+  std::vector<FileToWrite> files;
+  if (!csv.empty()) files.push_back({csv, poses_csv(plan)});
+  std::string text = plan_json(plan, json.empty() ? std::vector<WrittenWith>() : written_with(json, files));
+  if (!json.empty()) files.push_back({json, text});
+  write_results(files);
+  return text;
 }
 
 int Outputs::search_and_write(const CommonOptions& common, double seconds,
                               const std::function<Plan(const Monitor&)>& search,
                               const std::function<Plan(const Plan&, const Monitor&)>& validation) const {
   const auto [plan, was_interrupted] = watched(common, seconds, search);
-  write(plan, plan_, poses_);
-  if (common.json) fmt::print("{}", plan_json(plan));
-  else print_report(plan_summary(plan) + written_text({plan_, poses_}));
+  const auto show = [&](const std::string& json, const std::string& written) {
+    if (common.json) fmt::print("{}", json);
+    else print_report(plan_summary(plan) + written);
+  };
+  try {
+    const std::string json = write(plan, plan_, poses_);
+    show(json, written_text({plan_, poses_}));
+  } catch (const CannotDo&) {
+    // What a long search found is told, whatever becomes of its files.
+    show(plan_json(plan), "");
+    throw;
+  }
   if (!validation || was_interrupted) return was_interrupted ? interrupted : done;
   try {
     const auto [second, stopped] =

@@ -36,7 +36,8 @@ class Outputs {
                        const std::function<Plan(const Plan&, const Monitor&)>& validation = {}) const;
 
  private:
-  void write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) const;
+  /// Returns the plan as JSON.
+  static std::string write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv);
 
   std::filesystem::path plan_, poses_;                        ///< empty = not asked for
   std::filesystem::path validation_plan_, validation_poses_;  ///< the same of the second plan

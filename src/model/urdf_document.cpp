@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -114,7 +114,7 @@ Eigen::Isometry3d isometry(const urdf::Pose& pose) {
 }
 
 UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
-    : text_(read_file(arm.urdf, largest_urdf)),
+    : text_(read_xml_text(arm.urdf, largest_urdf)),
       lines_(text_, arm.urdf.string()),
       model_(parse(text_, arm.urdf.string())),
       base_(base_of(*model_, arm, place)),

@@ -185,11 +185,18 @@ Json statistics_json(const PlanStatistics& s) {
 
 }  // namespace
 
-std::string plan_json(const Plan& plan) {
+nlohmann::ordered_json files_json(const std::vector<WrittenWith>& files) {
+  Json json = Json::array();
+  for (const WrittenWith& file : files) json.push_back({{"path", file.path}, {"sha256", file.sha256}});
+  return json;
+}
+
+std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   Json json = {{"schema", "posewright/plan/1"},
                {"version", version},
                {"seed", plan.seed},
                {"problem", problem_json(plan.problem_file, plan.problem_sha256, plan.parameters_file)}};
+  if (!files.empty()) json["files"] = files_json(files);
   if (!plan.variant.empty()) json["variant"] = plan.variant;
   json["method"] = plan.method;
   json["interrupted"] = plan.interrupted;

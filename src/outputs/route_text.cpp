@@ -94,7 +94,7 @@ double Route::change_seconds() const {
   return sum;
 }
 
-std::string route_json(const Route& route) {
+std::string route_json(const Route& route, const std::vector<WrittenWith>& files) {
   Json json = {{"schema", "posewright/route/1"},
                {"version", version},
                {"seed", route.seed},
@@ -106,6 +106,7 @@ std::string route_json(const Route& route) {
                {"names", route.names},
                {"units", route.units},
                {"home", route.home}};
+  if (!files.empty()) json["files"] = files_json(files);
   json["order"] = Json::array();
   for (const PlannedPose& pose : route.poses) json["order"].push_back(pose.id);
   json["seconds"] = {{"travel", route.travel_seconds()},

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/outputs/plan.hpp"
+#include "posewright/outputs/written_with.hpp"
 
 namespace posewright {
 
@@ -13,6 +14,8 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);
 /// Key `problem` of plans and routes.
 nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
                                     const ParametersFile& parameters);
+/// Key `files` of plans and routes.
+nlohmann::ordered_json files_json(const std::vector<WrittenWith>& files);
 nlohmann::ordered_json curve_point_json(const CurvePoint& point);
 
 }  // namespace posewright

@@ -7,6 +7,7 @@
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -117,7 +118,7 @@ CompensatorConstants compensator_of_list(const Problem& problem, const std::file
                      "elastostatic: compensator_from: compliances");
   const CompensatorSpec& geometry = *arm->elastostatic->derived_compensator;
   return compensator_from_compliances(
-      geometry, read_compliances(read_file(file, list_size_limit), file.string(), geometry.joint.value));
+      geometry, read_compliances(read_text(file, list_size_limit), file.string(), geometry.joint.value));
 }
 
 }  // namespace posewright

@@ -10,7 +10,7 @@
 #include "measured_columns.hpp"
 #include "platform_images.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -176,7 +176,7 @@ std::optional<PlatformImage> image_of(const MeasuredColumns& columns, int row, c
 
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model) {
-  const MeasuredColumns columns(read_file(file, data_size_limit), file.string(), problem, model);
+  const MeasuredColumns columns(read_text(file, data_size_limit), file.string(), problem, model);
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();

@@ -8,8 +8,8 @@
 
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
 #include "written_plan.hpp"
 
 namespace posewright {
@@ -51,7 +51,7 @@ ParametersFile parameters_of(const Problem& problem) {
 ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   ParametersFile stated;
   try {
-    const auto json = parse_json(read_file(plan, plan_size_limit));
+    const auto json = parse_json(read_text(plan, plan_size_limit));
     const nlohmann::json::json_pointer key("/problem/parameters");
     if (!json.is_object() || !json.contains(key)) return {};
     const auto& parameters = json.at(key);

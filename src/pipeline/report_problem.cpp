@@ -9,7 +9,7 @@
 #include "judgement.hpp"
 #include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 #include "preparation.hpp"
 #include "read_poses.hpp"
 #include "report_scene.hpp"
@@ -46,7 +46,7 @@ class Reporting {
     // The time limit is for other numbers of poses: a shortened set of candidates would be shown as if it were whole.
     whole_.interrupted = monitor.interrupted;
     whole_.on_progress = monitor.on_progress;
-    if (!options.route.empty()) report_.route_json = read_file(options.route, plan_size_limit);
+    if (!options.route.empty()) report_.route_json = read_text(options.route, plan_size_limit);
     report_.plan_json = std::move(plan_.text);
     // What was measured before is in the plan, wherever it came from.
     settings_.measured = [this](const std::vector<Coordinate>& coordinates) {

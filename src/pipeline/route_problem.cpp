@@ -9,8 +9,8 @@
 #include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/route/tour.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
 #include "written_plan.hpp"
 
 namespace posewright {
@@ -268,7 +268,7 @@ class Router {
 };
 
 nlohmann::json read_plan(const std::filesystem::path& plan) {
-  const std::string text = read_file(plan, plan_size_limit);
+  const std::string text = read_text(plan, plan_size_limit);
   try {
     return parse_json(text);
   } catch (const nlohmann::json::exception&) {

@@ -10,7 +10,7 @@
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
 #include "posewright/workspace/candidates.hpp"
 #include "posewright/workspace/workspace.hpp"
 #include "read_poses.hpp"
@@ -177,7 +177,7 @@ Points points_of(const TestPosesSpec::Grid& grid) {
 
 /// First line that is neither empty nor a comment.
 std::vector<std::string> header_of(const std::filesystem::path& file) {
-  std::istringstream lines(read_file(file, 100'000'000));
+  std::istringstream lines(read_text(file, 100'000'000));
   for (std::string line; std::getline(lines, line);)
     if (line.find_first_not_of(" \t\r") != std::string::npos && line.front() != '#') return csv_cells(line);
   return {};

@@ -5,8 +5,8 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -42,7 +42,7 @@ PlanOptions options_of(const Json& plan) {
 WrittenPlan read_written_plan(const std::filesystem::path& file) {
   WrittenPlan plan;
   plan.file = file;
-  plan.text = read_file(file, plan_size_limit);
+  plan.text = read_text(file, plan_size_limit);
   try {
     const Json json = parse_json(plan.text);
     if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())

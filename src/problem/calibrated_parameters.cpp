@@ -4,6 +4,7 @@
 
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
+#include "posewright/support/text_file.hpp"
 #include "text.hpp"
 #include "yaml_section.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "posewright/support/error.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -13,21 +13,6 @@ namespace {
 constexpr std::size_t longest_quote = 80;
 
 unsigned byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
-
-/// Bytes of the UTF-8 sequence at the front of `text`; 0 where it is malformed (RFC 3629: no overlong form, no
-/// surrogate, at most U+10FFFF).
-std::size_t sequence_length(std::string_view text) {
-  const unsigned first = byte_at(text, 0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte_at(text, i) & 0xC0U) != 0x80U) return 0;
-  const unsigned second = byte_at(text, 1);
-  const bool outside = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
-                       (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
-  return outside ? 0 : length;
-}
 
 /// Controls of ASCII and Latin-1 and the line and paragraph separators U+2028, U+2029.
 bool is_control(std::string_view sequence) {
@@ -43,7 +28,7 @@ std::string in_quotes(std::string_view text) {
   std::string result = "'";
   while (!text.empty()) {
     if (result.size() > longest_quote) return result + "...'";
-    const std::size_t length = sequence_length(text);
+    const std::size_t length = utf8_length(text);
     const std::string_view sequence = text.substr(0, std::max<std::size_t>(length, 1));
     if (length == 0 || is_control(sequence)) {
       for (std::size_t i = 0; i < sequence.size(); ++i) result += fmt::format("\\x{:02x}", byte_at(sequence, i));
@@ -57,7 +42,7 @@ std::string in_quotes(std::string_view text) {
 
 bool has_control_character(std::string_view text) {
   while (!text.empty()) {
-    const std::size_t length = std::max<std::size_t>(sequence_length(text), 1);
+    const std::size_t length = std::max<std::size_t>(utf8_length(text), 1);
     if (is_control(text.substr(0, length))) return true;
     text.remove_prefix(length);
   }
@@ -68,19 +53,6 @@ std::string_view trimmed_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-void require_text(std::string_view bytes, const std::string& file) {
-  SourcePlace place{file, 1};
-  while (!bytes.empty()) {
-    const std::size_t length = sequence_length(bytes);
-    const unsigned first = byte_at(bytes, 0);
-    const bool control = first == 0x7F || (first < 0x20 && first != '\t' && first != '\n' && first != '\r');
-    if (length == 0 || control)
-      throw InputError(place, fmt::format("byte 0x{:02x} is no text", first), "a text file in UTF-8 is needed");
-    if (first == '\n') ++place.line;
-    bytes.remove_prefix(length);
-  }
 }
 
 }  // namespace posewright

@@ -15,7 +15,4 @@ bool has_control_character(std::string_view text);
 /// Without the blanks and tabs at both ends.
 std::string_view trimmed_blanks(std::string_view text);
 
-/// Throws InputError with the line of the first byte that cannot be part of a text file in UTF-8.
-void require_text(std::string_view bytes, const std::string& file);
-
 }  // namespace posewright

@@ -1,12 +1,9 @@
 #include "posewright/support/file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <mutex>
 
 #include "posewright/support/error.hpp"
 
@@ -14,71 +11,60 @@ namespace posewright {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void cannot_write(const fs::path& file, const std::string& reason) {
-  throw CannotDo(file.string() + ": cannot be written: " + reason);
+/// What was read: a process must not write over its own inputs, whichever stage opened them.
+struct InputRecord {
+  std::mutex mutex;
+  std::vector<fs::path> files;
+};
+
+InputRecord& input_record() {
+  static InputRecord record;
+  return record;
 }
 
-/// Owns a temporary file until it is renamed; unlinks it otherwise.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) : target_(target), name_(target.string() + ".XXXXXX") {
-    descriptor_ = ::mkstemp(name_.data());
-    if (descriptor_ < 0) cannot_write(target, std::strerror(errno));
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!renamed_) ::unlink(name_.c_str());
-  }
-
-  void write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) cannot_write(target_, std::strerror(errno));
-      bytes.remove_prefix(static_cast<std::size_t>(n));
-    }
-  }
-
-  void rename() {
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    ::fchmod(descriptor_, 0666 & ~mask);
-    const int closed = ::close(descriptor_);
-    descriptor_ = -1;
-    if (closed != 0 || ::rename(name_.c_str(), target_.c_str()) != 0) cannot_write(target_, std::strerror(errno));
-    renamed_ = true;
-  }
-
- private:
-  fs::path target_;
-  std::string name_;
-  int descriptor_ = -1;
-  bool renamed_ = false;
-};
+/// Folders have no bytes, and devices no end. Pipes are what a shell's <(…) gives.
+void require_bytes(const fs::path& file) {
+  std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  if (fs::is_directory(status)) throw InputError({file.string(), 0}, "is a folder", "a file is needed");
+  if (fs::is_character_file(status) || fs::is_block_file(status))
+    throw InputError({file.string(), 0}, "is a device", "a file or a pipe is needed");
+}
 
 }  // namespace
 
 std::string read_file(const fs::path& file, std::uintmax_t limit) {
   const SourcePlace place{file.string(), 0};
-  std::error_code code;
-  if (fs::is_directory(file, code)) throw InputError(place, "is a folder", "a file is needed");
+  require_bytes(file);
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(place, std::string("cannot be read: ") + std::strerror(errno), "");
+  std::error_code code;
   const auto size = fs::file_size(file, code);
-  if (!code && size > limit)
-    throw InputError(place, "has " + std::to_string(size) + " bytes", "at most " + std::to_string(limit) + " are read");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const std::string allowed = "at most " + std::to_string(limit) + " are read";
+  if (!code && size > limit) throw InputError(place, "has " + std::to_string(size) + " bytes", allowed);
+  std::string bytes;
+  constexpr std::size_t step = 1 << 16;
+  while (in) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + step);
+    in.read(bytes.data() + before, std::streamsize(step));
+    bytes.resize(before + std::size_t(in.gcount()));
+    if (bytes.size() > limit) throw InputError(place, "has more than " + std::to_string(limit) + " bytes", allowed);
+  }
+  if (in.bad()) throw InputError(place, "cannot be read to its end", "");
+  record_input(file);
+  return bytes;
 }
 
-FileReader::FileReader(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
+FileReader::FileReader(const fs::path& file) : file_(file) {
   const SourcePlace place{file.string(), 0};
+  require_bytes(file);
+  in_.open(file, std::ios::binary);
   std::error_code code;
-  if (fs::is_directory(file, code)) throw InputError(place, "is a folder", "a file is needed");
   if (!in_) throw InputError(place, std::string("cannot be read: ") + std::strerror(errno), "");
   size_ = fs::file_size(file, code);
   if (code) throw InputError(place, "is no ordinary file", "a file is needed");
+  record_input(file);
 }
 
 std::size_t FileReader::read(char* to, std::size_t count) {
@@ -87,16 +73,20 @@ std::size_t FileReader::read(char* to, std::size_t count) {
   return std::size_t(in_.gcount());
 }
 
-void write_file_atomically(const fs::path& file, std::string_view bytes) {
-  if (fs::is_directory(file)) cannot_write(file, "is a folder");
-  TemporaryFile temporary(file);
-  temporary.write(bytes);
-  temporary.rename();
+std::vector<fs::path> files_read() {
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  return record.files;
 }
 
-void require_writable(const fs::path& file) {
-  if (fs::is_directory(file)) cannot_write(file, "is a folder");
-  const TemporaryFile probe(file);
+void record_input(const fs::path& file) {
+  std::error_code code;
+  fs::path name = fs::canonical(file, code);
+  if (code) return;
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  if (std::find(record.files.begin(), record.files.end(), name) == record.files.end())
+    record.files.push_back(std::move(name));
 }
 
 }  // namespace posewright

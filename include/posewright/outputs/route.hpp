@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewright/outputs/plan.hpp"
+#include "posewright/outputs/written_with.hpp"
 
 namespace posewright {
 
@@ -52,7 +53,7 @@ struct Route {
 };
 
 /// Schema posewright/route/1 (docs/route-file.md).
-std::string route_json(const Route& route);
+std::string route_json(const Route& route, const std::vector<WrittenWith>& files = {});
 /// The table a person reads.
 std::string route_summary(const Route& route);
 /// The poses in measuring order, as poses.csv of a plan.

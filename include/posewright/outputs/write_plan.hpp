@@ -1,13 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posewright/outputs/plan.hpp"
+#include "posewright/outputs/written_with.hpp"
 
 namespace posewright {
 
 /// plan.json, schema posewright/plan/1 (docs/plan-file.md): SI units, shortest decimals that read back bit-equal.
-std::string plan_json(const Plan& plan);
+/// @param files  that are written with it
+std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files = {});
 
 /// One line for each pose that is still to be measured: id, configuration, actuators; header `name [unit]`. Empty for a
 /// plan without configurations.

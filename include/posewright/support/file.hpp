@@ -4,11 +4,13 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace posewright {
 
-/// Whole file as bytes. Throws InputError where it is missing, a folder, unreadable or larger than `limit` bytes.
-std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = std::uintmax_t(1) << 40);
+/// Whole file as bytes. Pipes are read too; of what has no end, no more than `limit`.
+/// Throws InputError where it is missing, a folder, a device, unreadable or larger than `limit` bytes.
+std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = std::uintmax_t(1) << 31);
 
 /// A file read from front to back without holding all of it. Throws InputError as read_file() does.
 class FileReader {
@@ -24,12 +26,33 @@ class FileReader {
   std::uintmax_t size_ = 0;
 };
 
-/// Writes to a temporary file beside `file` and renames it, so that nobody ever sees half of it.
-/// Throws CannotDo naming the file and the system's reason; the temporary file is removed.
+/// Files that read_file(), FileReader and record_input() have met in this process, as they are called on the disk.
+std::vector<std::filesystem::path> files_read();
+/// For files that a library reads.
+void record_input(const std::filesystem::path& file);
+
+/// Where a name leads: links are followed, also one that leads nowhere yet. Throws CannotDo for a circle of links.
+std::filesystem::path followed(std::filesystem::path file);
+
+struct FileToWrite {
+  std::filesystem::path file;
+  std::string bytes;
+};
+
+/// Writes files that belong together, so that nobody ever sees half of one or a mixture of old and new ones: all are
+/// written and flushed under temporary names beside their places, then the old version of the last one (the program,
+/// the plan) is removed, the others are renamed, and the last one is renamed at the end. Killed at any moment it leaves
+/// the old files, the new ones, or files without the last one. Links are followed, mode and owner of a file that is
+/// replaced are kept, devices and pipes are written through.
+/// Throws CannotDo naming the file and the system's reason; temporary files are removed, and no file is replaced if one
+/// of them could not be written in full.
+void write_files(const std::vector<FileToWrite>& files);
+
+/// write_files() of one file.
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Throws CannotDo unless a file can be created at `file` (its folder exists and is writable, it is no folder).
-/// Long searches call it before they start.
+/// Throws CannotDo unless write_files() can write `file`: its folder exists and is writable, it is no folder and not
+/// protected against writing. Long searches call it before they start.
 void require_writable(const std::filesystem::path& file);
 
 }  // namespace posewright

@@ -1,0 +1,104 @@
+#include "posewright/support/text_file.hpp"
+
+#include <fmt/format.h>
+#include <iconv.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+
+namespace posewright {
+namespace {
+
+unsigned byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
+
+std::string converted(const std::string& text, const std::string& encoding, const SourcePlace& place) {
+  const iconv_t converter = ::iconv_open("UTF-8", encoding.c_str());
+  // The library marks what it does not know with a pointer of all ones.
+  if (converter == iconv_t(-1))  // NOLINT(performance-no-int-to-ptr)
+    throw InputError({place.file, 1}, "encoding '" + encoding.substr(0, 40) + "' is not known", "UTF-8 is expected");
+  std::string result;
+  std::string from = text;
+  char* in = from.data();
+  std::size_t left = from.size();
+  std::array<char, 4096> part{};
+  bool failed = false;
+  while (left > 0 && !failed) {
+    char* out = part.data();
+    std::size_t room = part.size();
+    const std::size_t before = left;
+    failed = ::iconv(converter, &in, &left, &out, &room) == std::size_t(-1) && room == part.size() && left == before;
+    result.append(part.data(), part.size() - room);
+  }
+  ::iconv_close(converter);
+  if (failed) throw InputError(place, "is not what it declares to be: " + encoding.substr(0, 40), "save it as UTF-8");
+  return result;
+}
+
+/// Where the encoding's name stands in <?xml … encoding="NAME" …?>, and its length; 0 if none is declared.
+std::pair<std::size_t, std::size_t> declared_encoding(std::string_view text) {
+  const std::size_t begin = text.substr(0, 10).find("<?xml");
+  if (begin == std::string_view::npos) return {};
+  const std::string_view declaration = text.substr(0, text.find("?>", begin));
+  const std::size_t key = declaration.find("encoding", begin);
+  const std::size_t quote = key == std::string_view::npos ? key : declaration.find_first_of("\"'", key);
+  if (quote == std::string_view::npos) return {};
+  const std::size_t end = declaration.find(declaration[quote], quote + 1);
+  return end == std::string_view::npos ? std::pair<std::size_t, std::size_t>() : std::pair(quote + 1, end - quote - 1);
+}
+
+}  // namespace
+
+std::size_t utf8_length(std::string_view text) {
+  const unsigned first = byte_at(text, 0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte_at(text, i) & 0xC0U) != 0x80U) return 0;
+  const unsigned second = byte_at(text, 1);
+  const bool outside = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+                       (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
+  return outside ? 0 : length;
+}
+
+void require_text(std::string_view bytes, const std::string& file) {
+  SourcePlace place{file, 1};
+  while (!bytes.empty()) {
+    const std::size_t length = utf8_length(bytes);
+    const unsigned first = byte_at(bytes, 0);
+    const bool control = first == 0x7F || (first < 0x20 && first != '\t' && first != '\n' && first != '\r');
+    if (length == 0 || control)
+      throw InputError(place, fmt::format("byte 0x{:02x} is no text", first), "a text file in UTF-8 is needed");
+    if (first == '\n') ++place.line;
+    bytes.remove_prefix(length);
+  }
+}
+
+std::string read_text(const std::filesystem::path& file, std::uintmax_t limit) {
+  std::string text = read_file(file, limit);
+  require_text(text, file.string());
+  return text;
+}
+
+std::string read_xml_text(const std::filesystem::path& file, std::uintmax_t limit) {
+  const SourcePlace place{file.string(), 0};
+  std::string text = read_file(file, limit);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) text = converted(text, "UTF-16", place);
+  const auto [at, length] = declared_encoding(text);
+  if (length == 0) {
+    require_text(text, file.string());
+    return text;
+  }
+  std::string name = text.substr(at, length);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+  if (name != "UTF-8" && name != "UTF-16") text = converted(text, name, place);
+  text.replace(at, length, "UTF-8");
+  require_text(text, file.string());
+  return text;
+}
+
+}  // namespace posewright

@@ -22,6 +22,7 @@ install(FILES ${PROJECT_BINARY_DIR}/src/cli/completion.bash RENAME posewright CO
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${PROJECT_BINARY_DIR}/src/cli/completion.zsh RENAME _posewright COMPONENT program
   DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(DIRECTORY controllers DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program)
 install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program FILES_MATCHING PATTERN "*.schema.json")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program
   PATTERN "__pycache__" EXCLUDE PATTERN "plan.json" EXCLUDE PATTERN "poses.csv" EXCLUDE)

@@ -185,7 +185,8 @@ void bind_plan_class(py::module_& m) {
       .def_readonly("problem_file", &Plan::problem_file)
       .def_readonly("problem_sha256", &Plan::problem_sha256)
       .def("summary", &plan_summary, "The table that the command line prints.")
-      .def("to_json", &plan_json, "plan.json.")
+      .def(
+          "to_json", [](const Plan& p) { return plan_json(p); }, "plan.json.")
       .def(
           "to_dict", [](const Plan& p) { return parsed(plan_json(p)); }, "plan.json as a dictionary.")
       .def("to_csv", &poses_csv, "poses.csv.")

@@ -195,7 +195,8 @@ void bind_route(py::module_& m) {
       .def_readonly("optimal", &Route::optimal, "no order of these motions is shorter")
       .def_readonly("problem_changed", &Route::problem_changed)
       .def("summary", &route_summary, "The table that the command line prints.")
-      .def("to_json", &route_json, "route.json.")
+      .def(
+          "to_json", [](const Route& r) { return route_json(r); }, "route.json.")
       .def("to_dict", [](const Route& r) { return parsed(route_json(r)); })
       .def("to_csv", &route_csv, "Poses in measuring order, as poses.csv.")
       .def(

@@ -117,7 +117,8 @@ Identifiability identifiability(const BlockArray& sample, const std::vector<Para
   result.rank = int(result.kept.size());
   Eigen::MatrixXd basis(g.rows(), result.rank);
   for (int i = 0; i < result.rank; ++i) basis.col(i) = g.col(result.kept[std::size_t(i)]);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
+  // Nothing is seen of anything: there is no basis to explain the columns by.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(result.rank > 0 ? basis : Eigen::MatrixXd::Zero(g.rows(), 1));
   for (int j = 0; j < int(g.cols()); ++j)
     if (!std::binary_search(result.kept.begin(), result.kept.end(), j))
       result.dependencies.push_back(explain(g, qr, result.kept, j, parameters));

@@ -21,6 +21,8 @@ constexpr int most_single = 30, groups_above = 10;
 constexpr double weak = 3.0;
 constexpr double negligible = 0.2;
 constexpr std::size_t most_named = 6;
+// Squares that differ by less, relatively, are the same.
+constexpr double rounding_of_squares = 1e-7;
 
 /// Readings that judge: lengths where there are any, since position is what a robot is calibrated for; else all.
 std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y) {
@@ -54,18 +56,21 @@ double summary(std::vector<double> squares, Weighting weighting) {
   return std::sqrt(*middle);
 }
 
-/// Mean of placed − estimated in standard errors of that mean; robust: how many gain, beyond half of them.
+/// Mean of placed − estimated in standard errors of that mean; robust: how many gain, beyond half of them. Where both
+/// predict the same but for rounding there is no gain.
 double gain_of(const std::vector<double>& estimated, const std::vector<double>& placed, Weighting weighting) {
   const auto n = double(estimated.size());
   double mean = 0, squares = 0, better = 0;
+  std::vector<double> gains;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     const double gain = placed[k] - estimated[k];
     if (!std::isfinite(gain)) return -std::numeric_limits<double>::infinity();
-    better += gain > 0 ? 1 : 0;
-    mean += gain / n;
+    gains.push_back(std::abs(gain) > rounding_of_squares * (placed[k] + estimated[k]) ? gain : 0.0);
+    better += gains.back() > 0 ? 1 : 0;
+    mean += gains.back() / n;
   }
   if (weighting == Weighting::robust) return (better - n / 2) / std::sqrt(n / 4);
-  for (std::size_t k = 0; k < estimated.size(); ++k) squares += std::pow(placed[k] - estimated[k] - mean, 2);
+  for (const double gain : gains) squares += std::pow(gain - mean, 2);
   return squares > 0 ? mean / std::sqrt(squares / (n - 1) / n) : 0.0;
 }
 

@@ -64,8 +64,8 @@ std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames)
   Solids solids(problem, problem.workspace.collision->hulls);
   std::vector<Body> bodies;
   for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip()))
-    bodies.push_back({s.name, s.station, s.parent, s.kind == BodyShape::Kind::obstacle, s.frame, s.X_FrameBody,
-                      solids.of(s.shape, s.place)});
+    bodies.push_back({s.name, s.station, s.parent, s.kind == BodyShape::Kind::obstacle, s.kind == BodyShape::Kind::tool,
+                      s.frame, s.X_FrameBody, solids.of(s.shape, s.place)});
   return bodies;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "posewright/support/error.hpp"
@@ -12,6 +13,8 @@ namespace {
 constexpr int always_samples = 1000;
 constexpr double always_share = 0.95;
 constexpr std::uint64_t contact_seed = 271828;
+// Kept by what is near by design, m: less is contact.
+constexpr double least_reduced = 1e-3;
 
 using NamePair = std::pair<std::string, std::string>;
 
@@ -30,33 +33,45 @@ class SceneBuilder {
     if (spec_.self) add_self_pairs();
     add_obstacle_pairs();
     add_margins();
-    drop_always_touching();
+    settle_self_pairs();
     return std::move(scene_);
   }
 
  private:
+  void require_bodies(const std::vector<Located<std::string>>& given, const std::set<std::string>& names) const {
+    for (const Located<std::string>& name : given) {
+      if (names.count(name.value) > 0) continue;
+      std::string list;
+      for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+      throw InputError(problem_.at(name.line), "'" + name.value + "' is no link, tool part or obstacle with a shape",
+                       list.empty() ? "there is none" : "allowed: " + list);
+    }
+  }
+
   void read_ignored() {
     std::set<std::string> names;
     for (const Body& body : scene_.bodies) names.insert(body.name);
     for (const auto& [a, b] : spec_.ignore) {
-      for (const auto& name : {a, b})
-        if (names.count(name.value) == 0) {
-          std::string list;
-          for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-          throw InputError(problem_.at(name.line),
-                           "'" + name.value + "' is no link, tool part or obstacle with a shape",
-                           list.empty() ? "there is none" : "allowed: " + list);
-        }
+      require_bodies({a, b}, names);
       ignored_.insert(ordered(a.value, b.value));
     }
+    for (const CollisionSpec::PairClearance& pair : spec_.pair_clearances)
+      require_bodies({pair.first, pair.second}, names);
     if (spec_.srdf)
       for (const auto& [a, b] : read_srdf_pairs(spec_.srdf->value, problem_.at(spec_.srdf->line)))
         ignored_.insert(ordered(a, b));
   }
 
+  /// What a pair of the robot's own bodies keeps: named, or of all, or (tool against arm) as from obstacles.
+  double self_clearance(const Body& a, const Body& b) const {
+    for (const CollisionSpec::PairClearance& pair : spec_.pair_clearances)
+      if (ordered(pair.first.value, pair.second.value) == ordered(a.name, b.name)) return pair.clearance;
+    return spec_.self_clearance.value_or(a.tool || b.tool ? spec_.clearance : 0.0);
+  }
+
   void add_pair(int a, int b, int reason, double clearance) {
     if (scene_.bodies[std::size_t(a)].frame > scene_.bodies[std::size_t(b)].frame) std::swap(a, b);
-    scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, {}});
+    scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, clearance, {}});
     const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
     double reach = 0, axis_reach = 0;
     const Eigen::Vector3d axis = second.frame > 0 ? scene_.frames->axis(second.frame) : Eigen::Vector3d::UnitZ();
@@ -78,7 +93,7 @@ class SceneBuilder {
         const bool adjacent = a.name == b.parent || b.name == a.parent;
         if (a.obstacle || b.obstacle || a.frame == b.frame || adjacent || ignored_.count(ordered(a.name, b.name)) > 0)
           continue;
-        add_pair(i, j, 0, spec_.self_clearance);
+        add_pair(i, j, 0, self_clearance(a, b));
       }
   }
 
@@ -107,10 +122,11 @@ class SceneBuilder {
     }
   }
 
-  /// Links whose shapes overlap wherever the robot stands say nothing about collision and are left out; those that are
-  /// nearer than their clearance wherever it stands are checked for contact only.
-  void drop_always_touching() {
-    std::vector<int> touching(scene_.pairs.size(), 0), near(scene_.pairs.size(), 0);
+  /// Links whose shapes overlap wherever the robot stands say nothing about collision and are left out; those that
+  /// cannot keep their clearance by design keep a part of it.
+  void settle_self_pairs() {
+    std::vector<int> touching(scene_.pairs.size(), 0);
+    std::vector<double> largest(scene_.pairs.size(), 0.0);
     std::vector<Eigen::Isometry3d> X(std::size_t(scene_.frames->count()));
     Random random(contact_seed, 0);
     std::vector<double> q;
@@ -123,25 +139,34 @@ class SceneBuilder {
       for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
         const BodyPair& pair = scene_.pairs[p];
         const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
-        if (a.obstacle || b.obstacle || near[p] < i - misses) continue;
+        const bool known = largest[p] >= 2 * pair.asked && touching[p] < i - misses;
+        if (a.obstacle || b.obstacle || known) continue;
         const double found = distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
-                                      X[std::size_t(b.frame)] * b.X_FrameBody, pair.clearance);
-        near[p] += found < pair.clearance;
+                                      X[std::size_t(b.frame)] * b.X_FrameBody, 2 * pair.asked + motion_resolution);
+        largest[p] = std::max(largest[p], found);
         touching[p] += found <= 0;
       }
     }
-    std::set<NamePair> always, contact;
+    std::set<NamePair> always;
+    std::map<NamePair, double> reduced;
     for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
-      const NamePair names = ordered(name(scene_.pairs[p].a), name(scene_.pairs[p].b));
+      BodyPair& pair = scene_.pairs[p];
+      const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
+      if (a.obstacle || b.obstacle) continue;
+      const NamePair names = ordered(a.name, b.name);
       if (touching[p] >= always_share * always_samples) always.insert(names);
-      else if (near[p] >= always_share * always_samples) {
-        contact.insert(names);
-        scene_.pairs[p].clearance = motion_resolution;
+      else if (largest[p] < 2 * pair.asked) {
+        // Of what never is 2 mm apart, half is all there is.
+        const double kept = std::min(pair.asked, std::max(0.5 * largest[p], std::min(least_reduced, 0.8 * largest[p])));
+        pair.clearance = kept + (kept > motion_resolution ? motion_resolution : 0.0);
+        const auto at = reduced.emplace(names, kept).first;
+        at->second = std::min(at->second, kept);
       }
     }
     std::erase_if(scene_.pairs, [&](const BodyPair& p) { return always.count(ordered(name(p.a), name(p.b))) > 0; });
     for (const auto& [a, b] : always) scene_.always.push_back(a + " and " + b);
-    for (const auto& [a, b] : contact) scene_.contact_only.push_back(a + " and " + b);
+    for (const auto& [names, kept] : reduced)
+      if (always.count(names) == 0) scene_.reduced.push_back({names.first, names.second, kept});
   }
 
   const std::string& name(int body) const { return scene_.bodies[std::size_t(body)].name; }

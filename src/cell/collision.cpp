@@ -14,6 +14,8 @@ using Poses = std::vector<Eigen::Isometry3d>;
 
 // Distances are asked for up to this much beyond the clearance: further ones cost more than the steps they save.
 constexpr double look_ahead = 0.08;  // m
+// What is further apart is not near anything.
+constexpr double most_distance = 10.0;  // m
 // States looked at before a motion is followed from its beginning: most that collide do so at one of these.
 constexpr std::array<double, 7> first_looks = {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875};
 
@@ -75,6 +77,70 @@ class PairOnMotion {
   Poses frames_;
 };
 
+/// The nearest pair of one or many states.
+class SmallestDistance {
+ public:
+  explicit SmallestDistance(const Scene& scene) : scene_(scene), frames_(std::size_t(scene.frames->count())) {}
+
+  void look_at(std::span<const double> q, int pose) {
+    place(q, pose);
+    for (const BodyPair& pair : scene_.pairs) look_at(pair);
+  }
+
+  /// States as far apart as the pair in question can move without coming nearer than the smallest distance so far, and
+  /// motion_resolution more.
+  void follow(std::span<const double> from, std::span<const double> to, int pose) {
+    std::vector<double> q(from.size());
+    const auto at = [&](double t) {
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
+      return std::span<const double>(q);
+    };
+    // A good first guess makes long steps.
+    look_at(from, pose);
+    look_at(to, pose);
+    for (const double t : first_looks) look_at(at(t), pose);
+    const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
+    const Eigen::VectorXd change = (b - a).cwiseAbs();
+    for (const BodyPair& pair : scene_.pairs) {
+      const double rate = pair.travel[std::size_t(pose)].dot(change);
+      if (!(rate > 0)) continue;
+      for (double t = 0; t < 1;) {
+        place(at(t), pose);
+        t += (look_at(pair) - smallest_ + motion_resolution) / rate;
+      }
+    }
+  }
+
+  std::optional<Separation> result() const {
+    if (nearest_ == nullptr) return std::nullopt;
+    return Separation{smallest_, scene_.bodies[std::size_t(nearest_->b)].name,
+                      scene_.bodies[std::size_t(nearest_->a)].name};
+  }
+
+ private:
+  void place(std::span<const double> q, int pose) { scene_.frames->poses(q, pose, frames_); }
+
+  /// Lower bound of the pair's distance, exact where it may be the smallest.
+  double look_at(const BodyPair& pair) {
+    const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
+    const Eigen::Isometry3d X_a = frames_[std::size_t(a.frame)] * a.X_FrameBody;
+    const Eigen::Isometry3d X_b = frames_[std::size_t(b.frame)] * b.X_FrameBody;
+    const double least = distance_at_least(*a.solid, X_a, *b.solid, X_b);
+    if (least > smallest_ + look_ahead) return least;
+    const double found = distance(*a.solid, X_a, *b.solid, X_b, std::min(smallest_ + look_ahead, most_distance));
+    if (found < smallest_) {
+      smallest_ = found;
+      nearest_ = &pair;
+    }
+    return found;
+  }
+
+  const Scene& scene_;
+  Poses frames_;
+  double smallest_ = most_distance;
+  const BodyPair* nearest_ = nullptr;
+};
+
 }  // namespace
 
 Collision::Collision(const Problem& problem, const IdentificationModel& model)
@@ -83,7 +149,7 @@ Collision::~Collision() = default;
 
 const std::vector<std::string>& Collision::reasons() const { return scene_->reasons; }
 const std::vector<std::string>& Collision::always_touching() const { return scene_->always; }
-const std::vector<std::string>& Collision::contact_only() const { return scene_->contact_only; }
+const std::vector<ReducedClearance>& Collision::reduced() const { return scene_->reduced; }
 double Collision::margin() const { return scene_->margin; }
 
 int Collision::violation(std::span<const double> q) const {
@@ -105,6 +171,18 @@ double Collision::slack(std::span<const double> q, double cap) const {
       smallest = std::min(smallest, distance_of(*scene_, pair, X, smallest + pair.clearance) - pair.clearance);
   }
   return smallest;
+}
+
+std::optional<Separation> Collision::nearest(std::span<const double> q) const {
+  SmallestDistance smallest(*scene_);
+  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.look_at(q, pose);
+  return smallest.result();
+}
+
+std::optional<Separation> Collision::nearest(std::span<const double> from, std::span<const double> to) const {
+  SmallestDistance smallest(*scene_);
+  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.follow(from, to, pose);
+  return smallest.result();
 }
 
 bool Collision::motion_is_free(std::span<const double> from, std::span<const double> to) const {

@@ -1,18 +1,19 @@
 #include "mesh_file.hpp"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
+
+#include "posewright/support/file.hpp"
+#include "triangle_files.hpp"
 
 namespace posewright {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uintmax_t largest_mesh = 300'000'000;  // bytes
+constexpr double farthest = 1e3;                      // m
 constexpr std::string_view package_scheme = "package://", file_scheme = "file://";
 
 /// Folders in which NAME may lie: those of ROS_PACKAGE_PATH, then those above the URDF.
@@ -46,6 +47,23 @@ fs::path find_package(const std::string& name, const Problem& problem, const Sou
                    "name its folder with --package " + name + "=FOLDER or in ROS_PACKAGE_PATH");
 }
 
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return ending;
+}
+
+TriangleMesh triangles_of(const fs::path& file) {
+  const std::string ending = ending_of(file);
+  if (ending == ".stl") return read_stl(read_file(file, largest_mesh));
+  if (ending == ".obj") return read_obj(read_file(file, largest_mesh));
+  if (ending != ".dae") throw BadMesh("is of a kind that is not read: .stl, .obj and .dae are");
+  std::error_code code;
+  if (fs::file_size(file, code) > largest_mesh || code) throw BadMesh("is too large");
+  record_input(file);
+  return read_collada(file.string());
+}
+
 }  // namespace
 
 fs::path find_mesh(const fs::path& name, const Problem& problem, const SourcePlace& place) {
@@ -67,37 +85,19 @@ fs::path find_mesh(const fs::path& name, const Problem& problem, const SourcePla
 }
 
 TriangleMesh read_mesh(const fs::path& file, const Eigen::Vector3d& scale, const SourcePlace& place) {
-  Assimp::Importer importer;
-  // Normals would keep the corners of triangles apart.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TEXCOORDS | aiComponent_COLORS |
-                                                          aiComponent_TANGENTS_AND_BITANGENTS);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_RemoveComponent | aiProcess_Triangulate);
-  if (scene != nullptr && scene->mRootNode != nullptr && file.extension() == ".dae") {
-    // Assimp turns Collada's z-up to y-up at the root; robots' files mean what they say. Its unit is kept.
-    aiMatrix4x4& root = scene->mRootNode->mTransformation;
-    const float unit = std::hypot(root.a1, root.b1, root.c1);
-    aiMatrix4x4::Scaling(aiVector3D(unit, unit, unit), root);
-  }
-  if (scene != nullptr)
-    scene = importer.ApplyPostProcessing(aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
-  if (scene == nullptr)
-    throw InputError(place, "mesh '" + file.string() + "' cannot be read: " + importer.GetErrorString(), "");
+  const std::string named = "mesh '" + file.string() + "' ";
   TriangleMesh mesh;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& part = *scene->mMeshes[m];
-    const int first = int(mesh.vertices.size());
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const aiVector3D& v = part.mVertices[i];
-      mesh.vertices.push_back(scale.cwiseProduct(Eigen::Vector3d(v.x, v.y, v.z)));
-      if (!mesh.vertices.back().allFinite())
-        throw InputError(place, "mesh '" + file.string() + "' has a vertex that is not finite", "");
-    }
-    for (unsigned i = 0; i < part.mNumFaces; ++i)
-      if (const aiFace& face = part.mFaces[i]; face.mNumIndices == 3)
-        mesh.triangles.push_back(
-            {first + int(face.mIndices[0]), first + int(face.mIndices[1]), first + int(face.mIndices[2])});
+  try {
+    mesh = triangles_of(file);
+  } catch (const BadMesh& error) {
+    throw InputError(place, named + error.what(), "");
   }
-  if (mesh.triangles.empty()) throw InputError(place, "mesh '" + file.string() + "' has no triangles", "");
+  if (mesh.triangles.empty()) throw InputError(place, named + "has no triangles", "");
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex = scale.cwiseProduct(vertex);
+    if (!(vertex.cwiseAbs().maxCoeff() < farthest))
+      throw InputError(place, named + "has a vertex farther than 1000 m", "is it in mm? scale: [0.001, 0.001, 0.001]");
+  }
   return mesh;
 }
 

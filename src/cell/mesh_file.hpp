@@ -9,8 +9,8 @@ namespace posewright {
 /// ROS_PACKAGE_PATH and the folders above the URDF. Throws InputError at `place`, with the folders tried.
 std::filesystem::path find_mesh(const std::filesystem::path& name, const Problem& problem, const SourcePlace& place);
 
-/// Triangles of a mesh file, scaled. Throws InputError at `place` where the file cannot be read, has no triangles, or
-/// coordinates that are not finite.
+/// Triangles of a mesh file (.stl, .obj, .dae), scaled. Throws InputError at `place`, naming the file, if it cannot be
+/// read, is too large, has no triangles, or vertices that are not finite or farther than 1000 m.
 TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale, const SourcePlace& place);
 
 }  // namespace posewright

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "body_frames.hpp"
+#include "posewright/cell/collision.hpp"
 #include "posewright/cell/solid.hpp"
 
 namespace posewright {
@@ -20,7 +21,7 @@ struct Body {
   std::string name;
   std::string station;  ///< see BodySpec
   std::string parent;   ///< link it hangs on; empty: none
-  bool obstacle = false;
+  bool obstacle = false, tool = false;
   int frame = 0;
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   std::shared_ptr<const Solid> solid;
@@ -31,6 +32,7 @@ struct BodyPair {
   int a = 0, b = 0;  ///< bodies; the frame of a is not above that of b
   int reason = 0;
   double clearance = 0.0;               ///< m, margins included
+  double asked = 0.0;                   ///< m, without margins
   std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
 };
 
@@ -41,8 +43,7 @@ struct Scene {
   std::vector<BodyPair> pairs;
   std::vector<std::string> reasons;  ///< what a pair that comes too near is called in the table of rejections
   std::vector<std::string> always;   ///< "link_1 and link_3": left out because they always touch
-  /// Checked for contact only: nearer than the clearance asked for wherever the robot stands.
-  std::vector<std::string> contact_only;
+  std::vector<ReducedClearance> reduced;
   double margin = 0.0;  ///< m, largest that was added for a robot that is not calibrated yet
 };
 

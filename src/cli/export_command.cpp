@@ -8,8 +8,10 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
+#include "posewright/pipeline/check_sequence.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
+#include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
@@ -24,22 +26,27 @@ constexpr const char* no_controller = "syntax checked, not run on a controller";
 
 po::options_description export_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                   //
-      ("to", text("FORMAT"), "format; list or none: the table of formats")                                //
-      ("output,o", text("FILE|DIR"), "where to (a name of the format's own; - for stdout)")               //
-      ("force", "replace files that posewright did not write")                                            //
-      ("name", text("NAME"), "of the program (as the file), of the robot in an SRDF")                     //
-      ("speed", text("%"), "whole percent of full speed (10; of the route's for joint-trajectory: 100)")  //
-      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")                 //
-      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")                   //
+  options.add_options()                                                                              //
+      ("to", text("FORMAT"), "format; list or none: the table of formats")                           //
+      ("output,o", text("FILE|DIR"), "where to (a name of the format's own; - for stdout)")          //
+      ("force", "replace files that posewright did not write")                                       //
+      ("name", text("NAME"), "of the program (as the file), of the robot in an SRDF")                //
+      ("speed", text("%"), "whole percent of full speed (10; of the route's for joint-trajectory)")  //
+      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")            //
+      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")              //
       ("digital-output", text("N"),
-       "tells the instrument to measure: number, or name for abb-rapid and staubli-val3")                          //
-      ("digital-input", text("N"), "tells that it has measured")                                                   //
-      ("tool", text("N"), "tool of the controller")                                                                //
-      ("base", text("N"), "base or user frame of the controller")                                                  //
-      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")                        //
-      ("controller", text("FILE"), "YAML: sign, zero_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
-      ("group", text("NAME"), "planning group of an SRDF (manipulator)");
+       "tells the instrument to measure: number, or name for abb-rapid and staubli-val3")    //
+      ("digital-input", text("N"), "tells that it has measured")                             //
+      ("tool", text("N"), "tool of the controller")                                          //
+      ("base", text("N"), "base or user frame of the controller")                            //
+      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")  //
+      ("controller", text("FILE"),
+       "YAML: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
+      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                          //
+      ("problem", text("FILE"),
+       "problem file of the robot that a program is checked against (the one the plan names)")  //
+      ("unchecked", "a program without asking whether the robot can do what it says");
+  options.add(problem_options());
   return options;
 }
 
@@ -85,6 +92,32 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
       std::find(format.options.begin(), format.options.end(), "name") != format.options.end())
     result.name = output.stem().string();
   return result;
+}
+
+/// A program's poses as the robot of their problem can take them; lists are what they are.
+PoseSequence sequence_of(const PoseFormat& format, const fs::path& plan, const po::variables_map& values,
+                         const ExportOptions& options) {
+  PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
+  if (!format.moves_robot()) {
+    for (const char* option : {"problem", "unchecked", "package", "parameters"})
+      if (values.count(option) > 0)
+        throw InputError({}, fmt::format("--{} is not read for {}", option, format.name), "lists are not checked");
+    return sequence;
+  }
+  if (values.count("unchecked") > 0) return sequence;
+  const double coupling = options.coupling.value_or(options.controller.coupling.value_or(0));
+  if (coupling != 0 && options.controller.range_deg.empty())
+    throw InputError({}, "axes that are coupled have ranges of their own on the controller",
+                     "range_deg in --controller FILE, or --unchecked");
+  fs::path file;
+  try {
+    file = problem_file(values, plan);
+    return checked_sequence(problem_for_plan(file, values, plan), std::move(sequence));
+  } catch (const InputError& error) {
+    if (fs::exists(file) || values.count("problem") > 0) throw;
+    throw InputError({plan.string(), 0}, fmt::format("its problem file {} is not there", file.string()),
+                     "--problem FILE, to check the program against its robot, or --unchecked");
+  }
 }
 
 /// Where each file goes.
@@ -220,9 +253,11 @@ int run_export(const po::variables_map& values, const Words& positional) {
   const fs::path output = to_stdout ? fs::path() : fs::path(given);
   const ExportOptions export_settings = export_options(format, values, output);
   require_ending(format, output);
-  const PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
+  const PoseSequence sequence = sequence_of(format, plan, values, export_settings);
   Exported exported = export_poses(format, sequence, export_settings);
   if (format.controller) exported.notes.emplace_back(no_controller);
+  if (format.moves_robot() && values.count("unchecked") > 0)
+    exported.notes.emplace_back("nothing is checked against the robot's limits and velocities");
   if (to_stdout) {
     std::fwrite(exported.files.front().bytes.data(), 1, exported.files.front().bytes.size(), stdout);
     print_notes(exported.notes);

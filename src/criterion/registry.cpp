@@ -25,14 +25,18 @@ Made determinant(const CriterionData& data) {
   return std::make_unique<DeterminantCriterion>(name == 'o' ? "o1" : "ds", data.nuisance, int(data.R.cols()));
 }
 
-double shown_o1(double, const ObservabilityIndices& indices) { return indices.o1; }
+/// From the factor of the blocks: Φ, from their products, has half as many digits if the matrix is ill-conditioned.
+template <double ObservabilityIndices::*index>
+double shown_index(double, const ObservabilityIndices& indices) {
+  return indices.*index;
+}
 
 std::deque<CriterionEntry> make_table() {
   return {
       {.name = "o1",
        .summary = "log det of the information (D-optimality); nuisance parameters eliminated",
        .make = determinant<'o'>,
-       .shown = shown_o1,
+       .shown = shown_index<&ObservabilityIndices::o1>,
        .determinant = true},
       {.name = "ds",
        .summary = "the same by the name D_s-optimality",
@@ -49,22 +53,22 @@ std::deque<CriterionEntry> make_table() {
       {.name = "o2",
        .summary = "inverse condition number, smallest over largest singular value",
        .make = spectral<SpectralIndex::o2>,
-       .shown = shown_exponential,
+       .shown = shown_index<&ObservabilityIndices::o2>,
        .scaled = true},
       {.name = "o3",
        .summary = "smallest singular value (E-optimality)",
        .make = spectral<SpectralIndex::o3>,
-       .shown = shown_exponential,
+       .shown = shown_index<&ObservabilityIndices::o3>,
        .scaled = true},
       {.name = "o4",
        .summary = "noise amplification index, smallest squared over largest",
        .make = spectral<SpectralIndex::o4>,
-       .shown = shown_exponential,
+       .shown = shown_index<&ObservabilityIndices::o4>,
        .scaled = true},
       {.name = "o5",
        .summary = "harmonic sum of the singular values",
        .make = spectral<SpectralIndex::o5>,
-       .shown = shown_exponential,
+       .shown = shown_index<&ObservabilityIndices::o5>,
        .scaled = true},
       {.name = "test_pose",
        .summary = "accuracy after compensation at the test poses, mean square",

@@ -11,6 +11,9 @@
 #include <span>
 #include <sstream>
 #include <string_view>
+#include <unordered_map>
+
+#include "posewright/support/text.hpp"
 
 namespace posewright {
 namespace {
@@ -21,15 +24,17 @@ struct NumberAttribute {
   int count;
 };
 // What the kinematics is read from.
-constexpr std::array<NumberAttribute, 9> number_attributes = {{{"origin", "xyz", 3},
-                                                               {"origin", "rpy", 3},
-                                                               {"axis", "xyz", 3},
-                                                               {"limit", "lower", 1},
-                                                               {"limit", "upper", 1},
-                                                               {"limit", "velocity", 1},
-                                                               {"limit", "effort", 1},
-                                                               {"mimic", "multiplier", 1},
-                                                               {"mimic", "offset", 1}}};
+constexpr std::array<NumberAttribute, 11> number_attributes = {{{"origin", "xyz", 3},
+                                                                {"origin", "rpy", 3},
+                                                                {"axis", "xyz", 3},
+                                                                {"limit", "lower", 1},
+                                                                {"limit", "upper", 1},
+                                                                {"limit", "velocity", 1},
+                                                                {"limit", "effort", 1},
+                                                                {"safety_controller", "soft_lower_limit", 1},
+                                                                {"safety_controller", "soft_upper_limit", 1},
+                                                                {"mimic", "multiplier", 1},
+                                                                {"mimic", "offset", 1}}};
 
 /// Exactly `count` finite numbers separated by blanks.
 bool are_numbers(std::string_view text, int count) {
@@ -55,6 +60,25 @@ bool are_positive(const std::string& text) {
   for (double value = 0; numbers >> value;)
     if (!(value > 0)) return false;
   return true;
+}
+
+// Of a file; more is no robot.
+constexpr std::size_t most_joints = 50'000;
+
+/// Names of joints become columns of lists and words of programs: what would break those is refused here.
+void check_name(const tinyxml2::XMLElement& joint, const std::string& file) {
+  const char* name = joint.Attribute("name");
+  if (name == nullptr) return;
+  const std::string_view text = name;
+  const bool broken = has_control_character(text) || text.find_first_of(",;\"'[]#") != std::string_view::npos ||
+                      trimmed_blanks(text) != text;
+  if (broken)
+    throw InputError({file, joint.GetLineNum()}, "joint name " + in_quotes(text) + " would break lists of poses",
+                     "no comma, semicolon, quote, bracket, # or line break, no blank at either end");
+  for (const char* word : {"pose", "id", "weight", "load_case", "station"})
+    if (text == word)
+      throw InputError({file, joint.GetLineNum()}, "joint name " + in_quotes(text) + " is a column of its own in lists",
+                       "call the joint otherwise");
 }
 
 constexpr std::array<NumberAttribute, 7> shape_attributes = {{{"origin", "xyz", 3},
@@ -85,23 +109,39 @@ std::string end_of(const tinyxml2::XMLElement& joint, const char* which) {
   return name == nullptr ? std::string() : std::string(name);
 }
 
+/// The uppermost ancestor of each link so far; ways that were gone once are short afterwards, so that long chains cost
+/// no more than short ones.
+class Roots {
+ public:
+  std::string of(std::string link) {
+    for (auto at = above_.find(link); at != above_.end(); at = above_.find(link)) {
+      if (const auto next = above_.find(at->second); next != above_.end()) at->second = next->second;
+      link = at->second;
+    }
+    return link;
+  }
+  void hang(const std::string& child, const std::string& parent) { above_.emplace(child, parent); }
+
+ private:
+  std::unordered_map<std::string, std::string> above_;
+};
+
 /// Every link has at most one parent and no chain of parents comes back to where it started: urdfdom accepts closed
 /// loops in part and never frees them.
 void check_tree(const tinyxml2::XMLElement& robot, const std::string& file) {
   std::map<std::string, std::string> parent;
+  Roots roots;
   for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
     const std::string child = end_of(*joint, "child");
     if (!child.empty() && !parent.emplace(child, end_of(*joint, "parent")).second)
       throw InputError({file, joint->GetLineNum()}, "link '" + child + "' is the child of two joints",
                        "a robot is a tree: one parent a link");
-    std::string link = child;
-    for (std::size_t steps = 0; steps <= parent.size() && parent.count(link) > 0; ++steps) {
-      link = parent[link];
-      if (link == child)
-        throw InputError({file, joint->GetLineNum()}, "link '" + child + "' is its own ancestor",
-                         "a robot is a tree: closed chains cannot be described in a URDF");
-    }
+    if (child.empty()) continue;
+    if (roots.of(end_of(*joint, "parent")) == child)
+      throw InputError({file, joint->GetLineNum()}, "link '" + child + "' is its own ancestor",
+                       "a robot is a tree: closed chains cannot be described in a URDF");
+    roots.hang(child, end_of(*joint, "parent"));
   }
 }
 
@@ -115,9 +155,15 @@ UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(t
   if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
     throw InputError({file, robot == nullptr ? 0 : robot->GetLineNum()}, "has no <robot> at its root",
                      "a URDF file is needed");
+  std::size_t joints = 0;
   for (const tinyxml2::XMLElement* e = robot->FirstChildElement("joint"); e != nullptr;
-       e = e->NextSiblingElement("joint"))
+       e = e->NextSiblingElement("joint")) {
+    if (++joints > most_joints)
+      throw InputError({file, e->GetLineNum()}, "has more than " + std::to_string(most_joints) + " joints",
+                       "a robot, not a building");
     check_numbers(*e, number_attributes, file);
+    check_name(*e, file);
+  }
   check_tree(*robot, file);
   for (const char* element : {"joint", "link"})
     for (const tinyxml2::XMLElement* e = robot->FirstChildElement(element); e != nullptr;

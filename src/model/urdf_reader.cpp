@@ -1,6 +1,7 @@
 #include "posewright/model/urdf_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -10,20 +11,60 @@
 namespace posewright {
 namespace {
 
+constexpr double turn = 2 * std::numbers::pi;
+
+/// Keeps c within [lower, upper]; `by` says what asks for it.
+void narrow(Coordinate& c, double lower, double upper, const std::string& by, const SourcePlace& place) {
+  if (lower <= c.lower && upper >= c.upper) return;
+  c.lower = std::max(c.lower, lower);
+  c.upper = std::min(c.upper, upper);
+  c.periodic = false;
+  c.limited_by += (c.limited_by.empty() ? "" : ", ") + by;
+  if (!(c.lower < c.upper))
+    throw InputError(place, "nothing is left of the range of joint '" + c.name + "'", "it is narrowed by " + by);
+}
+
+/// Hard and soft limits of a joint alone. Soft ones are those of <safety_controller>, where both are 0 none (the
+/// default of the format).
 Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   const bool prismatic = joint.type == urdf::Joint::PRISMATIC;
   Coordinate c{joint.name, prismatic ? "m" : "rad", -std::numbers::pi, std::numbers::pi};
   c.periodic = joint.type == urdf::Joint::CONTINUOUS;
   if (joint.limits != nullptr && joint.limits->velocity > 0) c.speed = joint.limits->velocity;
-  if (c.periodic) return c;
-  if (joint.limits == nullptr)
-    throw InputError(place, "joint '" + joint.name + "' has no <limit>",
-                     "lower and upper are needed, or type continuous");
-  c.lower = joint.limits->lower;
-  c.upper = joint.limits->upper;
-  if (!(c.lower < c.upper))
-    throw InputError(place, "joint '" + joint.name + "' has empty limits", "lower must be below upper");
+  if (!c.periodic) {
+    if (joint.limits == nullptr)
+      throw InputError(place, "joint '" + joint.name + "' has no <limit>",
+                       "lower and upper are needed, or type continuous");
+    c.lower = joint.limits->lower;
+    c.upper = joint.limits->upper;
+    if (!(c.lower < c.upper))
+      throw InputError(place, "joint '" + joint.name + "' has empty limits", "lower must be below upper");
+  }
+  if (joint.safety == nullptr) return c;
+  const double lower = joint.safety->soft_lower_limit, upper = joint.safety->soft_upper_limit;
+  const bool everything = c.periodic && upper - lower >= turn;
+  if ((lower != 0 || upper != 0) && !everything)
+    narrow(c, lower, upper, "soft limits of '" + joint.name + "' (safety_controller)", place);
   return c;
+}
+
+/// What a joint that follows `master` allows it: its own limits, soft limits and velocity.
+void bind_follower(Coordinate& master, const urdf::Joint& follower, const SourcePlace& place) {
+  const double factor = follower.mimic->multiplier, offset = follower.mimic->offset;
+  const Coordinate own = coordinate_of(follower, place);
+  // A full turn of the master is one of the follower only if it turns by whole numbers.
+  if (follower.type == urdf::Joint::PRISMATIC || factor != std::round(factor)) master.periodic = false;
+  if (factor == 0) {
+    if (!own.periodic && (offset < own.lower || offset > own.upper))
+      throw InputError(place, "joint '" + follower.name + "' stands beyond its own limits",
+                       "its mimic multiplier is 0, so its offset is where it stands");
+    return;
+  }
+  if (!own.periodic) {
+    const auto [lower, upper] = std::minmax({(own.lower - offset) / factor, (own.upper - offset) / factor});
+    narrow(master, lower, upper, "limits of '" + follower.name + "', which follows it", place);
+  }
+  if (own.speed > 0 && master.speed > 0) master.speed = std::min(master.speed, own.speed / std::abs(factor));
 }
 
 class ChainBuilder {
@@ -78,18 +119,24 @@ class ChainBuilder {
   }
 
   /// Mass of a link and of the branches on it that are not part of the chain, as they hang at zero position.
-  void carry(const urdf::Link& link, const Eigen::Isometry3d& X_JointLink) {
+  void carry(const urdf::Link& first, const Eigen::Isometry3d& X_JointFirst) {
     ChainJoint& joint = chain_.joints.back();
-    if (link.inertial != nullptr && link.inertial->mass > 0) {
-      const Eigen::Vector3d centre = X_JointLink * isometry(link.inertial->origin).translation();
-      const double total = joint.mass + link.inertial->mass;
-      joint.centre_of_mass = (joint.mass * joint.centre_of_mass + link.inertial->mass * centre) / total;
-      joint.mass = total;
+    std::vector<std::pair<const urdf::Link*, Eigen::Isometry3d>> open{{&first, X_JointFirst}};
+    while (!open.empty()) {
+      const auto [link, X_JointLink] = open.back();
+      open.pop_back();
+      if (link->inertial != nullptr && link->inertial->mass > 0) {
+        const Eigen::Vector3d centre = X_JointLink * isometry(link->inertial->origin).translation();
+        const double total = joint.mass + link->inertial->mass;
+        joint.centre_of_mass = (joint.mass * joint.centre_of_mass + link->inertial->mass * centre) / total;
+        joint.mass = total;
+      }
+      // In the order of the file, as sums are rounded.
+      for (auto branch = link->child_joints.rbegin(); branch != link->child_joints.rend(); ++branch)
+        if (path_.count((*branch)->name) == 0)
+          open.emplace_back(model_.getLink((*branch)->child_link_name).get(),
+                            X_JointLink * isometry((*branch)->parent_to_joint_origin_transform));
     }
-    for (const auto& branch : link.child_joints)
-      if (path_.count(branch->name) == 0)
-        carry(*model_.getLink(branch->child_link_name),
-              X_JointLink * isometry(branch->parent_to_joint_origin_transform));
   }
 
   void resolve_mimics() {
@@ -101,6 +148,12 @@ class ChainBuilder {
                          "joint '" + chain_.joints[index].name + "' mimics '" + master + "', which is not in the chain",
                          "choose a tip whose chain has both");
       chain_.joints[index].coordinate = found->coordinate;
+    }
+    // Fingers and covers beside the chain follow its joints too, and end them.
+    for (const auto& [name, joint] : model_.joints_) {
+      if (joint->mimic == nullptr) continue;
+      for (Coordinate& c : chain_.coordinates)
+        if (c.name == joint->mimic->joint_name) bind_follower(c, *joint, lines_.joint(name));
     }
   }
 

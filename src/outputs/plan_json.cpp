@@ -97,6 +97,11 @@ nlohmann::ordered_json actuators_json(const PlannedPose& pose) {
   return actuators;
 }
 
+nlohmann::ordered_json nearest_json(const std::optional<BodyDistance>& nearest) {
+  if (!nearest) return nullptr;
+  return {{"distance", nearest->distance}, {"between", {nearest->first, nearest->second}}};
+}
+
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
   const Eigen::Quaterniond q(X.linear());
   const Eigen::Vector3d p = X.translation();
@@ -123,8 +128,11 @@ namespace {
 Json cell_json(const CellNotes& cell) {
   Json margins = Json::object();
   for (const NamedValue& v : cell.joint_margins) margins[v.name] = v.value;
+  Json reduced = Json::array();
+  for (const BodyDistance& pair : cell.reduced)
+    reduced.push_back({{"between", {pair.first, pair.second}}, {"clearance", pair.distance}});
   return {{"always_touching", cell.always_touching},
-          {"contact_only", cell.contact_only},
+          {"reduced_clearances", reduced},
           {"uncalibrated_margin", cell.margin},
           {"uncalibrated_joint_margins", margins}};
 }
@@ -154,6 +162,7 @@ Json pose_json(const PlannedPose& pose) {
     json["targets"] = Json::array();
     for (const TargetSight& sight : pose.sights) json["targets"].push_back(sight_json(sight));
   }
+  if (pose.nearest) json["nearest"] = nearest_json(pose.nearest);
   json["contribution"] = pose.contribution;
   if (!pose.measured) json["efficiency_without"] = pose.without;
   return json;
@@ -175,9 +184,9 @@ Json statistics_json(const PlanStatistics& s) {
                                 {"efficiency", stage.efficiency ? Json(*stage.efficiency) : Json(nullptr)},
                                 {"seconds", stage.seconds}});
   }
-  if (!s.cell.always_touching.empty() || !s.cell.contact_only.empty() || s.cell.margin > 0 ||
-      !s.cell.joint_margins.empty())
+  if (!s.cell.always_touching.empty() || !s.cell.reduced.empty() || s.cell.margin > 0 || !s.cell.joint_margins.empty())
     json["cell"] = cell_json(s.cell);
+  for (const LimitMargin& m : s.limit_margins) json["limit_margins"][m.name] = m.margin;
   if (s.poses_on_boundary) json["poses_on_boundary"] = *s.poses_on_boundary;
   if (s.coordinates_on_limits) json["coordinates_on_limits"] = *s.coordinates_on_limits;
   return json;

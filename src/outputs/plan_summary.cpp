@@ -168,7 +168,9 @@ std::string cell_text(const CellNotes& cell) {
     if (!list.empty()) text += "\n";
   };
   pairs("Not checked, because they touch wherever the robot stands: ", cell.always_touching);
-  pairs("Checked for contact only, because they are never as far apart as asked for: ", cell.contact_only);
+  for (const BodyDistance& pair : cell.reduced)
+    text += fmt::format("{} and {} are near by design and keep {} of the clearance asked for.\n", pair.first,
+                        pair.second, shown_value(pair.distance, "m"));
   if (cell.margin > 0)
     text +=
         fmt::format("Until the robot is calibrated, clearances are up to {} wider.\n", shown_value(cell.margin, "m"));
@@ -178,13 +180,33 @@ std::string cell_text(const CellNotes& cell) {
   return cell.joint_margins.empty() ? text : text + "\n";
 }
 
+/// "j1 3.4 deg, j2 …": what proposed poses keep from the limits.
+std::string margins_text(const std::vector<LimitMargin>& margins) {
+  if (margins.empty()) return {};
+  std::string text;
+  for (const LimitMargin& m : margins)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", m.name, shown_value(m.margin, m.unit));
+  const bool standard = std::any_of(margins.begin(), margins.end(), [](const LimitMargin& m) { return m.standard; });
+  return fmt::format("Proposed poses stay off the limits: {}{}.\n", text,
+                     standard ? " (workspace: joints: margin; 0: not)" : "");
+}
+
+std::string nearest_text(const Plan& plan) {
+  const PlannedPose* nearest = nullptr;
+  for (const PlannedPose& pose : plan.poses)
+    if (pose.nearest && (nearest == nullptr || pose.nearest->distance < nearest->nearest->distance)) nearest = &pose;
+  if (nearest == nullptr) return {};
+  return fmt::format("Nearest to each other: {} and {}, {} apart at pose {}.\n", nearest->nearest->first,
+                     nearest->nearest->second, shown_value(nearest->nearest->distance, "m"), nearest->id);
+}
+
 std::string candidates_text(const Plan& plan) {
   const PlanStatistics& s = plan.statistics;
   if (s.drawn == 0) return {};
   std::string text = fmt::format("Candidates: {} {}, {} feasible\n", s.drawn,
                                  s.list.empty() ? "drawn" : "different ones in " + s.list, s.feasible);
   for (const std::string& note : s.notes) text += note + "\n";
-  text += rejection_table(s) + cell_text(s.cell);
+  text += rejection_table(s) + cell_text(s.cell) + margins_text(s.limit_margins) + nearest_text(plan);
   if (s.poses_on_boundary)
     text += fmt::format(
         "{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",

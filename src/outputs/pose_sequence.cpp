@@ -112,11 +112,16 @@ class SequenceReader {
       if (sequence_.poses.empty()) {
         sequence_.names = names;
         // A list that a person shortened may lack the units.
+        sequence_.units_stated = json.contains("units");
         sequence_.units =
             json.contains("units") ? names_of(json["units"], place_) : std::vector<std::string>(names.size(), "rad");
       } else if (names != sequence_.names) {
         throw InputError(place_, fmt::format("pose {} has other coordinates than the first", pose.id),
                          "all poses of one robot");
+      } else if (sequence_.units_stated != json.contains("units") ||
+                 (sequence_.units_stated && names_of(json["units"], place_) != sequence_.units)) {
+        throw InputError(place_, fmt::format("pose {} has other units than the first", pose.id),
+                         "the same units for all poses");
       }
     }
     if (pose.values.empty() || pose.values.size() != sequence_.names.size())

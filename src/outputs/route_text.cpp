@@ -15,9 +15,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json motion_json(const RouteMotion& motion) {
-  return {{"from", motion.from},         {"to", motion.to},
-          {"points", motion.points},     {"seconds", motion.seconds},
-          {"found_by", motion.found_by}, {"change_seconds", motion.change_seconds}};
+  return {{"from", motion.from},
+          {"to", motion.to},
+          {"points", motion.points},
+          {"seconds", motion.seconds},
+          {"found_by", motion.found_by},
+          {"change_seconds", motion.change_seconds},
+          {"nearest", nearest_json(motion.nearest)}};
 }
 
 Json stop_json(const PlannedPose& pose) {
@@ -28,6 +32,7 @@ Json stop_json(const PlannedPose& pose) {
   json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
   if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
+  if (pose.nearest) json["nearest"] = nearest_json(pose.nearest);
   if (!pose.sights.empty()) {
     json["targets"] = Json::array();
     for (const TargetSight& sight : pose.sights) json["targets"].push_back(sight_json(sight));
@@ -66,6 +71,18 @@ std::string steps_table(const Route& route) {
     elapsed += route.settle;
   }
   return table.text();
+}
+
+std::string nearest_text(const Route& route) {
+  const RouteMotion* nearest = nullptr;
+  for (const RouteMotion& motion : route.motions)
+    if (motion.nearest && (nearest == nullptr || motion.nearest->distance < nearest->nearest->distance))
+      nearest = &motion;
+  if (nearest == nullptr) return {};
+  const auto stop = [](int id) { return id == 0 ? std::string("home") : "pose " + std::to_string(id); };
+  return fmt::format("Nearest to each other: {} and {}, {} apart between {} and {}.\n", nearest->nearest->first,
+                     nearest->nearest->second, shown_value(nearest->nearest->distance, "m"), stop(nearest->from),
+                     stop(nearest->to));
 }
 
 std::string references_text(const Route& route) {
@@ -143,7 +160,7 @@ std::string route_summary(const Route& route) {
     text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
                         seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
                         route.optimal ? "; no order of such motions is shorter" : "");
-  text += "\n" + steps_table(route) + references_text(route);
+  text += "\n" + steps_table(route) + nearest_text(route) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)
     text += fmt::format("Pose {} is left out: {}.\n", skipped.pose, skipped.reason);
   return text + fmt::format("Computed in {:.1f} s\n", route.computing_seconds);

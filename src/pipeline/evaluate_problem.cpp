@@ -13,6 +13,7 @@
 #include "posewright/pipeline/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 #include "preparation.hpp"
+#include "read_poses.hpp"
 
 namespace posewright {
 namespace {
@@ -33,12 +34,16 @@ class ListEvaluation {
     notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
     note_parameters(list, problem, notes_);
     poses_.dimension = int(coordinates.size());
+    std::vector<int> near;  // ids
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
       if (prepared_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
       require_feasible(list.configurations[i], i, list);
       append(poses_, list.configurations[i]);
+      if (!prepared_.first().workspace->within_margin(list.configurations[i]).empty())
+        near.push_back(i < list.ids.size() ? list.ids[i] : int(i) + 1);
     }
+    if (!near.empty()) notes_.push_back(margin_note(list.name, near));
     settings_.poses = int(poses_.count());
   }
 

@@ -80,11 +80,30 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) 
   return result;
 }
 
+std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q) {
+  if (cell.collision == nullptr) return std::nullopt;
+  const auto found = cell.collision->nearest(q);
+  if (!found) return std::nullopt;
+  return BodyDistance{found->distance, found->first, found->second};
+}
+
+std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem) {
+  std::vector<LimitMargin> margins;
+  for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
+    const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
+    const double margin = std::min(inner.lower - all.lower, all.upper - inner.upper);
+    const auto& asked = all.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
+    if (margin > 0) margins.push_back({all.name, all.unit, margin, !asked});
+  }
+  return margins;
+}
+
 CellNotes cell_notes(const Cell& cell) {
   CellNotes notes;
   if (cell.collision != nullptr) {
     notes.always_touching = cell.collision->always_touching();
-    notes.contact_only = cell.collision->contact_only();
+    for (const ReducedClearance& pair : cell.collision->reduced())
+      notes.reduced.push_back({pair.clearance, pair.first, pair.second});
     notes.margin = cell.collision->margin();
   }
   for (const Coordinate& c : cell.model->coordinates())
@@ -145,6 +164,7 @@ void fill_poses(Plan& plan, const Preparation& prepared, const Configurations& c
     pose.measured = measured;
     if (prepared.cell->sight != nullptr)
       pose.sights = sights_of(*prepared.cell->sight, measured ? prepared.measured[i] : chosen[i - before]);
+    pose.nearest = nearest_at(*prepared.cell, measured ? prepared.measured[i] : chosen[i - before]);
     pose.contribution = contribution[Eigen::Index(i)];
     if (!measured) {
       const int member = found.design.members[i - before];

@@ -45,6 +45,7 @@ class Listing {
     for (std::size_t i = 0; i < list_.configurations.size(); ++i)
       if (const int index = int(seen.size()); seen.emplace(list_.configurations[i], index).second) take(i, index);
     out_.drawn = long(seen.size());
+    if (!near_.empty()) prepared_.notes.push_back(margin_note(list_.name, near_));
     if (count_ > most_named) prepared_.notes.push_back(fmt::format("… and {} more", count_ - most_named));
     if (out_.count() > 0) return;
     std::string reasons;
@@ -65,6 +66,7 @@ class Listing {
       count_reason(reason);
       return;
     }
+    if (reason.empty()) note_margin(q, row);
     append(out_, q);
     out_.rows.push_back(row);
   }
@@ -109,6 +111,10 @@ class Listing {
                                           where));
   }
 
+  void note_margin(const std::vector<double>& q, const ListedRow& row) {
+    if (!prepared_.first().workspace->within_margin(q).empty()) near_.push_back(row.id);
+  }
+
   void count_reason(const std::string& reason) {
     const auto at = std::find_if(out_.rejected.begin(), out_.rejected.end(),
                                  [&](const auto& entry) { return entry.first == reason; });
@@ -122,6 +128,7 @@ class Listing {
   Configurations& out_;
   bool measured_ = false;
   int count_ = 0;
+  std::vector<int> near_;  // ids of poses nearer to a limit than the margin
 };
 
 }  // namespace

@@ -172,6 +172,7 @@ class Planning {
     fill_poses(plan, prepared_, chosen, found, judgement);
     fill_candidates(plan.statistics, prepared_);
     plan.statistics.cell = cell_notes(*prepared_.cell);
+    plan.statistics.limit_margins = limit_margins(*prepared_.first().workspace, problem_);
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;

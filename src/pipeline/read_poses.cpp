@@ -197,6 +197,14 @@ double as_allowed(double value, const Coordinate& c) {
   return std::abs(nearest - value) <= rounding_of_lists * (1 + std::abs(nearest)) ? nearest : value;
 }
 
+std::string margin_note(const std::string& file, const std::vector<int>& ids) {
+  constexpr std::size_t most = 8;
+  const std::size_t count = std::min(most, ids.size());
+  return fmt::format("{}: {} {} nearer to a limit than the margin that proposed poses keep: {}{}", file, ids.size(),
+                     ids.size() == 1 ? "pose is" : "poses are", fmt::join(ids.begin(), ids.begin() + long(count), ", "),
+                     ids.size() > most ? ", …" : "");
+}
+
 void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
   if (inside(value, c)) return;
   throw InputError(place, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),

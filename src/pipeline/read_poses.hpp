@@ -32,4 +32,7 @@ double as_allowed(double value, const Coordinate& c);
 /// Throws InputError for a value that is not inside().
 void require_inside(double value, const Coordinate& c, const SourcePlace& place);
 
+/// "FILE: 3 poses are nearer to a limit than what is proposed would be: 4, 9, 12".
+std::string margin_note(const std::string& file, const std::vector<int>& ids);
+
 }  // namespace posewright

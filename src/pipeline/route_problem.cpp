@@ -11,6 +11,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
+#include "read_poses.hpp"
 #include "written_plan.hpp"
 
 namespace posewright {
@@ -77,8 +78,13 @@ class Router {
       Stop stop{id, list.configurations[i], pose_of(*site_.model, list.configurations[i])};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
+      stop.pose.nearest = nearest_at(*cell_, stop.configuration);
       stops_.push_back(std::move(stop));
     }
+    std::vector<int> near;
+    for (const Stop& stop : stops_)
+      if (stop.id > 0 && !site_.workspace->within_margin(stop.configuration).empty()) near.push_back(stop.id);
+    if (!near.empty()) route_.notes.push_back(margin_note(list.name, near));
     if (options_.start && find_stop(*options_.start) < 0)
       throw InputError({}, "--start " + std::to_string(*options_.start) + " is no pose of " + list.name,
                        "an id of a pose that is still to be measured");
@@ -234,7 +240,7 @@ class Router {
     for (const auto& [i, j] : legs(order)) {
       const Motion& motion = motions_->between(i, j);
       route_.motions.push_back({stops_[std::size_t(i)].id, stops_[std::size_t(j)].id, motion.points, motion.seconds,
-                                change(i, j), motion.found_by});
+                                change(i, j), motion.found_by, nearest_on(motion)});
     }
     const int every = problem_.workspace.line_of_sight ? problem_.workspace.line_of_sight->every : 0;
     for (const int i : order) {
@@ -244,6 +250,17 @@ class Router {
       // Before anything else, after every so many poses, and at the end, so that drift is bracketed.
       if (every > 0 && (done == 1 || done % std::size_t(every) == 0 || i == order.back())) add_references(i);
     }
+  }
+
+  /// What comes nearest to each other on the way.
+  std::optional<BodyDistance> nearest_on(const Motion& motion) const {
+    std::optional<BodyDistance> nearest;
+    for (std::size_t k = 1; cell_->collision != nullptr && k < motion.points.size(); ++k) {
+      const auto found = cell_->collision->nearest(space_.whole(motion.points[k - 1]), space_.whole(motion.points[k]));
+      if (found && (!nearest || found->distance < nearest->distance))
+        nearest = BodyDistance{found->distance, found->first, found->second};
+    }
+    return nearest;
   }
 
   void add_references(int stop) {

@@ -74,6 +74,9 @@ ResolvedColumns resolve_columns(const StudyView& study, const Problem& problem, 
   IdentifiabilityOptions options;
   options.tiers = all.tiers;
   const Identifiability found = identifiability(sample, all.parameters, options);
+  if (found.rank == 0)
+    throw CannotDo("variant '" + variant.name + "': the instrument reads nothing that a parameter moves, at none of " +
+                   std::to_string(sample.count()) + " configurations; where does it stand, and what is in its sight?");
   for (const Dependency& d : found.dependencies) {
     resolved.dropped.push_back(all.parameters[std::size_t(d.dropped)]);
     resolved.reasons.push_back(describe(d, all.parameters));

@@ -70,8 +70,7 @@ class StudySpace : public ConfigurationSpace {
   StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
              const Spacing& spacing, Eigen::MatrixXd R)
       : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
-    for (const Coordinate& c : parts_.front().workspace->coordinates())
-      axes_.push_back({c.lower, c.upper, !c.discrete()});
+    for (const Coordinate& c : parts_.front().workspace->proposed()) axes_.push_back({c.lower, c.upper, !c.discrete()});
     // Poses that are there already are holes in the box.
     box_ = measured.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;

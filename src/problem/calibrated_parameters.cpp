@@ -4,8 +4,8 @@
 
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
+#include "posewright/support/text.hpp"
 #include "posewright/support/text_file.hpp"
-#include "text.hpp"
 #include "yaml_section.hpp"
 
 namespace posewright {

@@ -1,8 +1,8 @@
 #include <array>
 #include <set>
 
+#include "posewright/support/text.hpp"
 #include "sections.hpp"
-#include "text.hpp"
 
 namespace posewright {
 namespace {
@@ -80,6 +80,26 @@ std::vector<BodySpec> read_bodies(const Value& value, const std::string& kind, c
   return bodies;
 }
 
+/// A length for all pairs, or {all: LENGTH, pairs: [{between: [A, B], clearance: LENGTH}]}.
+void read_self_clearance(const Value& value, CollisionSpec& collision) {
+  if (!value.is_mapping()) {
+    collision.self_clearance = value.number(Quantity::length, Sign::not_negative);
+    return;
+  }
+  const Section section(value);
+  section.allow({"all", "pairs"});
+  if (const Value* all = section.find("all"))
+    collision.self_clearance = all->number(Quantity::length, Sign::not_negative);
+  if (const Value* pairs = section.find("pairs"))
+    for (const Value& item : pairs->items("a list of {between, clearance} is expected")) {
+      const Section pair(item);
+      pair.allow({"between", "clearance"});
+      const std::vector<Value> names = pair.at("between").items(2, "two names are expected");
+      collision.pair_clearances.push_back({names[0].exact_name(), names[1].exact_name(),
+                                           pair.at("clearance").number(Quantity::length, Sign::not_negative)});
+    }
+}
+
 }  // namespace
 
 Eigen::Vector3d read_direction(const Value& value) {
@@ -97,8 +117,7 @@ CollisionSpec read_collision(const Value& value, const std::filesystem::path& fo
   if (const Value* hulls = section.find("hulls")) collision.hulls = hulls->flag();
   if (const Value* clearance = section.find("clearance"))
     collision.clearance = clearance->number(Quantity::length, Sign::not_negative);
-  if (const Value* clearance = section.find("self_clearance"))
-    collision.self_clearance = clearance->number(Quantity::length, Sign::not_negative);
+  if (const Value* clearance = section.find("self_clearance")) read_self_clearance(*clearance, collision);
   if (const Value* srdf = section.find("srdf"))
     collision.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
   if (const Value* ignore = section.find("ignore"))

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "posewright/problem/design_words.hpp"
+#include "posewright/support/text.hpp"
 #include "sections.hpp"
-#include "text.hpp"
 
 namespace posewright {
 namespace {

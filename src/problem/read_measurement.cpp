@@ -5,8 +5,8 @@
 #include <span>
 
 #include "posewright/support/dense.hpp"
+#include "posewright/support/text.hpp"
 #include "sections.hpp"
-#include "text.hpp"
 
 namespace posewright {
 namespace {

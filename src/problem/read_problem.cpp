@@ -4,9 +4,9 @@
 
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
+#include "posewright/support/text.hpp"
 #include "posewright/support/text_file.hpp"
 #include "sections.hpp"
-#include "text.hpp"
 
 namespace posewright {
 namespace {

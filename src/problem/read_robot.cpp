@@ -1,8 +1,8 @@
 #include <array>
 #include <map>
 
+#include "posewright/support/text.hpp"
 #include "sections.hpp"
-#include "text.hpp"
 
 namespace posewright {
 namespace {

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "posewright/support/text_file.hpp"
 #include "sections.hpp"
 
 namespace posewright {
@@ -8,6 +9,8 @@ namespace {
 using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
+
+constexpr std::uintmax_t settings_size_limit = 1'000'000;
 
 CoupledLimits read_coupled(const Value& value) {
   const Section section(value);
@@ -24,10 +27,18 @@ CoupledLimits read_coupled(const Value& value) {
   return coupled;
 }
 
-void read_joints(const Section& joints, WorkspaceSpec& workspace) {
-  joints.allow({"margin", "margin_length", "limits", "coupled"});
+void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::filesystem::path& folder) {
+  joints.allow({"margin", "margin_length", "limits", "coupled", "controller"});
+  if (const Value* controller = joints.find("controller")) {
+    const std::filesystem::path file = folder / controller->text("a file name is expected");
+    workspace.controller = parse_controller_settings(read_text(file, settings_size_limit), file.string());
+    if (workspace.controller->range_deg.empty())
+      throw InputError({file.string(), 0}, "has no range_deg", "the ranges that poses are to keep");
+  }
   if (const Value* margin = joints.find("margin"))
     workspace.joint_margin = margin->number(Quantity::angle, Sign::not_negative);
+  // "margin: 0" has no unit: none at all.
+  if (workspace.joint_margin == 0.0) workspace.joint_margin_length = 0.0;
   if (const Value* margin = joints.find("margin_length"))
     workspace.joint_margin_length = margin->number(Quantity::length, Sign::not_negative);
   if (const Value* limits = joints.find("limits"))
@@ -112,7 +123,7 @@ WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const s
   } else {
     section.allow({"joints", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
                    "uncalibrated"});
-    if (const Value* joints = section.find("joints")) read_joints(Section(*joints), workspace);
+    if (const Value* joints = section.find("joints")) read_joints(Section(*joints), workspace, folder);
   }
   if (const Value* tool = section.find("tool")) workspace.tool = read_tool_box(Section(*tool));
   if (const Value* singularity = section.find("singularity")) workspace.singularity = read_singularity(*singularity);

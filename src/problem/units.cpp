@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "posewright/support/error.hpp"
-#include "text.hpp"
+#include "posewright/support/text.hpp"
 
 namespace posewright {
 namespace {
@@ -48,6 +48,25 @@ constexpr std::array<Unit, 25> units{{
     {"mm/s2", Quantity::acceleration, 1, 1e3},
 }};
 
+/// What no robot, cell or instrument has more of, SI: mostly a unit that was forgotten.
+struct Plausible {
+  Quantity quantity;
+  double most;
+  const char* text;
+};
+constexpr std::array<Plausible, 10> plausible{{
+    {Quantity::length, 1e3, "1000 m at most (is it mm?)"},
+    {Quantity::angle, 1e3, "1000 rad at most (is it deg?)"},
+    {Quantity::force, 1e8, "1e8 N at most"},
+    {Quantity::compliance, 1, "1 rad/Nm at most (is it urad/Nm?)"},
+    {Quantity::stiffness, 1e15, "1e15 N/m at most"},
+    {Quantity::time, 1e7, "1e7 s at most"},
+    {Quantity::turn_rate, 1e3, "1000 rad/s at most (is it deg/s?)"},
+    {Quantity::speed, 1e2, "100 m/s at most (is it mm/s?)"},
+    {Quantity::turn_acceleration, 1e5, "1e5 rad/s2 at most (is it deg/s2?)"},
+    {Quantity::acceleration, 1e4, "10000 m/s2 at most (is it mm/s2?)"},
+}};
+
 [[noreturn]] void fail(std::string_view text, const std::string& what, const std::string& allowed) {
   throw InputError({}, in_quotes(text) + " " + what, allowed);
 }
@@ -65,6 +84,18 @@ double take_number(std::string_view& text, const std::string& allowed) {
   if (text.size() > 1 && text[0] == ',' && text[1] >= '0' && text[1] <= '9')
     fail(whole, "has a decimal comma", "write a decimal point");
   return value;
+}
+
+/// A plain number is of the one kind that is accepted; of several, any of them will do.
+void require_plausible(std::string_view text, double value, Quantity unit, std::initializer_list<Quantity> accepted) {
+  const Plausible* widest = nullptr;
+  for (const Plausible& limit : plausible) {
+    const bool meant = unit == Quantity::number
+                           ? std::find(accepted.begin(), accepted.end(), limit.quantity) != accepted.end()
+                           : limit.quantity == unit;
+    if (meant && (widest == nullptr || limit.most > widest->most)) widest = &limit;
+  }
+  if (widest != nullptr && std::abs(value) > widest->most) fail(text, "is more than can be", widest->text);
 }
 
 }  // namespace
@@ -101,7 +132,10 @@ Measured parse_measured(std::string_view text, std::initializer_list<Quantity> a
   std::string_view rest = whole;
   const double number = take_number(rest, allowed);
   rest = trimmed_blanks(rest);
-  if (rest.empty()) return {number, Quantity::number};
+  if (rest.empty()) {
+    require_plausible(whole, number, Quantity::number, accepted);
+    return {number, Quantity::number};
+  }
 
   const auto unit = std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.name == rest; });
   if (names.empty()) fail(whole, "has a unit", "a plain number is needed");
@@ -110,6 +144,7 @@ Measured parse_measured(std::string_view text, std::initializer_list<Quantity> a
     fail(whole, "has the wrong unit " + in_quotes(rest), "allowed: " + names);
   const double value = number * unit->times / unit->over;
   if (!std::isfinite(value)) fail(whole, "is out of range", "a finite double is needed");
+  require_plausible(whole, value, unit->quantity, accepted);
   return {value, unit->quantity};
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "text.hpp"
+#include "posewright/support/text.hpp"
 
 namespace posewright::yaml {
 namespace {

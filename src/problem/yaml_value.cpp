@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "text.hpp"
+#include "posewright/support/text.hpp"
 #include "yaml_section.hpp"
 
 namespace posewright::yaml {

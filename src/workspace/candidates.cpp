@@ -36,9 +36,9 @@ class Sampler {
  public:
   Sampler(const Workspace& workspace, const SamplingOptions& options)
       : workspace_(workspace), options_(options), reasons_(workspace.reasons()) {
-    result_.dimension = int(workspace.coordinates().size());
-    for (std::size_t k = 0; k < workspace.coordinates().size(); ++k)
-      if (const Coordinate& c = workspace.coordinates()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
+    result_.dimension = int(workspace.proposed().size());
+    for (std::size_t k = 0; k < workspace.proposed().size(); ++k)
+      if (const Coordinate& c = workspace.proposed()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
     reasons_.push_back("drawn before");
     reasons_.push_back(passed_over_reason);
     rejected_.assign(reasons_.size(), 0);
@@ -116,7 +116,7 @@ class Sampler {
     Run result;
     for (int i = 0; i < ompl_run; ++i) {
       session.fixed.clear();
-      for (const Coordinate& c : workspace_.coordinates())
+      for (const Coordinate& c : workspace_.proposed())
         session.fixed.push_back(c.discrete() ? c.values[std::size_t(random.index(int(c.values.size())))] : 0.0);
       if (!sampler->sample(state.get())) continue;
       const double* values = state->values;
@@ -202,7 +202,7 @@ class Sampler {
   /// Scales a unit point to the limits and tests it; an infeasible boundary point is drawn back to the feasible set.
   int judge(std::size_t index, std::span<double> q, bool to_boundary) const {
     for (std::size_t k = 0; k < q.size(); ++k) {
-      const Coordinate& c = workspace_.coordinates()[k];
+      const Coordinate& c = workspace_.proposed()[k];
       if (c.discrete()) q[k] = c.values[std::min(std::size_t(q[k] * double(c.values.size())), c.values.size() - 1)];
       else q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
     }
@@ -213,7 +213,7 @@ class Sampler {
     std::vector<double> trial(q.size());
     const auto along = [&](double t) {
       for (std::size_t k = 0; k < q.size(); ++k)
-        trial[k] = workspace_.coordinates()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
+        trial[k] = workspace_.proposed()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
     };
     const int steps = workspace_.cut_by_cell() ? bisections_in_cell : bisections;
     double feasible = 0.0, infeasible = 1.0;
@@ -266,6 +266,23 @@ Configurations sample_configurations(const Workspace& workspace, const SamplingO
   return sampler.take();
 }
 
+namespace {
+
+/// A block that is not finite would turn every figure into nothing.
+void require_finite(const IdentificationModel& model, std::span<const int> selected,
+                    const Configurations& configurations, std::size_t i, const BlockArray& blocks) {
+  for (int row = 0; row < blocks.rows(); ++row)
+    for (int j = 0; j < blocks.columns(); ++j) {
+      if (std::isfinite(blocks.row(i, row)[j])) continue;
+      std::string values;
+      for (const double q : configurations[i]) values += (values.empty() ? "" : ", ") + std::to_string(q);
+      throw CannotDo("the effect of '" + model.parameters()[std::size_t(selected[std::size_t(j)])].name + "' on " +
+                     model.readings().front().name + " … is no finite number at the configuration " + values);
+    }
+}
+
+}  // namespace
+
 BlockArray build_blocks(const IdentificationModel& model, std::span<const int> selected,
                         const Configurations& configurations, int threads) {
   const std::size_t n = configurations.count();
@@ -278,6 +295,7 @@ BlockArray build_blocks(const IdentificationModel& model, std::span<const int> s
       if (!whitened_block(model, configurations[i], {}, selected, scratch[std::size_t(worker)], blocks.row(i, 0),
                           blocks.stride()))
         throw CannotDo("configuration " + std::to_string(i) + " is out of reach");
+      else require_finite(model, selected, configurations, i, blocks);
   });
   return blocks;
 }

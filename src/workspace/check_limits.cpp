@@ -1,8 +1,10 @@
 #include <algorithm>
 
 #include "checks.hpp"
+#include "limits.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/workspace/workspace.hpp"
 
 namespace posewright {
 namespace {
@@ -69,7 +71,7 @@ void add_limits_check(const CheckContext& context, Checks& checks) {
 }
 
 void add_coupled_checks(const CheckContext& context, Checks& checks) {
-  for (const CoupledLimits& coupled : context.problem.workspace.coupled) {
+  for (const CoupledLimits& coupled : coupled_limits(context.model, context.problem)) {
     std::string reason = "coupled limits of";
     for (const auto& [name, factor] : coupled.factors) reason += " " + name.value;
     for (const char* suffix : {"", second_suffix})

@@ -81,6 +81,8 @@ class MotionSpace::Implementation {
       moving.push_back(i);
       coordinates.push_back(all[i]);
     }
+    const std::vector<Coordinate> inner = proposed_limits(model, problem, all);
+    for (const std::size_t i : moving) proposed.push_back(inner[i]);
     checks = motion_checks({model, problem, all, cell.get()});
     movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem);
     home = home_configuration(problem, all);
@@ -109,7 +111,7 @@ class MotionSpace::Implementation {
   std::shared_ptr<const Cell> cell;
   std::unique_ptr<IdentificationModel> own_model;
   const IdentificationModel& model;
-  std::vector<Coordinate> all, coordinates;
+  std::vector<Coordinate> all, coordinates, proposed;
   std::vector<std::size_t> moving;  // indices into a configuration
   Checks checks;
   std::vector<Mover> movers;
@@ -121,6 +123,8 @@ MotionSpace::MotionSpace(const Problem& problem, std::shared_ptr<const Cell> cel
 MotionSpace::~MotionSpace() = default;
 
 const std::vector<Coordinate>& MotionSpace::coordinates() const { return implementation_->coordinates; }
+
+const std::vector<Coordinate>& MotionSpace::proposed() const { return implementation_->proposed; }
 
 std::vector<double> MotionSpace::reduced(std::span<const double> configuration) const {
   std::vector<double> q;

@@ -51,15 +51,15 @@ class TimeSpace : public ob::RealVectorStateSpace {
 /// Draws that depend on the seed alone.
 class SeededSampler : public ob::RealVectorStateSampler {
  public:
-  SeededSampler(const ob::StateSpace* space, std::uint64_t seed)
-      : ob::RealVectorStateSampler(space), random_(seed, 0) {}
+  SeededSampler(const ob::StateSpace* space, const std::vector<Coordinate>& proposed, std::uint64_t seed)
+      : ob::RealVectorStateSampler(space), proposed_(proposed), random_(seed, 0) {}
   void sampleUniform(ob::State* state) override {
-    const auto& bounds = space_->as<ob::RealVectorStateSpace>()->getBounds();
-    for (std::size_t i = 0; i < bounds.low.size(); ++i)
-      state->as<State>()->values[i] = random_.uniform(bounds.low[i], bounds.high[i]);
+    for (std::size_t i = 0; i < proposed_.size(); ++i)
+      state->as<State>()->values[i] = random_.uniform(proposed_[i].lower, proposed_[i].upper);
   }
 
  private:
+  const std::vector<Coordinate>& proposed_;
   Random random_;
 };
 
@@ -123,8 +123,8 @@ class Roadmap::Implementation {
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     ompl::RNG::setSeed(std::uint_fast32_t(mix_bits(seed) % 4294967291U) + 1);
     space = std::make_shared<TimeSpace>(motions);
-    space->setStateSamplerAllocator([seed, samplers = 0](const ob::StateSpace* of) mutable {
-      return std::make_shared<SeededSampler>(of, mix_bits(seed) + std::uint64_t(++samplers));
+    space->setStateSamplerAllocator([&own = motion_space, seed, samplers = 0](const ob::StateSpace* of) mutable {
+      return std::make_shared<SeededSampler>(of, own.proposed(), mix_bits(seed) + std::uint64_t(++samplers));
     });
     information = std::make_shared<ob::SpaceInformation>(space);
     information->setStateValidityChecker(std::make_shared<FreeState>(information, motions));

@@ -67,21 +67,23 @@ class FeasibilityChecker : public ob::StateValidityChecker {
 class Workspace::Implementation {
  public:
   Implementation(const IdentificationModel& model_in, const Problem& problem, std::shared_ptr<const Cell> cell_in)
-      : model(model_in), cell(std::move(cell_in)), coordinates(limits_in_force(model_in, problem, cell.get())) {
+      : model(model_in),
+        cell(std::move(cell_in)),
+        coordinates(limits_in_force(model_in, problem, cell.get())),
+        proposed(proposed_limits(model_in, problem, coordinates)) {
     // Errors of ours are exceptions; OMPL's console output would mix with the program's own.
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     const auto state_space = std::make_shared<Space>(unsigned(coordinates.size()));
     ob::RealVectorBounds bounds(unsigned(coordinates.size()));
     for (unsigned i = 0; i < coordinates.size(); ++i) {
       // A coordinate with one value only is no interval; OMPL wants one.
-      const double room = coordinates[i].lower < coordinates[i].upper ? 0.0 : 0.5;
-      bounds.setLow(i, coordinates[i].lower - room);
-      bounds.setHigh(i, coordinates[i].upper + room);
-      state_space->setDimensionName(i, coordinates[i].name);
+      const double room = proposed[i].lower < proposed[i].upper ? 0.0 : 0.5;
+      bounds.setLow(i, proposed[i].lower - room);
+      bounds.setHigh(i, proposed[i].upper + room);
+      state_space->setDimensionName(i, proposed[i].name);
     }
     state_space->setBounds(bounds);
-    state_space->setStateSamplerAllocator(
-        [this](const ob::StateSpace* of) { return allocate_sampler(of, coordinates); });
+    state_space->setStateSamplerAllocator([this](const ob::StateSpace* of) { return allocate_sampler(of, proposed); });
     space = std::make_shared<ob::SpaceInformation>(state_space);
     checker = std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get()}),
                                                    cell == nullptr ? nullptr : cell->collision.get());
@@ -102,7 +104,7 @@ class Workspace::Implementation {
 
   const IdentificationModel& model;
   std::shared_ptr<const Cell> cell;
-  std::vector<Coordinate> coordinates;
+  std::vector<Coordinate> coordinates, proposed;
   std::shared_ptr<ob::SpaceInformation> space;
   std::shared_ptr<FeasibilityChecker> checker;
   std::vector<std::string> reasons;
@@ -114,6 +116,7 @@ Workspace::Workspace(const IdentificationModel& model, const Problem& problem, s
 Workspace::~Workspace() = default;
 
 const std::vector<Coordinate>& Workspace::coordinates() const { return implementation_->coordinates; }
+const std::vector<Coordinate>& Workspace::proposed() const { return implementation_->proposed; }
 const std::vector<std::string>& Workspace::reasons() const { return implementation_->reasons; }
 int Workspace::violation(std::span<const double> q) const { return implementation_->checker->violation(q); }
 const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() const {
@@ -125,10 +128,22 @@ const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_informatio
   return implementation_->space;
 }
 
+std::string Workspace::within_margin(std::span<const double> q) const {
+  std::string names;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const Coordinate &all = coordinates()[i], &inner = proposed()[i];
+    // Rounding of a list is no reason to speak.
+    const double rounding = 1e-6 * (1 + all.upper - all.lower);
+    const bool beyond = q[i] < inner.lower - rounding || q[i] > inner.upper + rounding;
+    if (!all.choice() && !all.periodic && beyond) names += (names.empty() ? "" : ", ") + all.name;
+  }
+  return names;
+}
+
 double Workspace::share_of_coordinates_on_limits(std::span<const double> q) const {
   int at_limit = 0, continuous = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
-    const Coordinate& c = coordinates()[i];
+    const Coordinate& c = proposed()[i];
     if (c.discrete()) continue;
     ++continuous;
     if (c.periodic) continue;

@@ -86,7 +86,9 @@ def compare_parameters(run, estimate, stated, check):
     width = stats.t.ppf(0.975, result["freedom"]) if run.weights == "ols" else stats.norm.ppf(0.975)
     for p in stated:
         if p["interval"] is not None:
-            check.close("interval", p["value"] + np.array([-1, 1]) * width * p["sigma"], p["interval"])
+            # In units of σ: an end may stand at zero.
+            ends = p["value"] + np.array([-1, 1]) * width * p["sigma"]
+            check.note("interval", (ends - np.array(p["interval"])) / p["sigma"])
     order = [estimate.names.index(name) for name in result["covariance"]["columns"]]
     kept = [k for k in range(len(order)) if plain[order[k]]]
     mine = estimate.covariance[np.ix_(order, order)][np.ix_(kept, kept)]

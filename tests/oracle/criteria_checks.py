@@ -17,15 +17,15 @@ class Check:
     def __init__(self):
         self.wrong, self.worst, self.checks = [], 0.0, 0
 
-    def same(self, what, mine, stated, tolerance=CLOSE):
-        """Relative, by the larger of both; or both say that there is nothing."""
+    def same(self, what, mine, stated, tolerance=CLOSE, floor=1e-12):
+        """Relative, by the larger of both and at least `floor`; or both say that there is nothing."""
         self.checks += 1
         none = mine is None or not np.isfinite(mine)
         if none or stated is None:
             if not (none and stated is None):
                 self.wrong.append(f"{what}: {mine} by definition, {stated} stated")
             return
-        off = abs(mine - stated) / max(abs(mine), abs(stated), 1e-12)
+        off = abs(mine - stated) / max(abs(mine), abs(stated), floor)
         self.worst = max(self.worst, off / tolerance * CLOSE)
         if off > tolerance:
             self.wrong.append(f"{what}: {mine:.10g} by definition, {stated:.10g} stated")
@@ -174,7 +174,8 @@ def check_evaluation(evaluation, arm, poses, chosen, check):
         if name in ("compound", "maximin"):
             continue
         own = meaning.value(name, listed, among)
-        check.same(f"score {name}", own[0], score["value"])
+        # What fitting leaves of an effect that it takes up altogether is rounding.
+        check.same(f"score {name}", own[0], score["value"], floor=1e-6 if name == "discriminate" else 1e-12)
         if score["efficiency"] is not None:
             most = np.nanmax(meaning.design.potential(name, meaning.value(name, sets, among), sets))
             share = np.exp((meaning.design.potential(name, own, listed)[0] - most) / meaning.design.degree(name))

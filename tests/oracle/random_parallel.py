@@ -94,7 +94,7 @@ class Delta(RandomRobot):
         return "auto" if random.random() < 0.6 else ["leg_?.arm", "leg_?.forearm", "leg_?.offset", "leg_?.base_radius"]
 
     def nominal(self, random):
-        return {"leg_2.azimuth": "122 deg", "leg_?.offset": "-0.8 deg", "leg_1.arm": "302 mm"} if random.random() < 0.5 else {}
+        return {"leg_2.azimuth": "122 deg", "leg_?.offset": "-0.8 deg", "leg_1.arm": f"{1e3 * self.spec['arm'] + 3:.2f} mm"} if random.random() < 0.5 else {}
 
 
 class Compensator(RandomRobot):

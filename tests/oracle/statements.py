@@ -101,7 +101,9 @@ class Information:
         """What columns are divided by: the tolerance, the inverse of the mean effect on a pose's readings, nothing."""
         p = self.parameters
         if scaling == "norm":
-            return 1 / self.rms_effect[p.interest]
+            # A column that these readings tell nothing of is known by its tolerance alone.
+            told = self.rms_effect > 0
+            return np.where(told, 1 / np.where(told, self.rms_effect, 1), p.tolerance)[p.interest]
         return (p.tolerance if scaling == "tolerance" else np.ones(len(p.names)))[p.interest]
 
     def indices(self, scaling):

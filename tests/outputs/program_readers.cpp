@@ -86,12 +86,17 @@ Program read_krl(const std::string& source, const std::string& data, const std::
   Handshake handshake(program);
   std::smatch m;
   std::map<std::string, std::vector<double>> points;
+  std::string points_number;
   const auto declared = lines_of(data, true);
   if (declared.size() < 5 || declared[0] != "&ACCESS RVP" || declared[2] != "DEFDAT  " + name ||
       declared.back() != "ENDDAT")
     throw std::runtime_error("no data list");
   for (std::size_t i = 3; i + 1 < declared.size(); ++i) {
     if (declared[i].front() == ';' || declared[i] == "EXT  BAS (BAS_COMMAND  :IN,REAL  :IN )") continue;
+    if (match(declared[i], "DECL INT NPOINTS=([0-9]+)", m)) {
+      points_number = m[1].str();
+      continue;
+    }
     if (!match(declared[i], R"(DECL E6AXIS ([A-Z][A-Z0-9_]*)=\{((?:[AE][1-6] -?[0-9.]+,?)+)\})", m)) bad(declared[i]);
     const std::string& listed = m[2].str();
     std::vector<double> q;
@@ -104,11 +109,18 @@ Program read_krl(const std::string& source, const std::string& data, const std::
     }
     if (!points.emplace(m[1].str(), q).second) throw std::runtime_error("declared twice: " + m[1].str());
   }
+  bool guarded = false;
   const auto lines = lines_of(source, true);
   if (lines[2] != "DEF  " + name + " ( )" || lines.back() != "END") throw std::runtime_error("no program");
   for (std::size_t i = 3; i + 1 < lines.size(); ++i) {
     const std::string& line = lines[i];
-    if (line.front() == ';') program.comments.push_back(line.substr(1));
+    if (match(line, "WHILE NPOINTS<>([0-9]+)", m)) {
+      // The loop halts for ever beside other points, before the first move.
+      if (m[1].str() != points_number || !program.moves.empty()) throw std::runtime_error("points of another program");
+      if (lines.at(i + 2) != "HALT" || lines.at(i + 3) != "ENDWHILE") bad(line);
+      guarded = true;
+      i += 3;
+    } else if (line.front() == ';') program.comments.push_back(line.substr(1));
     else if (match(line, "PTP ([A-Z0-9_]+)", m)) handshake.move(points.at(m[1].str()));
     else if (match(line, "WAIT SEC " + number, m)) handshake.timer();
     else if (match(line, R"(\$OUT\[[0-9]+\]=TRUE)", m)) handshake.up();
@@ -118,6 +130,7 @@ Program read_krl(const std::string& source, const std::string& data, const std::
     else if (line == "HALT") handshake.stop();
     else if (!match(line, R"(BAS \(#(INITMOV|VEL_PTP|ACC_PTP|TOOL|BASE),[0-9]+ ?\))", m)) bad(line);
   }
+  if (!guarded) throw std::runtime_error("nothing asks whose points these are");
   handshake.idle();
   return program;
 }
@@ -321,8 +334,11 @@ Program read_val3(const std::map<std::string, std::string>& files, const std::st
   if (listed.size() + 1 != files.size()) throw std::runtime_error("files that the project does not name");
   parse_xml(data, files.at(name + ".dtx"));
   std::vector<std::vector<double>> points;
+  std::string points_number;
   const auto* datas = data.FirstChildElement("Database")->FirstChildElement("Datas");
   for (const auto* d = datas->FirstChildElement("Data"); d != nullptr; d = d->NextSiblingElement("Data")) {
+    if (std::string(d->Attribute("name")) == "nPoints")
+      points_number = d->FirstChildElement("Value")->Attribute("value");
     if (std::string(d->Attribute("name")) != "jCal") continue;
     for (const auto* v = d->FirstChildElement("Value"); v != nullptr; v = v->NextSiblingElement("Value")) {
       if (std::stoul(v->Attribute("key")) != points.size()) throw std::runtime_error("keys out of order");
@@ -336,7 +352,11 @@ Program read_val3(const std::map<std::string, std::string>& files, const std::st
   const auto start = code_of(files.at("start.pgx"), "start");
   for (std::size_t i = 0; i < start.size(); ++i) {
     const std::string& line = start[i];
-    if (line.starts_with("//")) program.comments.push_back(line.substr(3));
+    if (match(line, "if nPoints!=([0-9]+)", m)) {
+      if (m[1].str() != points_number || !program.moves.empty()) throw std::runtime_error("points of another program");
+      if (start.at(i + 2) != "return" || start.at(i + 3) != "endIf") bad(line);
+      i += 3;
+    } else if (line.starts_with("//")) program.comments.push_back(line.substr(3));
     else if (match(line, R"(nTraj=movej\(jCal\[([0-9]+)\],flange\[0\],mSlow\[0\]\))", m)) {
       handshake.move(points.at(std::stoul(m[1].str())));
       if (start.at(++i) != "waitEndMove()") bad(start[i]);

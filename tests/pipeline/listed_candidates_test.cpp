@@ -90,7 +90,9 @@ TEST_F(ListedCandidates, WhatIsBeyondTheLimitsIsRejectedAndNamed) {
   EXPECT_EQ(found.statistics.feasible, 5) << "a hair beyond a limit is the limit";
   ASSERT_EQ(found.statistics.rejected.size(), 1U);
   EXPECT_EQ(found.statistics.rejected.front().second, 1);
-  ASSERT_EQ(found.statistics.notes.size(), 1U);
+  ASSERT_EQ(found.statistics.notes.size(), 2U);
+  EXPECT_THAT(found.statistics.notes.back(), HasSubstr("1 pose is nearer to a limit than the margin"));
+  EXPECT_THAT(found.statistics.notes.back(), HasSubstr(": 6"));
   EXPECT_THAT(found.statistics.notes.front(), HasSubstr("list.csv:4: pose 3 is rejected: "));
   EXPECT_THAT(found.statistics.notes.front(), HasSubstr("'q2' is -2.5 rad"));
   for (const PlannedPose& pose : found.poses) EXPECT_NE(*pose.candidate, 2);

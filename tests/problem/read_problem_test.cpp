@@ -106,8 +106,8 @@ TEST(ReadProblem, VariantsKeepTheirOrderAndLines) {
 
 TEST(ReadProblem, JointWorkspaceIsReadFieldByField) {
   const WorkspaceSpec workspace = parse(example::serial).workspace;
-  EXPECT_DOUBLE_EQ(workspace.joint_margin, 5 * degree);
-  EXPECT_DOUBLE_EQ(workspace.joint_margin_length, 1e-3);
+  EXPECT_DOUBLE_EQ(workspace.joint_margin.value(), 5 * degree);
+  EXPECT_DOUBLE_EQ(workspace.joint_margin_length.value(), 1e-3);
   ASSERT_EQ(workspace.limits.size(), 3U);
   EXPECT_EQ(workspace.limits[0].name.value, "joint_a1");
   EXPECT_EQ(workspace.limits[0].name.line, 30);

@@ -1,5 +1,6 @@
 // What the page recomputes, against known answers: node --test tests/report
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import test from 'node:test';
 import {
   add,
@@ -13,6 +14,7 @@ import {
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { posesCsv } from '../../report/src/save_csv.js';
+import { shell, shellFile } from '../../report/src/sections/reproduce.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
 
 const near = (value, expected, tolerance = 1e-12) =>
@@ -177,4 +179,14 @@ test('numbers are shown in mm and deg, and proofs are rounded down', () => {
   assert.equal(coordinate(-1e-9, 'm'), '0.000 mm');
   assert.equal(percentDown(0.99999), '99.99 %');
   assert.equal(number(1.5e-9), '1.5 · 10^−9');
+});
+
+test('whatever stands in a file is one word of a shell command and no option', () => {
+  const texts = ['plan.json', 'a b', "it's", '$(touch x)', '`id`', 'a;b', 'a\nb', '"', '\\', '*', '-rf', '', '~', 'ü'];
+  for (const text of [...texts, 7, null]) {
+    const echoed = execFileSync('sh', ['-c', `printf '%s|' ${shell(text)} end`], { encoding: 'utf8' });
+    assert.equal(echoed, `${text}|end|`);
+  }
+  assert.equal(shellFile('-rf'), './-rf');
+  assert.equal(shellFile('a b'), "'a b'");
 });

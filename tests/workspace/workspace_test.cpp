@@ -57,8 +57,14 @@ Problem problem_with(std::vector<CoordinateLimits> limits = {}, double margin = 
 TEST(Workspace, LimitsNarrowAndMarginsShrink) {
   const Stage stage(10);
   const Workspace workspace(stage, problem_with({{{"x", 4}, -0.5, 0.25}}, 0.05));
-  EXPECT_DOUBLE_EQ(workspace.coordinates()[0].lower, -0.45);
-  EXPECT_DOUBLE_EQ(workspace.coordinates()[0].upper, 0.2);
+  EXPECT_DOUBLE_EQ(workspace.proposed()[0].lower, -0.45);
+  EXPECT_DOUBLE_EQ(workspace.proposed()[0].upper, 0.2);
+  // Given configurations are taken up to the limits.
+  EXPECT_DOUBLE_EQ(workspace.coordinates()[0].lower, -0.5);
+  EXPECT_DOUBLE_EQ(workspace.coordinates()[0].upper, 0.25);
+  EXPECT_EQ(workspace.violation(std::vector<double>{0.22, 0, 0}), -1);
+  EXPECT_EQ(workspace.within_margin(std::vector<double>{0.22, 0, 0}), "x");
+  EXPECT_EQ(workspace.within_margin(std::vector<double>{0.2, 0, 0}), "");
   EXPECT_EQ(workspace.violation(std::vector<double>{0.3, 0, 0}), 0);
   EXPECT_EQ(workspace.violation(std::vector<double>{0.1, 0, 0}), -1);
   EXPECT_EQ(workspace.violation(std::vector<double>{std::nan(""), 0, 0}), 0);

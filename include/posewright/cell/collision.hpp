@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,19 @@
 namespace posewright {
 
 struct Scene;
+
+/// Two bodies of the robot that are never twice as far apart as their clearance asks for, a gun and its wrist: they
+/// keep half of the largest distance that was found instead, 1 mm at least.
+struct ReducedClearance {
+  std::string first, second;
+  double clearance = 0.0;  ///< m, that is kept
+};
+
+/// How far two bodies are apart.
+struct Separation {
+  double distance = 0.0;  ///< m; 0: they touch
+  std::string first, second;
+};
 
 /// Robot, tool and obstacles: what collides with what. Const and callable from several threads.
 class Collision {
@@ -24,8 +38,8 @@ class Collision {
   const std::vector<std::string>& reasons() const;
   /// Pairs of links that touch wherever the robot stands, and are therefore not checked.
   const std::vector<std::string>& always_touching() const;
-  /// Pairs that are nearer than their clearance wherever the robot stands: checked for contact.
-  const std::vector<std::string>& contact_only() const;
+  /// Pairs that cannot keep the clearance asked for by design.
+  const std::vector<ReducedClearance>& reduced() const;
   /// Largest margin (m) that was added to a clearance for a robot that is not calibrated yet.
   double margin() const;
 
@@ -35,6 +49,11 @@ class Collision {
   std::string colliding(std::span<const double> q) const;
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
   double slack(std::span<const double> q, double cap) const;
+
+  /// The two bodies that are nearest to each other, of those that are checked; none if nothing is.
+  std::optional<Separation> nearest(std::span<const double> q) const;
+  /// The same on the straight motion, where the smallest distance is at most half a millimetre below the one returned.
+  std::optional<Separation> nearest(std::span<const double> from, std::span<const double> to) const;
 
   /// Whether the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: a pair
   /// that is d apart keeps its clearance until its bodies can have moved by what d has to spare (bounds on the motion

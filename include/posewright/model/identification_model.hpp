@@ -22,6 +22,7 @@ struct Coordinate {
   std::vector<double> values{};       ///< the only values allowed, ascending; empty: all between the limits
   std::vector<std::string> labels{};  ///< of a choice (load case, station): what the values 0, 1, … stand for
   double speed = 0.0;                 ///< largest, per second; 0: not known
+  std::string limited_by{};           ///< what narrows the joint's own limits; empty: nothing
 
   bool discrete() const { return !values.empty(); }
   bool choice() const { return !labels.empty(); }

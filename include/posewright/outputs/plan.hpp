@@ -29,6 +29,12 @@ struct TargetSight {
   std::string hidden_by;            ///< why it is not seen; empty: it is, if that was judged
 };
 
+/// Two bodies and how far they are apart.
+struct BodyDistance {
+  double distance = 0.0;  ///< m
+  std::string first, second;
+};
+
 struct PlannedPose {
   int id = 0;                    ///< 1, 2, … in measuring order
   std::optional<int> candidate;  ///< zero-based index in the candidate set; none: found between them
@@ -44,6 +50,7 @@ struct PlannedPose {
   std::string load_case, station;              ///< empty where the problem has none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<TargetSight> sights;             ///< where to look for the targets
+  std::optional<BodyDistance> nearest{};       ///< of the bodies that are checked for collision
   double contribution = 0.0;                   ///< share of all information, sums to 1 over the plan
   /// Efficiency of the plan without this pose relative to the plan, in [0, 1]; 0: it cannot do without.
   double without = 1.0;
@@ -102,9 +109,16 @@ struct PlanStage {
 /// What the cell made of the constraints.
 struct CellNotes {
   std::vector<std::string> always_touching;  ///< pairs of links that are not checked
-  std::vector<std::string> contact_only;     ///< pairs that are always nearer than the clearance asked for
+  std::vector<BodyDistance> reduced;         ///< pairs that cannot keep their clearance by design, and what they keep
   double margin = 0.0;                       ///< m, largest that was added to a clearance before calibration
   std::vector<NamedValue> joint_margins{};   ///< the same for limits
+};
+
+/// How far proposed poses stay off a coordinate's limits.
+struct LimitMargin {
+  std::string name, unit;
+  double margin = 0.0;   ///< rad or m, at the nearer end
+  bool standard = true;  ///< nobody asked for it
 };
 
 struct PlanStatistics {
@@ -119,6 +133,7 @@ struct PlanStatistics {
   std::optional<double> coordinates_on_limits;  ///< share of coordinates on a limit
   std::vector<PlanStage> stages{};
   CellNotes cell{};
+  std::vector<LimitMargin> limit_margins{};
 };
 
 /// Calibrated parameters that something was computed at; empty: the nominal ones.

@@ -8,26 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "posewright/controller/controller_settings.hpp"
 #include "posewright/outputs/pose_sequence.hpp"
 
 namespace posewright {
-
-/// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
-/// of the plan's joints, empty where the file has none.
-struct ControllerSettings {
-  std::string file;
-  std::map<std::string, int> lines;  ///< keys that are given, and where
-  std::vector<double> sign;          ///< +1 or −1
-  std::vector<double> zero_deg;
-  std::vector<double> pulses_per_degree;
-  std::optional<double> coupling;  ///< f in J3 = J3_urdf − f · J2_urdf
-  std::vector<std::string> axes;   ///< what the controller calls the joints
-  std::optional<int> decimals;
-  std::optional<std::array<double, 3>> pivot_mm;  ///< platform origin as the hexapod counts it
-};
-
-/// Throws InputError with file and line for unknown keys and values that make no sense.
-ControllerSettings parse_controller_settings(const std::string& text, const std::string& file);
 
 /// What the command line says; empty: the format's default.
 struct ExportOptions {
@@ -86,6 +70,10 @@ struct PoseFormat {
   bool ending_matters = false;   ///< whoever reads it goes by the ending of the file's name
   bool to_be_filled = false;     ///< users put what they measured into the file
   bool any_coordinates = false;  ///< has a place for a platform's coordinates and for pairs of configurations
+  bool timed = false;            ///< a trajectory that a robot follows as it is, controller or not
+
+  /// Whether somebody's robot moves by it, so that every value has to be checked first.
+  bool moves_robot() const { return controller || timed; }
 };
 
 const std::vector<PoseFormat>& pose_formats();

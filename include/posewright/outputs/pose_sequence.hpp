@@ -42,6 +42,8 @@ struct PoseSequence {
   bool from_home = false, closed = false;
   double settle = 0.0;                    ///< s at each pose, of a route
   std::vector<std::string> names, units;  ///< "rad" or "m"
+  bool units_stated = true;               ///< false: the file has none, and "rad" is a guess
+  std::vector<double> speeds{};           ///< the robot's largest, per second; empty: not known, 0: of this one not
   std::vector<double> home;
   std::vector<SequencePose> poses;
   std::vector<SequenceMotion> motions;  ///< in the order they are made

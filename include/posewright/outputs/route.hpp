@@ -16,6 +16,7 @@ struct RouteMotion {
   double seconds = 0.0;                     ///< of travel, standing still at every point
   double change_seconds = 0.0;              ///< of moving the instrument or changing the load
   std::string found_by;                     ///< straight, roadmap, rrt_connect or via home
+  std::optional<BodyDistance> nearest{};    ///< on the way, half a millimetre less at most
 };
 
 /// Reference targets measured while the robot stands at a pose.

@@ -27,7 +27,7 @@ struct SphereShape {
 struct HalfSpaceShape {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit
 };
-/// Triangles of a file (whatever assimp reads), in m once multiplied by `scale`.
+/// Triangles of a file (STL, OBJ, Collada), in m once multiplied by `scale`.
 struct MeshShape {
   std::filesystem::path file;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
@@ -45,9 +45,16 @@ struct BodySpec {
 
 struct CollisionSpec {
   bool self = true;
-  double clearance = 0.0;       ///< m, kept from obstacles
-  double self_clearance = 0.0;  ///< m, kept between links
-  bool hulls = false;           ///< meshes are replaced by their convex hulls
+  double clearance = 0.0;  ///< m, kept from obstacles
+  /// m, kept between links and between tool and links; not given: 0 and `clearance`.
+  std::optional<double> self_clearance;
+  /// The same of two bodies by their names.
+  struct PairClearance {
+    Located<std::string> first, second;
+    double clearance = 0.0;
+  };
+  std::vector<PairClearance> pair_clearances;
+  bool hulls = false;  ///< meshes are replaced by their convex hulls
   std::optional<Located<std::filesystem::path>> srdf;
   /// Pairs of links or tool parts that may touch.
   std::vector<std::pair<Located<std::string>, Located<std::string>>> ignore;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/controller/controller_settings.hpp"
 #include "posewright/problem/calibrated_parameters.hpp"
 #include "posewright/problem/cell_specs.hpp"
 #include "posewright/problem/design_specs.hpp"
@@ -41,10 +42,12 @@ struct CoordinateLimits {
 enum class SamplerKind { even, boundary, obstacle_based, gaussian, clearance };
 
 struct WorkspaceSpec {
-  double joint_margin = 0.0;             ///< rad, kept from both ends of revolute limits
-  double joint_margin_length = 0.0;      ///< m, the same for prismatic joints
+  /// Kept from both ends of limits by what is proposed: rad of revolute joints, m of prismatic ones. Not given: 1 % of
+  /// a serial arm's own range, at most 2 deg or 5 mm.
+  std::optional<double> joint_margin, joint_margin_length;
   std::vector<CoordinateLimits> limits;  ///< `joints: limits:` or `pose:` of a platform
   std::vector<CoupledLimits> coupled;
+  std::optional<ControllerSettings> controller;  ///< whose ranges the poses keep too
   std::optional<ToolBoxSpec> tool;
   std::optional<SingularitySpec> singularity;
   std::optional<CollisionSpec> collision;

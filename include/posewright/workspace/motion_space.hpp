@@ -24,6 +24,8 @@ class MotionSpace {
 
   /// Coordinates that move, with the limits in force.
   const std::vector<Coordinate>& coordinates() const;
+  /// The same less the margin: where via points are proposed.
+  const std::vector<Coordinate>& proposed() const;
   /// Of a whole configuration what moves, and back: choices at their first values.
   std::vector<double> reduced(std::span<const double> configuration) const;
   std::vector<double> whole(std::span<const double> q) const;

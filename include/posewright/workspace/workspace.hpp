@@ -16,7 +16,8 @@ class SpaceInformation;
 namespace posewright {
 
 /// The one definition of a feasible configuration: an OMPL state space whose bounds are the robot's limits, narrowed
-/// by the problem file, and an OMPL validity checker that runs a list of checks and knows which one failed.
+/// by the problem file and the margin, and an OMPL validity checker that runs a list of checks and knows which one
+/// failed.
 class Workspace {
  public:
   /// @param model  must outlive the workspace
@@ -26,8 +27,12 @@ class Workspace {
   Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr);
   ~Workspace();
 
-  /// Limits in force, in the order of a configuration.
+  /// Limits in force, in the order of a configuration: those of the robot, narrowed by the problem.
   const std::vector<Coordinate>& coordinates() const;
+  /// The same less the margin: where configurations are proposed. Given ones may lie outside of it.
+  const std::vector<Coordinate>& proposed() const;
+  /// Names of the coordinates of q that are nearer to a limit than the margin: "j2, j4"; empty: none.
+  std::string within_margin(std::span<const double> q) const;
   /// What each check is called; violation() returns an index into it.
   const std::vector<std::string>& reasons() const;
   /// Index of the first reason that forbids q, or −1.
@@ -41,16 +46,21 @@ class Workspace {
   const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
-  /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from a limit, or an
+  /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be
+  /// proposed at most, or an
   /// actuator within `actuator_share` of its stroke from an end.
   bool on_boundary(std::span<const double> q, double actuator_share = 0.01) const;
-  /// Share of the coordinates that sit on a limit.
+  /// Share of the coordinates that sit there.
   double share_of_coordinates_on_limits(std::span<const double> q) const;
 
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// The problem's coupled limits, and those that its controller's settings make of a coupling: lower ≤ J3 − f·J2 ≤
+/// upper.
+std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const Problem& problem);
 
 /// Robot and workspace of one variant, as the cell lets it be.
 struct Site {

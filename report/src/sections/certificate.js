@@ -166,8 +166,10 @@ function cell(cell) {
   const notes = [
     cell.always_touching?.length > 0 &&
       `Not checked for collision, because they touch wherever the robot stands: ${cell.always_touching.join(', ')}.`,
-    cell.contact_only?.length > 0 &&
-      `Checked for contact only, because they are never as far apart as asked for: ${cell.contact_only.join(', ')}.`,
+    cell.reduced_clearances?.length > 0 &&
+      `Near by design, with a part of the clearance asked for: ${cell.reduced_clearances
+        .map((pair) => `${pair.between.join(' and ')} (${quantity(pair.clearance, 'm')})`)
+        .join(', ')}.`,
     cell.uncalibrated_margin > 0 &&
       `Until the robot is calibrated, clearances are up to ${quantity(cell.uncalibrated_margin, 'm')} wider.`,
   ].filter(Boolean);

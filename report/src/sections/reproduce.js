@@ -1,8 +1,17 @@
 import { h, section } from '../dom.js';
 import { newPoses } from '../text/sentences.js';
 
-/** A word of a shell command, quoted where it has to be. @param {string} word */
-const shell = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+/**
+ * A word of a shell command, quoted where it has to be: everything here comes from a file that somebody may have edited.
+ * @param {unknown} value
+ */
+export const shell = (value) => {
+  const word = String(value);
+  return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
+};
+
+/** A file's name as a word that is no option. @param {string} name */
+export const shellFile = (name) => shell(name.startsWith('-') ? `./${name}` : name);
 
 /** Options of the search, as far as plan.json tells. @param {any} plan @param {string} variant */
 function planOptions(plan, variant) {
@@ -10,32 +19,32 @@ function planOptions(plan, variant) {
   const repeats = certificate.candidates?.repeats ?? 'forbid';
   return [
     variant,
-    `--criterion ${criterion.name}`,
+    `--criterion ${shell(criterion.name)}`,
     `--method ${shell(plan.method)}`,
     `--poses ${plan.curve?.length > 0 ? 'auto' : newPoses(plan).length}`,
-    `--candidates ${statistics.candidates_feasible}`,
-    `--restarts ${statistics.restarts}`,
-    repeats === 'forbid' ? '' : `--repeats ${shell(String(repeats))}`,
+    `--candidates ${shell(statistics.candidates_feasible)}`,
+    `--restarts ${shell(statistics.restarts)}`,
+    repeats === 'forbid' ? '' : `--repeats ${shell(repeats)}`,
     criterion.scaling === 'tolerance' ? '' : `--scaling ${shell(criterion.scaling)}`,
     criterion.prior === 'tolerance' ? '--prior tolerance' : '',
     criterion.reserve ? '--reserve' : '',
-    `--seed ${plan.seed}`,
+    `--seed ${shell(plan.seed)}`,
   ].filter(Boolean);
 }
 
 /** @param {import('../types.js').Report} report */
 function commands({ plan, route }) {
-  const file = shell(plan.problem.file);
+  const file = shellFile(plan.problem.file);
   const several = (plan.variants ?? []).length > 1;
   const variant = plan.variant && !several ? `--variant ${shell(plan.variant)}` : '';
   const lines = [
     `sha256sum ${file}`,
     `posewright plan ${file} ${planOptions(plan, variant).join(' ')} -o plan.json --poses-csv poses.csv`,
-    `posewright evaluate ${file} poses.csv ${variant} --candidates ${plan.statistics.candidates_feasible} --seed ${plan.seed}`.replace(/ {2,}/g, ' '),
+    `posewright evaluate ${file} poses.csv ${variant} --candidates ${shell(plan.statistics.candidates_feasible)} --seed ${shell(plan.seed)}`.replace(/ {2,}/g, ' '),
   ];
   if (!route) return lines;
   const ends = `${route.from_home ? '--from-home ' : ''}${route.closed ? '--closed ' : ''}`;
-  return [...lines, `posewright route plan.json ${ends}--seed ${route.seed} -o route.json`];
+  return [...lines, `posewright route plan.json ${ends}--seed ${shell(route.seed)} -o route.json`];
 }
 
 /** @param {import('../types.js').Report} report */

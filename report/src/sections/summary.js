@@ -44,6 +44,7 @@ export function summarySection(list) {
     `${say.proof(plan)} ${say.proofMeaning(plan)}`.trim(),
     say.searched(plan),
     say.loss(plan),
+    say.clearance(plan, report.route),
     say.dropped(plan),
   ].filter(Boolean);
   return h(

@@ -97,6 +97,27 @@ export function loss(plan) {
     : `If one pose cannot be measured, at least ${percentDown(worst.efficiency_without)} of the plan is left; pose ${worst.id} would be missed most.`;
 }
 
+/** Two bodies and how far they are apart. @param {{distance: number, between: [string, string]}} nearest */
+export function nearestText(nearest) {
+  return `${nearest.between.join(' and ')} are ${quantity(nearest.distance, 'm')} apart, nearer than all others`;
+}
+
+/** The smallest clearance of all poses and, of a route, motions. @param {any} plan @param {any} route */
+export function clearance(plan, route) {
+  const smallest = (entries) =>
+    entries.filter((e) => e.nearest).reduce((a, b) => (a && a.nearest.distance <= b.nearest.distance ? a : b), null);
+  const place = (id) => (id === 0 ? 'home' : `pose ${id}`);
+  const told = (entry, where) =>
+    `${entry.nearest.between.join(' and ')} come within ${quantity(entry.nearest.distance, 'm')} ${where}`;
+  const pose = smallest(plan.poses);
+  const motion = smallest(route?.motions ?? []);
+  const parts = [
+    pose && told(pose, `at ${place(pose.id)}`),
+    motion && told(motion, `between ${place(motion.from)} and ${place(motion.to)}`),
+  ].filter(Boolean);
+  return parts.length > 0 ? `Nearest to each other: ${parts.join('; ')}.` : '';
+}
+
 /** @param {any} plan */
 export function dropped(plan) {
   const names = plan.parameters.filter((p) => !p.identifiable).map((p) => p.name);

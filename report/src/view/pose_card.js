@@ -1,4 +1,5 @@
 import { h } from '../dom.js';
+import { nearestText } from '../text/sentences.js';
 import { coordinate, percent, quantity } from '../text/units.js';
 
 /**
@@ -25,6 +26,7 @@ export function poseCard(list) {
     pose.load_case && `load case ${pose.load_case}`,
     `${percent(pose.contribution)} of all information`,
     tipText(pose),
+    pose.nearest && nearestText(pose.nearest),
   ].filter(Boolean);
   parts.push(h('p', { class: 'note' }, `${facts.join(' · ')}.`));
   const sights = sightText(pose);

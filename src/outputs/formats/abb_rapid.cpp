@@ -17,7 +17,7 @@ const ProgramRules rapid_rules = {
     .longest_name = 32,
     .axes = {"rax_1", "rax_2", "rax_3", "rax_4", "rax_5", "rax_6", "eax_a", "eax_b", "eax_c", "eax_d", "eax_e",
              "eax_f"},
-    .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
+    .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "robots with a parallelogram (IRB 2400, IRB 4400, ...: -1) count axis 3 from the horizontal, "
         "others (0) from the upper arm; the wrong one is a collision",

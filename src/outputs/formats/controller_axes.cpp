@@ -26,6 +26,7 @@ Axes::Axes(const PoseSequence& sequence, const ExportOptions& options, const Pro
   require_length(settings_.zero_deg.size(), "zero_deg");
   require_plausible_zeros();
   require_length(settings_.pulses_per_degree.size(), "pulses_per_degree");
+  require_length(settings_.range_deg.size(), "range_deg");
 }
 
 std::vector<double> Axes::of(const std::vector<double>& q) const {
@@ -39,6 +40,16 @@ std::vector<double> Axes::of(const std::vector<double>& q) const {
     result.push_back(value);
   }
   return result;
+}
+
+void Axes::require_inside(const std::vector<double>& axes, const std::string& point) const {
+  for (std::size_t i = 0; i < settings_.range_deg.size(); ++i) {
+    const auto [lower, upper] = settings_.range_deg[i];
+    if (axes[i] >= lower && axes[i] <= upper) continue;
+    const char* unit = sequence_.units[i] == "rad" ? "deg" : "mm";
+    throw CannotDo(fmt::format("{}: axis {} of the controller would be at {:.3f} {}; {} allows {} to {}", point,
+                               names_[i], axes[i], unit, settings_.file, lower, upper));
+  }
 }
 
 std::vector<std::string> Axes::notes() const {

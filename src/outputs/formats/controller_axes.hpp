@@ -18,6 +18,8 @@ class Axes {
   const std::vector<std::string>& names() const { return names_; }
   /// sign · (value, J3 less f · J2) + zero, deg; mm for what slides.
   std::vector<double> of(const std::vector<double>& q) const;
+  /// Throws CannotDo for an axis beyond what the settings say it may be. `point` is what the pose is called.
+  void require_inside(const std::vector<double>& axes, const std::string& point) const;
   /// What the user must check.
   std::vector<std::string> notes() const;
 

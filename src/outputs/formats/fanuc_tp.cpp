@@ -16,7 +16,7 @@ const ProgramRules tp_rules = {
     .longest_name = 36,
     .capitals = true,
     .axes = {"J1", "J2", "J3", "J4", "J5", "J6"},
-    .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
+    .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "the controller's J3 is J3 - F*J2 of a URDF: F is 1 for nearly all FANUC arms, -1 for the "
         "M-430iA, 0 where the plan counts as the controller; the wrong one is a collision",

@@ -15,7 +15,8 @@
 namespace posewright::formats {
 namespace {
 
-constexpr double first_arrival = 5.0, default_wait = 5.0;              // s
+constexpr double first_arrival = 5.0, default_wait = 5.0;  // s
+constexpr double default_percent = 10.0;
 constexpr double full_turn_rate = std::numbers::pi, full_speed = 1.0;  // rad/s, m/s; --speed is a part of it
 // Between points at rest a cubic is 1.5 times as fast as its mean.
 constexpr double cubic_peak = 1.5;
@@ -23,7 +24,7 @@ constexpr double cubic_peak = 1.5;
 class Writer {
  public:
   Writer(const PoseSequence& sequence, const ExportOptions& options)
-      : sequence_(sequence), speed_(options.speed.value_or(sequence.is_route ? 100.0 : 10.0) / 100) {
+      : sequence_(sequence), speed_(options.speed.value_or(default_percent) / 100) {
     hold_ = options.settle.value_or(sequence.settle > 0 ? sequence.settle : default_settle) +
             options.wait.value_or(default_wait);
   }
@@ -70,9 +71,14 @@ class Writer {
 
   double seconds_at_full_speed(const std::vector<double>& from, const std::vector<double>& to) const {
     double most = 0;
-    for (std::size_t i = 0; i < from.size(); ++i)
-      most = std::max(most, std::abs(to[i] - from[i]) / (sequence_.units[i] == "m" ? full_speed : full_turn_rate));
+    for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, std::abs(to[i] - from[i]) / fastest(i));
     return most;
+  }
+
+  double fastest(std::size_t i) const {
+    const double usual = sequence_.units[i] == "m" ? full_speed : full_turn_rate;
+    const bool known = !sequence_.speeds.empty() && sequence_.speeds[i] > 0;
+    return known ? std::min(usual, sequence_.speeds[i]) : usual;
   }
 
   const PoseSequence& sequence_;
@@ -90,9 +96,12 @@ Exported write_joint_trajectory(const PoseSequence& all, const ExportOptions& op
   if (!sequence.is_route)
     notes.push_back(
         "the motions between the poses are not checked for collisions: `posewright route` finds motions that are");
-  notes.push_back(
-      fmt::format("{} is reached {} s after the start: begin there; speeds are not checked against the robot's",
-                  sequence.from_home ? "home" : "the first pose", first_arrival));
+  notes.push_back(fmt::format("{} is reached {} s after the start: begin there",
+                              sequence.from_home ? "home" : "the first pose", first_arrival));
+  notes.push_back(fmt::format("speed {} % of {}{}", options.speed.value_or(default_percent),
+                              sequence.is_route ? "the route's" : "full speed",
+                              options.speed ? "" : " (--speed changes it)"));
+  if (sequence.speeds.empty()) notes.emplace_back("speeds are not checked against the robot's");
   return one_file("trajectory.yaml", Writer(sequence, options).text(), notes);
 }
 
@@ -117,16 +126,18 @@ PoseTable read_joint_trajectory(const std::string& bytes, const std::string& fil
 }  // namespace
 
 PoseFormat joint_trajectory() {
-  return {"joint-trajectory",
-          "trajectory_msgs/JointTrajectory with holds",
-          "ROS 2 trajectory controllers",
-          ".yaml",
-          "",
-          {"speed", "settle", "wait"},
-          false,
-          false,
-          write_joint_trajectory,
-          read_joint_trajectory};
+  PoseFormat format = {"joint-trajectory",
+                       "trajectory_msgs/JointTrajectory with holds",
+                       "ROS 2 trajectory controllers",
+                       ".yaml",
+                       "",
+                       {"speed", "settle", "wait"},
+                       false,
+                       false,
+                       write_joint_trajectory,
+                       read_joint_trajectory};
+  format.timed = true;
+  return format;
 }
 
 }  // namespace posewright::formats

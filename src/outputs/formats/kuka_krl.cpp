@@ -12,7 +12,7 @@ namespace {
 const ProgramRules krl_rules = {.format = "kuka-krl",
                                 .longest_name = 24,
                                 .axes = {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
-                                .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"},
+                                .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
                                 .decimals = 5,
                                 .pose = "XP",
                                 .via = "XV",
@@ -36,6 +36,8 @@ std::string source(const RobotProgram& program, const Signals& signals, int tool
   text += ";FOLD INI\nBAS (#INITMOV,0 )\n;ENDFOLD (INI)\n";
   text += fmt::format("BAS (#VEL_PTP,{})\nBAS (#ACC_PTP,50)\nBAS (#TOOL,{})\nBAS (#BASE,{})\n$OUT[{}]=FALSE\n",
                       short_fixed(program.speed, 2), tool, base, signals.output);
+  // A program beside the points of another plan must not move.
+  text += fmt::format("WHILE NPOINTS<>{}\n;the .dat file is of another program\nHALT\nENDWHILE\n", program.number);
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) text += ";" + program_text(step.comment, 200) + "\n";
     if (step.kind == ProgramStep::Kind::move) text += fmt::format("PTP {}\n", program.points[step.point].name);
@@ -49,6 +51,7 @@ std::string source(const RobotProgram& program, const Signals& signals, int tool
 std::string data(const RobotProgram& program) {
   std::string text = fmt::format("&ACCESS RVP\n&REL 1\nDEFDAT  {}\n;{}\n", program.name, export_mark);
   text += "EXT  BAS (BAS_COMMAND  :IN,REAL  :IN )\n";
+  text += fmt::format("DECL INT NPOINTS={}\n", program.number);
   for (const ProgramPoint& point : program.points) {
     text += fmt::format("DECL E6AXIS {}={{", point.name);
     // In the controller's order, whatever the plan's is; axes that the robot has not are left out: a written 0 moves

@@ -8,6 +8,7 @@
 
 #include "controller_axes.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/sha256.hpp"
 #include "text.hpp"
 
 namespace posewright::formats {
@@ -70,6 +71,7 @@ class Composer {
  private:
   std::size_t add_point(const std::string& name, const std::vector<double>& q) {
     program_.points.push_back({name, axes_.of(q)});
+    axes_.require_inside(program_.points.back().axes, name);
     return program_.points.size() - 1;
   }
   void add_move(std::size_t point, const std::string& comment) {
@@ -106,6 +108,13 @@ std::vector<std::string> motion_notes(const PoseSequence& sequence) {
                              : "the motion to the first pose is not checked"};
 }
 
+/// A number that other points would not have: the first 31 bits of a hash of their names and values.
+int number_of(const std::vector<ProgramPoint>& points) {
+  std::string text;
+  for (const ProgramPoint& point : points) text += fmt::format("{} {}\n", point.name, fmt::join(point.axes, " "));
+  return int(std::stoul(sha256_hex(text).substr(0, 8), nullptr, 16) & 0x7fffffffU);
+}
+
 }  // namespace
 
 RobotProgram make_program(const PoseSequence& all, const ExportOptions& options, const ProgramRules& rules) {
@@ -121,7 +130,10 @@ RobotProgram make_program(const PoseSequence& all, const ExportOptions& options,
     throw InputError({}, "--wait stands beside --digital-input", "one of both is allowed");
   program.decimals = options.controller.decimals.value_or(rules.decimals);
   Composer(sequence, axes, rules, program).compose();
+  program.number = number_of(program.points);
   program.notes = motion_notes(sequence);
+  program.notes.push_back(
+      fmt::format("speed {} % of full speed{}", program.speed, options.speed ? "" : " (--speed changes it)"));
   for (std::string& note : axes.notes()) program.notes.push_back(std::move(note));
   return program;
 }

@@ -48,6 +48,7 @@ struct RobotProgram {
   double settle = 2.0;         ///< s
   std::optional<double> wait;  ///< s; none: an input is waited for
   int decimals = 4;
+  int number = 0;  ///< of its points, for programs whose points are in another file
   std::vector<std::string> notes;
 };
 

@@ -12,7 +12,7 @@ namespace {
 const ProgramRules val3_rules = {.format = "staubli-val3",
                                  .longest_name = 32,
                                  .axes = {"j1", "j2", "j3", "j4", "j5", "j6"},
-                                 .settings = {"sign", "zero_deg", "coupling", "axes", "decimals"}};
+                                 .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"}};
 
 constexpr const char* xml = "<?xml version=\"1.0\" encoding=\"utf-8\" ?>\n";
 
@@ -44,6 +44,10 @@ std::string data_file(const RobotProgram& program, const std::string& output, co
   if (!program.wait) datum(input, "dio");
   datum(output, "dio");
   datum("nKey", "num");
+  text += fmt::format(
+      "    <Data name=\"nPoints\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"1\">\n"
+      "      <Value key=\"0\" value=\"{}\" />\n    </Data>\n",
+      program.number);
   datum("nTraj", "num");
   return text + "  </Datas>\n</Database>\n";
 }
@@ -57,7 +61,10 @@ std::string program_file(const std::string& name, const std::string& code) {
 }
 
 std::string start_code(const RobotProgram& program, const std::string& output) {
-  std::string code = fmt::format("  {}=false\n", output);
+  // A program beside the points of another plan must not move.
+  std::string code =
+      fmt::format("  if nPoints!={}\n  putln(\"the data are of another program\")\n  return\n  endIf\n  {}=false\n",
+                  program.number, output);
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) code += "  // " + program_text(step.comment, 100) + "\n";
     if (step.kind == ProgramStep::Kind::move)

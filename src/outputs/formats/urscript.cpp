@@ -17,7 +17,7 @@ const ProgramRules urscript_rules = {.format = "urscript",
                                      .default_name = "calposes",
                                      .longest_name = 64,
                                      .axes = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"},
-                                     .settings = {"sign", "zero_deg", "axes", "decimals"},
+                                     .settings = {"sign", "zero_deg", "range_deg", "axes", "decimals"},
                                      .decimals = 6};
 
 constexpr double full_speed = 3.0;    // rad/s, what --speed is a part of

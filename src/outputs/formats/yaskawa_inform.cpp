@@ -16,25 +16,33 @@ constexpr const char* why =
     "pulses, directions and zeros are parameters of each robot (controller parameter files); the wrong ones are a "
     "collision";
 
-const ProgramRules inform_rules = {.format = "yaskawa-inform",
-                                   .longest_name = 32,
-                                   .capitals = true,
-                                   .axes = {"S", "L", "U", "R", "B", "T"},
-                                   .settings = {"sign", "zero_deg", "pulses_per_degree", "coupling", "axes"},
-                                   .coupling_needed =
-                                       "some arms count U from the horizontal (F such that U = U - F*L of a URDF), "
-                                       "others (0) do not; the wrong one is a collision",
-                                   .signs_needed = why};
+const ProgramRules inform_rules = {
+    .format = "yaskawa-inform",
+    .longest_name = 32,
+    .capitals = true,
+    .axes = {"S", "L", "U", "R", "B", "T"},
+    .settings = {"sign", "zero_deg", "range_deg", "pulses_per_degree", "coupling", "axes"},
+    .coupling_needed =
+        "some arms count U from the horizontal (F such that U = U - F*L of a URDF), "
+        "others (0) do not; the wrong one is a collision",
+    .signs_needed = why};
 
 constexpr std::size_t longest_comment = 32;
 constexpr std::size_t usual_lines = 2000;
+
+/// Controllers count in 32 bits.
+std::int32_t whole_pulses(double pulses, const std::string& point) {
+  if (!(std::abs(pulses) < 2147483647.0))
+    throw CannotDo(fmt::format("{}: {:.4g} pulses are more than a controller counts", point, pulses));
+  return std::int32_t(std::lround(pulses));
+}
 
 std::string pulses(const RobotProgram& program, const ProgramPoint& point, const std::vector<double>& per_degree) {
   std::string text;
   for (const std::string& axis : inform_rules.axes)
     for (std::size_t i = 0; i < program.axes.size(); ++i)
       if (program.axes[i] == axis)
-        text += (text.empty() ? "" : ",") + fmt::format("{}", std::llround(point.axes[i] * per_degree[i]));
+        text += (text.empty() ? "" : ",") + fmt::format("{}", whole_pulses(point.axes[i] * per_degree[i], point.name));
   return text;
 }
 

@@ -1,20 +1,21 @@
+#include "posewright/controller/controller_settings.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "formats/text.hpp"
-#include "formats/yaml_list.hpp"
+#include "posewright/controller/yaml_document.hpp"
+#include "posewright/support/text.hpp"
 
 namespace posewright {
 namespace {
 
-using formats::YamlList;
-
-const std::string allowed_keys = "allowed: sign, zero_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm";
+const std::string allowed_keys =
+    "allowed: sign, zero_deg, pulses_per_degree, range_deg, coupling, axes, decimals, pivot_mm";
 
 class SettingsReader {
  public:
-  SettingsReader(const YamlList& yaml, ControllerSettings& settings) : yaml_(yaml), settings_(settings) {}
+  SettingsReader(const yaml::Document& yaml, ControllerSettings& settings) : yaml_(yaml), settings_(settings) {}
 
   void read(const YAML::Node& root) {
     if (!root.IsMap()) yaml_.fail(root, "is no mapping", allowed_keys);
@@ -37,6 +38,7 @@ class SettingsReader {
     else if (key == "pulses_per_degree")
       settings_.pulses_per_degree = checked(
           value, key, [](double x) { return x > 0 && x < 1e7; }, "numbers above 0");
+    else if (key == "range_deg") read_ranges(value, key);
     else if (key == "coupling") settings_.coupling = one(value, key, -10, 10);
     else if (key == "decimals") settings_.decimals = int(one(value, key, 3, 9));
     else if (key == "axes") settings_.axes = yaml_.texts(value, key);
@@ -46,7 +48,16 @@ class SettingsReader {
       if (pivot.size() != 3) yaml_.fail(at, "pivot_mm has not three numbers", "[R, S, T] in mm");
       settings_.pivot_mm = {pivot[0], pivot[1], pivot[2]};
     } else {
-      yaml_.fail(at, "unknown key " + formats::in_quotes(key), allowed_keys);
+      yaml_.fail(at, "unknown key " + in_quotes(key), allowed_keys);
+    }
+  }
+
+  void read_ranges(const YAML::Node& value, const std::string& key) {
+    for (const YAML::Node& item : yaml_.items(value, key)) {
+      const std::vector<double> ends = yaml_.numbers(item, key);
+      if (ends.size() != 2 || !(ends[0] < ends[1]))
+        yaml_.fail(item, "range_deg has no range here", "[lower, upper], one for each joint");
+      settings_.range_deg.push_back({ends[0], ends[1]});
     }
   }
 
@@ -66,20 +77,30 @@ class SettingsReader {
     return value;
   }
 
-  const YamlList& yaml_;
+  const yaml::Document& yaml_;
   ControllerSettings& settings_;
 };
 
 }  // namespace
 
+std::pair<std::size_t, std::size_t> ControllerSettings::coupled_axes() const {
+  using Names = std::pair<const char*, const char*>;
+  for (const auto& [second, third] :
+       {Names("A2", "A3"), Names("rax_2", "rax_3"), Names("J2", "J3"), Names("j2", "j3"), Names("L", "U")}) {
+    const auto a = std::find(axes.begin(), axes.end(), second), b = std::find(axes.begin(), axes.end(), third);
+    if (a != axes.end() && b != axes.end()) return {std::size_t(a - axes.begin()), std::size_t(b - axes.begin())};
+  }
+  return {1, 2};
+}
+
 ControllerSettings parse_controller_settings(const std::string& text, const std::string& file) {
   ControllerSettings settings;
   settings.file = file;
-  const YamlList yaml(file);
+  const yaml::Document yaml(file);
   try {
     SettingsReader(yaml, settings).read(YAML::Load(text));
   } catch (const YAML::Exception& error) {
-    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + formats::ascii(error.msg), "");
+    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + in_quotes(error.msg), "");
   }
   return settings;
 }

@@ -1,4 +1,4 @@
-#include "text.hpp"
+#include "posewright/support/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace posewright {
+
+/// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
+/// of the plan's joints, empty where the file has none.
+struct ControllerSettings {
+  std::string file;
+  std::map<std::string, int> lines;  ///< keys that are given, and where
+  std::vector<double> sign;          ///< +1 or −1
+  std::vector<double> zero_deg;
+  std::vector<double> pulses_per_degree;
+  /// What each axis may be, as the controller counts it: deg, mm of an axis that slides.
+  std::vector<std::array<double, 2>> range_deg;
+  std::optional<double> coupling;  ///< f in J3 = J3_urdf − f · J2_urdf
+  std::vector<std::string> axes;   ///< what the controller calls the joints
+  std::optional<int> decimals;
+  std::optional<std::array<double, 3>> pivot_mm;  ///< platform origin as the hexapod counts it
+
+  /// Indices of the axes that `coupling` is between, the third less f times the second.
+  std::pair<std::size_t, std::size_t> coupled_axes() const;
+};
+
+/// Throws InputError with file and line for unknown keys and values that make no sense.
+ControllerSettings parse_controller_settings(const std::string& text, const std::string& file);
+
+}  // namespace posewright

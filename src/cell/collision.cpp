@@ -80,11 +80,16 @@ class PairOnMotion {
 /// The nearest pair of one or many states.
 class SmallestDistance {
  public:
-  explicit SmallestDistance(const Scene& scene) : scene_(scene), frames_(std::size_t(scene.frames->count())) {}
+  explicit SmallestDistance(const Scene& scene) : scene_(scene), frames_(std::size_t(scene.frames->count())) {
+    for (const BodyPair& pair : scene.pairs)
+      if (is_of_interest(scene, pair)) pairs_.push_back(&pair);
+    if (!pairs_.empty()) return;
+    for (const BodyPair& pair : scene.pairs) pairs_.push_back(&pair);
+  }
 
   void look_at(std::span<const double> q, int pose) {
     place(q, pose);
-    for (const BodyPair& pair : scene_.pairs) look_at(pair);
+    for (const BodyPair* pair : pairs_) look_at(*pair);
   }
 
   /// States as far apart as the pair in question can move without coming nearer than the smallest distance so far, and
@@ -101,12 +106,12 @@ class SmallestDistance {
     for (const double t : first_looks) look_at(at(t), pose);
     const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
     const Eigen::VectorXd change = (b - a).cwiseAbs();
-    for (const BodyPair& pair : scene_.pairs) {
-      const double rate = pair.travel[std::size_t(pose)].dot(change);
+    for (const BodyPair* pair : pairs_) {
+      const double rate = pair->travel[std::size_t(pose)].dot(change);
       if (!(rate > 0)) continue;
       for (double t = 0; t < 1;) {
         place(at(t), pose);
-        t += (look_at(pair) - smallest_ + motion_resolution) / rate;
+        t += (look_at(*pair) - smallest_ + motion_resolution) / rate;
       }
     }
   }
@@ -118,6 +123,12 @@ class SmallestDistance {
   }
 
  private:
+  /// Links that only must not touch, as those of a wrist, are always near and say nothing.
+  static bool is_of_interest(const Scene& scene, const BodyPair& pair) {
+    const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+    return pair.asked > 0 || a.obstacle || b.obstacle || a.tool || b.tool;
+  }
+
   void place(std::span<const double> q, int pose) { scene_.frames->poses(q, pose, frames_); }
 
   /// Lower bound of the pair's distance, exact where it may be the smallest.
@@ -137,6 +148,7 @@ class SmallestDistance {
 
   const Scene& scene_;
   Poses frames_;
+  std::vector<const BodyPair*> pairs_;
   double smallest_ = most_distance;
   const BodyPair* nearest_ = nullptr;
 };

@@ -68,6 +68,20 @@ Problem without_pose_errors(Problem problem) {
   return problem;
 }
 
+namespace {
+
+/// Lists of measured poses have a column for each: one name cannot be both.
+void require_names_of_their_own(const IdentificationModel& model, const Problem& problem) {
+  for (const Coordinate& c : model.coordinates())
+    for (const Reading& reading : model.readings())
+      if (c.name == reading.name)
+        throw InputError(problem.at(problem.robot_line),
+                         "joint '" + c.name + "' is called as a reading of the instrument",
+                         "call the joint or the target otherwise");
+}
+
+}  // namespace
+
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant) {
   if (variant.convention != VariantSpec::Convention::frames && !std::holds_alternative<SerialArmSpec>(problem.robot))
     throw CannotDo("variant '" + variant.name + "': parameters dh and mdh are those of a serial arm");
@@ -76,6 +90,7 @@ std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const Va
   // Before anything is put around it: what the arm is linearised at, its tool poses follow, too.
   apply_nominal(*model, problem, variant);
   if (difference) model = std::make_unique<LoadDifference>(std::move(model));
+  require_names_of_their_own(*model, problem);
   return model;
 }
 

@@ -1,5 +1,7 @@
 #include "posewright/support/error.hpp"
 
+#include "posewright/support/text.hpp"
+
 namespace posewright {
 namespace {
 
@@ -12,7 +14,8 @@ std::string message(const SourcePlace& place, const std::string& what, const std
   }
   text += what;
   if (!allowed.empty()) text += "; " + allowed;
-  return text;
+  // Whatever a file holds, the message is one line of text.
+  return one_line(text);
 }
 
 }  // namespace

@@ -24,20 +24,35 @@ bool is_control(std::string_view sequence) {
 
 }  // namespace
 
+namespace {
+
+/// Cuts the first character off `text` and adds it, escaped if it is none of a line.
+void move_character(std::string_view& text, std::string& to) {
+  const std::size_t length = utf8_length(text);
+  const std::string_view sequence = text.substr(0, std::max<std::size_t>(length, 1));
+  if (length == 0 || is_control(sequence)) {
+    for (std::size_t i = 0; i < sequence.size(); ++i) to += fmt::format("\\x{:02x}", byte_at(sequence, i));
+  } else {
+    to += sequence;
+  }
+  text.remove_prefix(sequence.size());
+}
+
+}  // namespace
+
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   while (!text.empty()) {
     if (result.size() > longest_quote) return result + "...'";
-    const std::size_t length = utf8_length(text);
-    const std::string_view sequence = text.substr(0, std::max<std::size_t>(length, 1));
-    if (length == 0 || is_control(sequence)) {
-      for (std::size_t i = 0; i < sequence.size(); ++i) result += fmt::format("\\x{:02x}", byte_at(sequence, i));
-    } else {
-      result += sequence;
-    }
-    text.remove_prefix(sequence.size());
+    move_character(text, result);
   }
   return result + "'";
+}
+
+std::string one_line(std::string_view text) {
+  std::string result;
+  while (!text.empty()) move_character(text, result);
+  return result;
 }
 
 bool has_control_character(std::string_view text) {

@@ -9,6 +9,7 @@
 
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/text.hpp"
 
 namespace posewright {
 namespace {
@@ -19,7 +20,7 @@ std::string converted(const std::string& text, const std::string& encoding, cons
   const iconv_t converter = ::iconv_open("UTF-8", encoding.c_str());
   // The library marks what it does not know with a pointer of all ones.
   if (converter == iconv_t(-1))  // NOLINT(performance-no-int-to-ptr)
-    throw InputError({place.file, 1}, "encoding '" + encoding.substr(0, 40) + "' is not known", "UTF-8 is expected");
+    throw InputError({place.file, 1}, "encoding " + in_quotes(encoding) + " is not known", "UTF-8 is expected");
   std::string result;
   std::string from = text;
   char* in = from.data();
@@ -34,7 +35,7 @@ std::string converted(const std::string& text, const std::string& encoding, cons
     result.append(part.data(), part.size() - room);
   }
   ::iconv_close(converter);
-  if (failed) throw InputError(place, "is not what it declares to be: " + encoding.substr(0, 40), "save it as UTF-8");
+  if (failed) throw InputError(place, "is not what it declares to be: " + in_quotes(encoding), "save it as UTF-8");
   return result;
 }
 

@@ -96,6 +96,8 @@ double by_asking(const Collision& collision, const std::vector<double>& q) {
   double smallest = 1e9;
   for (const BodyPair& pair : scene.pairs) {
     const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+    // Links of the arm only must not touch each other here.
+    if (!a.obstacle && !b.obstacle && a.name != "hand" && b.name != "hand") continue;
     smallest = std::min(smallest, distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
                                            X[std::size_t(b.frame)] * b.X_FrameBody, 100));
   }

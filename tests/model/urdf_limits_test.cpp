@@ -147,5 +147,50 @@ TEST(UrdfLimits, SoftOnesOfAFollowerBindItsMaster) {
   EXPECT_DOUBLE_EQ(read(arm).coordinates.front().upper, 0.0);
 }
 
+TEST(UrdfNames, ThatWouldBreakListsAreRefused) {
+  for (const char* name : {"a,b", "a;b", "a&quot;b", "a'b", "a[b]", "#a", " a", "a ", "a&#10;b", "pose", "id", "weight",
+                           "load_case", "station"}) {
+    const TemporaryFolder folder;
+    SerialArmSpec spec;
+    spec.urdf = folder.write("r.urdf", fmt::format(R"(<robot name="r"><link name="base"/><link name="tip"/>
+<joint name="{}" type="continuous"><parent link="base"/><child link="tip"/></joint></robot>)",
+                                                   name));
+    try {
+      read_urdf_chain(spec, {"p.yaml", 3});
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("r.urdf:2: joint name '")) << name;
+    }
+  }
+}
+
+TEST(UrdfReader, OfTwentyThousandLinksIsReadInAMoment) {
+  for (const bool deep : {true, false}) {
+    std::string text = "<robot name=\"r\"><link name=\"l0\"/>";
+    for (int i = 1; i <= 20000; ++i)
+      text += fmt::format(
+          "<link name=\"l{0}\"/><joint name=\"j{0}\" type=\"{1}\"><parent link=\"l{2}\"/><child "
+          "link=\"l{0}\"/></joint>",
+          i, i == 1 ? "continuous" : "fixed", deep || i == 1 ? i - 1 : 1);
+    const TemporaryFolder folder;
+    SerialArmSpec spec;
+    spec.urdf = folder.write("r.urdf", text + "</robot>");
+    spec.tip = Located<std::string>{deep ? "l20000" : "l1", 3};
+    EXPECT_EQ(read_urdf_chain(spec, {"p.yaml", 3}).joints.size(), 1U);
+    // A branch of as many links hangs on the joint.
+    spec.tip = Located<std::string>{"l1", 3};
+    EXPECT_EQ(read_urdf_chain(spec, {"p.yaml", 3}).joints.size(), 1U);
+  }
+  std::string many = "<robot name=\"r\"><link name=\"l0\"/>";
+  for (int i = 1; i <= 50001; ++i)
+    many += fmt::format(
+        "<link name=\"l{0}\"/><joint name=\"j{0}\" type=\"fixed\"><parent link=\"l0\"/><child link=\"l{0}\"/></joint>",
+        i);
+  const TemporaryFolder folder;
+  SerialArmSpec spec;
+  spec.urdf = folder.write("r.urdf", many + "</robot>");
+  EXPECT_THROW(read_urdf_chain(spec, {"p.yaml", 3}), InputError);
+}
+
 }  // namespace
 }  // namespace posewright

@@ -9,6 +9,9 @@ namespace posewright {
 /// one short line whatever the file holds.
 std::string in_quotes(std::string_view text);
 
+/// Text as one line: control characters and bytes that are not UTF-8 escaped.
+std::string one_line(std::string_view text);
+
 /// Whether `text` has a character that would break a table, a message or a name: controls and Unicode line breaks.
 bool has_control_character(std::string_view text);
 

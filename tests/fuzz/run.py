@@ -1,0 +1,79 @@
+"""Fuzzes every reader of files: run.py PROGRAM SOURCE [SECONDS [TARGET...]].
+
+PROGRAM is the fuzzer of a build with sanitizers. Each target gets SECONDS (2) and begins with files of the examples, the golden
+files, and what once went wrong (tests/fuzz/past/TARGET). Exit status 1 if anything goes wrong; the input is left in crash-*."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+SECONDS = float(sys.argv[3]) if len(sys.argv) > 3 else 2
+GOLDEN, EXAMPLES = SOURCE / "tests/outputs/golden", SOURCE / "examples"
+
+STL = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\nendsolid\n"
+BINARY = b" " * 80 + (1).to_bytes(4, "little") + bytes(50)
+OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 -1//1\n"
+NPY = b"\x93NUMPY\x01\x00F\x00{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3, 2), }          \n" + bytes(48)
+MEASURED = (b"id,j1 [deg],j2 [mm],P1.x [mm],P1.y [mm],P1.z [mm],P2.x [mm],P2.y [mm],P2.z [mm]\n1,10,20,1,2,3,4,5,6\n"
+            b"1,10,20,1,,3,4,5,6\n2,-10,2.5e1,1,2,3,4,5,nan\n")
+SRDF = b'<robot name="r"><disable_collisions link1="a" link2="b" reason="Never"/></robot>'
+PARAMETERS = b"posewright_parameters: 1\nvariant: all\nvalues:\n  j1.offset: {value: 0.1 deg, nominal: 0, unit: rad}\n"
+SETTINGS = (b"sign: [1, -1]\nzero_deg: [0, 90]\nrange_deg: [[-1, 2], [3, 4]]\ncoupling: -1\naxes: [A1, A2]\ndecimals: 4\n"
+            b"pulses_per_degree: [1e3, 2]\npivot_mm: [0, 0, 1]\n")
+
+
+def files(*patterns):
+    return [path.read_bytes() for pattern in patterns for path in sorted(SOURCE.glob(pattern)) if path.is_file()]
+
+
+def lists():
+    """A first byte for the format, then the list: of every format each file once would be too many."""
+    bytes_of = files("tests/outputs/golden/*.yaml", "tests/outputs/golden/*.csv", "tests/outputs/golden/*.json",
+                     "tests/outputs/golden/*.txt", "tests/outputs/golden/*.npy", "tests/outputs/golden/*.srdf")
+    return [bytes([k]) + text for k in range(14) for text in bytes_of[k::5]]
+
+
+SEEDS = {
+    "problem": lambda: files("examples/**/*.yaml"),
+    "urdf": lambda: files("examples/**/*.urdf"),
+    "stl": lambda: [STL, BINARY],
+    "obj": lambda: [OBJ],
+    "npy": lambda: [NPY, *files("tests/outputs/golden/*.npy")],
+    "blocks": lambda: [NPY, b"a,b\n1,2\n3,4\n5,6\n", b"# c\n1,2\n3e-1,4\n5,6\n"],
+    "measured": lambda: [MEASURED],
+    "sequence": lambda: files("tests/outputs/golden/*.json"),
+    "parameters": lambda: [PARAMETERS],
+    "srdf": lambda: [SRDF, *files("tests/outputs/golden/*.srdf")],
+    "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/outputs/golden/yaskawa.yaml")],
+    "lists": lists,
+}
+
+
+def fuzz(target, folder):
+    """Inputs tried, and whether all went well."""
+    corpus = folder / target
+    corpus.mkdir()
+    for k, seed in enumerate(SEEDS[target]()):
+        (corpus / f"seed-{k}").write_bytes(seed)
+    for path in (SOURCE / "tests/fuzz/past" / target).glob("*"):
+        shutil.copy(path, corpus)
+    seed = 1 if SECONDS <= 10 else 0
+    command = [PROGRAM, f"-max_total_time={SECONDS:g}", "-rss_limit_mb=3000", "-timeout=20", "-max_len=20000", f"-seed={seed}",
+               "-print_final_stats=1", "-detect_leaks=1", corpus]
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace", cwd=os.getcwd(),
+                          env=os.environ | {"POSEWRIGHT_FUZZ_TARGET": target, "ASAN_OPTIONS": "allocator_may_return_null=1"})
+    runs = re.search(r"stat::number_of_executed_units:\s*(\d+)", done.stderr)
+    if done.returncode:
+        print(done.stderr[-3000:])
+    print(f"{target}: {int(runs[1]) if runs else 0} inputs{'' if done.returncode == 0 else '  FAILED'}", flush=True)
+    return done.returncode == 0
+
+
+with tempfile.TemporaryDirectory() as name:
+    good = [fuzz(target, pathlib.Path(name)) for target in sys.argv[4:] or SEEDS]
+sys.exit(0 if all(good) else 1)

@@ -45,11 +45,9 @@ void prepare_process() {
 }
 
 void begin_stage(SignalStage stage) {
-  if (stage == SignalStage::searching) {
-    signals_so_far = 0;
-    asked_to_stop = false;
-  }
   current_stage = stage;
+  // One that came while the last result was written is for what follows.
+  if (stage == SignalStage::searching && signals_so_far > 0) asked_to_stop = true;
   // What was passed over for a moment is heard now.
   if (stage == SignalStage::nothing_to_lose && signals_so_far > 0) ::_exit(interrupted);
 }

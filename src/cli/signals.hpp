@@ -14,7 +14,8 @@ enum class SignalStage { nothing_to_lose, searching, finishing };
 /// are taken, so that no file gets their numbers and what is meant for a terminal.
 void prepare_process();
 
-/// Begins a stage. `searching` forgets earlier signals, `nothing_to_lose` ends the program if there was one.
+/// Begins a stage. If there was a signal before, `searching` ends at once with what it has, `nothing_to_lose` ends the
+/// program.
 void begin_stage(SignalStage stage);
 
 /// Set by a signal while a search runs.

@@ -90,9 +90,9 @@ int Outputs::search_and_write(const CommonOptions& common, double seconds,
                               const std::function<Plan(const Monitor&)>& search,
                               const std::function<Plan(const Plan&, const Monitor&)>& validation) const {
   const auto [plan, was_interrupted] = watched(common, seconds, search);
-  const auto show = [&](const std::string& json, const std::string& written) {
+  const auto show = [&, &found = plan](const std::string& json, const std::string& written) {
     if (common.json) fmt::print("{}", json);
-    else print_report(plan_summary(plan) + written);
+    else print_report(plan_summary(found) + written);
   };
   try {
     const std::string json = write(plan, plan_, poses_);

@@ -48,8 +48,16 @@ Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   return c;
 }
 
+/// Whether a file says where a follower ends: 0 and 0 is the format's way to say nothing.
+bool has_own_end(const urdf::Joint& follower) {
+  if (follower.type == urdf::Joint::CONTINUOUS) return true;
+  return (follower.type == urdf::Joint::REVOLUTE || follower.type == urdf::Joint::PRISMATIC) &&
+         follower.limits != nullptr && (follower.limits->lower != 0 || follower.limits->upper != 0);
+}
+
 /// What a joint that follows `master` allows it: its own limits, soft limits and velocity.
 void bind_follower(Coordinate& master, const urdf::Joint& follower, const SourcePlace& place) {
+  if (!has_own_end(follower)) return;
   const double factor = follower.mimic->multiplier, offset = follower.mimic->offset;
   const Coordinate own = coordinate_of(follower, place);
   // A full turn of the master is one of the follower only if it turns by whole numbers.

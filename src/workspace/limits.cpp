@@ -84,7 +84,7 @@ class ControllerRanges {
       if (!c.choice() && !is_second(c.name)) axes_.push_back(&c);
     for (const auto& [size, key] :
          {std::pair(settings.range_deg.size(), "range_deg"), std::pair(settings.sign.size(), "sign"),
-          std::pair(settings.zero_deg.size(), "zero_deg")})
+          std::pair(settings.zero_deg.size(), "zero_deg"), std::pair(settings.axes.size(), "axes")})
       if (size > 0 && size != axes_.size())
         throw InputError({settings.file, settings.lines.at(key)}, fmt::format("{} has {} entries", key, size),
                          fmt::format("one for each of {} joints", axes_.size()));

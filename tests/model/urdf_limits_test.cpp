@@ -99,6 +99,14 @@ TEST(UrdfLimits, OfAFollowerThatStandsStillAreAskedOnce) {
   EXPECT_EQ(read(arm).coordinates.front().upper, 2.5);
 }
 
+TEST(UrdfLimits, ThatAFileLeavesOutOfAFollowerBindNothing) {
+  Arm arm;
+  arm.finger = R"(type="prismatic"><mimic joint="j1"/><limit effort="1" velocity="1"/>)";
+  EXPECT_EQ(read(arm).coordinates.front().upper, 2.5);
+  arm.finger = R"(type="fixed"><mimic joint="j1"/>)";
+  EXPECT_EQ(read(arm).coordinates.front().upper, 2.5);
+}
+
 TEST(UrdfLimits, AFullTurnIsOneForFollowersByWholeNumbersOnly) {
   Arm arm;
   arm.first = R"(type="continuous">)";

@@ -20,7 +20,7 @@ import time
 import unittest
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv.pop(1)).resolve(), pathlib.Path(sys.argv.pop(1))
-MOMENTS = int(sys.argv.pop(1)) if len(sys.argv) > 1 and sys.argv[1].isdigit() else 4
+MOMENTS = int(sys.argv.pop(1)) if len(sys.argv) > 1 and sys.argv[1].isdigit() else 3
 RANDOM = random.Random(MOMENTS)
 
 ARM = """<robot name="arm"><link name="base"/>
@@ -50,7 +50,7 @@ design: {poses: 12, candidates: 300, restarts: 3, method: exchange}
 
 
 # Until the program's first line, while its libraries are loaded, signals do what they always do.
-LOADING = 0.1
+LOADING = 0.5
 
 
 def words(folder, *arguments):
@@ -226,7 +226,7 @@ class Interrupted(unittest.TestCase):
             with Folder() as folder:
                 os.mkfifo(folder / "pipe")
                 process = self.start(folder, *arguments)
-                time.sleep(0.5)
+                time.sleep(1.5)
                 process.send_signal(signal.SIGINT)
                 process.communicate(timeout=5)
                 self.assertEqual(process.returncode, 130, arguments)

@@ -109,14 +109,14 @@ def agreed(more, start):
     raise ArithmeticError("no noise agrees with what residuals show")
 
 
-def calibrated(arm, variant, names, poses, z, counts=(), weights="wls", start=None):
+def calibrated(arm, variant, names, poses, z, counts=(), weights="wls", start=None, begin=None):
     """The estimate with the noise as stated, and the one that counts: with the noise that the residuals show, noise and
-    estimate agreeing, if chance refuses the stated one, or if nobody states it (ols)."""
+    estimate agreeing, if chance refuses the stated one, or if nobody states it (ols). `begin`: a noise to begin with (ols)."""
     first = Estimate(arm, variant, names, poses, z, counts, weights, 1.0, start)
     noise = 1.0
     if weights == "ols":
         # In m a reading weighs nothing beside a tolerance: begin with the noise that plain least squares show.
-        noise = np.sqrt(np.sum(first.whitened() ** 2) / max(1, first.read.sum() - (~first.counted).sum()))
+        noise = begin or np.sqrt(np.sum(first.whitened() ** 2) / max(1, first.read.sum() - (~first.counted).sum()))
     elif not first.refused():
         return first, first
 

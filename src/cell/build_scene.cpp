@@ -156,7 +156,7 @@ class SceneBuilder {
       const NamePair names = ordered(a.name, b.name);
       if (touching[p] >= always_share * always_samples) always.insert(names);
       else if (largest[p] < 2 * pair.asked) {
-        // 1 mm at least, as far as there ever is so much.
+        // 1 mm at least, if they ever are so far apart.
         const double kept = std::min(pair.asked, std::max(0.5 * largest[p], std::min(least_reduced, 0.8 * largest[p])));
         pair.clearance = kept + (kept > motion_resolution ? motion_resolution : 0.0);
         const auto at = reduced.emplace(names, kept).first;

@@ -109,15 +109,8 @@ PoseSequence sequence_of(const PoseFormat& format, const fs::path& plan, const p
   if (coupling != 0 && options.controller.range_deg.empty())
     throw InputError({}, "axes that are coupled have ranges of their own on the controller",
                      "range_deg in --controller FILE, or --unchecked");
-  fs::path file;
-  try {
-    file = problem_file(values, plan);
-    return checked_sequence(problem_for_plan(file, values, plan), std::move(sequence));
-  } catch (const InputError& error) {
-    if (fs::exists(file) || values.count("problem") > 0) throw;
-    throw InputError({plan.string(), 0}, fmt::format("its problem file {} is not there", file.string()),
-                     "--problem FILE, to check the program against its robot, or --unchecked");
-  }
+  const fs::path file = problem_file(values, plan);
+  return checked_sequence(problem_for_plan(file, values, plan), std::move(sequence));
 }
 
 /// Where each file goes.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <stdexcept>
 
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/error.hpp"
@@ -161,9 +162,7 @@ void write_results(const std::vector<FileToWrite>& files) {
     // Stages that came after the first check may have read more.
     for (const FileToWrite& file : files) refuse_inputs(file.file, files_read());
     write_files(files);
-  } catch (const InputError& error) {
-    throw CannotDo(error.what() + saved_elsewhere(files));
-  } catch (const CannotDo& error) {
+  } catch (const std::runtime_error& error) {
     throw CannotDo(error.what() + saved_elsewhere(files));
   }
 }

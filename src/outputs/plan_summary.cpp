@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nearest.hpp"
 #include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
@@ -191,22 +192,14 @@ std::string margins_text(const std::vector<LimitMargin>& margins) {
                      standard ? " (workspace: joints: margin; 0: not)" : "");
 }
 
-std::string nearest_text(const Plan& plan) {
-  const PlannedPose* nearest = nullptr;
-  for (const PlannedPose& pose : plan.poses)
-    if (pose.nearest && (nearest == nullptr || pose.nearest->distance < nearest->nearest->distance)) nearest = &pose;
-  if (nearest == nullptr) return {};
-  return fmt::format("Nearest to each other: {} and {}, {} apart at pose {}.\n", nearest->nearest->first,
-                     nearest->nearest->second, shown_value(nearest->nearest->distance, "m"), nearest->id);
-}
-
 std::string candidates_text(const Plan& plan) {
   const PlanStatistics& s = plan.statistics;
   if (s.drawn == 0) return {};
   std::string text = fmt::format("Candidates: {} {}, {} feasible\n", s.drawn,
                                  s.list.empty() ? "drawn" : "different ones in " + s.list, s.feasible);
   for (const std::string& note : s.notes) text += note + "\n";
-  text += rejection_table(s) + cell_text(s.cell) + margins_text(s.limit_margins) + nearest_text(plan);
+  text += rejection_table(s) + cell_text(s.cell) + margins_text(s.limit_margins) +
+          nearest_text(plan.poses, [](const PlannedPose& pose) { return fmt::format("at pose {}", pose.id); });
   if (s.poses_on_boundary)
     text += fmt::format(
         "{:.0f} % of the poses lie on the boundary of the feasible set; {:.0f} % of their coordinates on a limit.\n",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nearest.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
@@ -73,16 +74,9 @@ std::string steps_table(const Route& route) {
   return table.text();
 }
 
-std::string nearest_text(const Route& route) {
-  const RouteMotion* nearest = nullptr;
-  for (const RouteMotion& motion : route.motions)
-    if (motion.nearest && (nearest == nullptr || motion.nearest->distance < nearest->nearest->distance))
-      nearest = &motion;
-  if (nearest == nullptr) return {};
+std::string between_stops(const RouteMotion& motion) {
   const auto stop = [](int id) { return id == 0 ? std::string("home") : "pose " + std::to_string(id); };
-  return fmt::format("Nearest to each other: {} and {}, {} apart between {} and {}.\n", nearest->nearest->first,
-                     nearest->nearest->second, shown_value(nearest->nearest->distance, "m"), stop(nearest->from),
-                     stop(nearest->to));
+  return fmt::format("between {} and {}", stop(motion.from), stop(motion.to));
 }
 
 std::string references_text(const Route& route) {
@@ -160,7 +154,7 @@ std::string route_summary(const Route& route) {
     text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
                         seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
                         route.optimal ? "; no order of such motions is shorter" : "");
-  text += "\n" + steps_table(route) + nearest_text(route) + references_text(route);
+  text += "\n" + steps_table(route) + nearest_text(route.motions, between_stops) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)
     text += fmt::format("Pose {} is left out: {}.\n", skipped.pose, skipped.reason);
   return text + fmt::format("Computed in {:.1f} s\n", route.computing_seconds);

@@ -4,17 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/workspace.hpp"
+#include "read_poses.hpp"
 
 namespace posewright {
 namespace {
 
 // Decimals of a list, relative above one.
 constexpr double rounding = 1e-6;
+// Controllers count turns; beyond some it is a mistake.
+constexpr double most_turns = 4 * std::numbers::pi;  // rad
 // What a trapezoid of the route's own is allowed beyond the velocity, for rounding.
 constexpr double slack = 1e-6;
 
@@ -24,7 +28,8 @@ class SequenceCheck {
       : problem_(problem),
         sequence_(sequence),
         model_(make_model(problem, find_variant(problem, ""))),
-        limits_(limits_of(problem, *model_)) {
+        limits_(limits_in_force(*model_, problem)),
+        coupled_(coupled_limits(*model_, problem)) {
     for (const Coordinate& c : limits_)
       if (!c.choice()) moving_.push_back(c);
   }
@@ -69,9 +74,8 @@ class SequenceCheck {
   void check_values(const std::vector<double>& q, const std::string& where) const {
     for (std::size_t i = 0; i < moving_.size(); ++i) {
       const Coordinate& c = moving_[i];
-      const double room = rounding * (1 + c.upper - c.lower);
-      if (c.periodic ? std::abs(q[i]) <= most_turns : q[i] >= c.lower - room && q[i] <= c.upper + room) continue;
-      const double scale = c.unit == "rad" ? 180 / pi : 1e3;
+      if (inside(q[i], c) && (!c.periodic || std::abs(q[i]) <= most_turns)) continue;
+      const double scale = c.unit == "rad" ? 180 / std::numbers::pi : 1e3;
       refuse(fmt::format("{}: '{}' is at {:.6g} {}", where, c.name, q[i] * scale, c.unit == "rad" ? "deg" : "mm"),
              fmt::format("{:.6g} to {:.6g}{}", c.lower * scale, c.upper * scale,
                          c.limited_by.empty() ? "" : " by " + c.limited_by));
@@ -81,7 +85,7 @@ class SequenceCheck {
   }
 
   void check_coupled(const std::vector<double>& q, const std::string& where) const {
-    for (const CoupledLimits& coupled : coupled_limits(*model_, problem_)) {
+    for (const CoupledLimits& coupled : coupled_) {
       double sum = 0;
       std::string names;
       for (const auto& [name, factor] : coupled.factors)
@@ -139,21 +143,11 @@ class SequenceCheck {
              fmt::format("{:.4g} s or more, or the robot is faster than it can be", least));
   }
 
-  static std::vector<Coordinate> limits_of(const Problem& problem, const IdentificationModel& model) {
-    // What bodies and sights forbid is the route's to say, not that of a list.
-    Problem bare = problem;
-    bare.workspace.motion.reachable = false;
-    return Workspace(model, bare).coordinates();
-  }
-
-  static constexpr double pi = 3.14159265358979323846;
-  // Controllers count turns; beyond some it is a mistake.
-  static constexpr double most_turns = 4 * pi;
-
   const Problem& problem_;
   PoseSequence& sequence_;
   std::unique_ptr<IdentificationModel> model_;
   std::vector<Coordinate> limits_, moving_;
+  std::vector<CoupledLimits> coupled_;
 };
 
 }  // namespace

@@ -80,11 +80,13 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) 
   return result;
 }
 
-std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q) {
-  if (cell.collision == nullptr) return std::nullopt;
-  const auto found = cell.collision->nearest(q);
+std::optional<BodyDistance> body_distance(const std::optional<Separation>& found) {
   if (!found) return std::nullopt;
   return BodyDistance{found->distance, found->first, found->second};
+}
+
+std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q) {
+  return cell.collision == nullptr ? std::nullopt : body_distance(cell.collision->nearest(q));
 }
 
 std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem) {

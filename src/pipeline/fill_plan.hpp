@@ -31,6 +31,8 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
 std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q);
 TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
 
+/// As it is written.
+std::optional<BodyDistance> body_distance(const std::optional<Separation>& found);
 /// What is nearest to each other at q; none if nothing is checked for collision.
 std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
 /// What proposed configurations keep from the limits in force.

@@ -254,13 +254,12 @@ class Router {
 
   /// What comes nearest to each other on the way.
   std::optional<BodyDistance> nearest_on(const Motion& motion) const {
-    std::optional<BodyDistance> nearest;
+    std::optional<Separation> nearest;
     for (std::size_t k = 1; cell_->collision != nullptr && k < motion.points.size(); ++k) {
       const auto found = cell_->collision->nearest(space_.whole(motion.points[k - 1]), space_.whole(motion.points[k]));
-      if (found && (!nearest || found->distance < nearest->distance))
-        nearest = BodyDistance{found->distance, found->first, found->second};
+      if (found && (!nearest || found->distance < nearest->distance)) nearest = found;
     }
-    return nearest;
+    return body_distance(nearest);
   }
 
   void add_references(int stop) {

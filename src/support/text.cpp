@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
-
-#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -22,10 +19,6 @@ bool is_control(std::string_view sequence) {
   return sequence == "\u2028" || sequence == "\u2029";
 }
 
-}  // namespace
-
-namespace {
-
 /// Cuts the first character off `text` and adds it, escaped if it is none of a line.
 void move_character(std::string_view& text, std::string& to) {
   const std::size_t length = utf8_length(text);
@@ -39,6 +32,19 @@ void move_character(std::string_view& text, std::string& to) {
 }
 
 }  // namespace
+
+std::size_t utf8_length(std::string_view text) {
+  const unsigned first = byte_at(text, 0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte_at(text, i) & 0xC0U) != 0x80U) return 0;
+  const unsigned second = byte_at(text, 1);
+  const bool outside = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+                       (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
+  return outside ? 0 : length;
+}
 
 std::string in_quotes(std::string_view text) {
   std::string result = "'";

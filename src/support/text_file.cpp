@@ -14,8 +14,6 @@
 namespace posewright {
 namespace {
 
-unsigned byte_of(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
-
 std::string converted(const std::string& text, const std::string& encoding, const SourcePlace& place) {
   const iconv_t converter = ::iconv_open("UTF-8", encoding.c_str());
   // The library marks what it does not know with a pointer of all ones.
@@ -53,24 +51,11 @@ std::pair<std::size_t, std::size_t> declared_encoding(std::string_view text) {
 
 }  // namespace
 
-std::size_t utf8_length(std::string_view text) {
-  const unsigned first = byte_of(text, 0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte_of(text, i) & 0xC0U) != 0x80U) return 0;
-  const unsigned second = byte_of(text, 1);
-  const bool outside = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
-                       (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
-  return outside ? 0 : length;
-}
-
 void require_text(std::string_view bytes, const std::string& file) {
   SourcePlace place{file, 1};
   while (!bytes.empty()) {
     const std::size_t length = utf8_length(bytes);
-    const unsigned first = byte_of(bytes, 0);
+    const unsigned first = static_cast<unsigned char>(bytes.front());
     const bool control = first == 0x7F || (first < 0x20 && first != '\t' && first != '\n' && first != '\r');
     if (length == 0 || control)
       throw InputError(place, fmt::format("byte 0x{:02x} is no text", first), "a text file in UTF-8 is needed");

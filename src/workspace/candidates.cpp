@@ -1,5 +1,6 @@
 #include "posewright/workspace/candidates.hpp"
 
+#include <fmt/format.h>
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 
@@ -269,16 +270,13 @@ Configurations sample_configurations(const Workspace& workspace, const SamplingO
 namespace {
 
 /// A block that is not finite would turn every figure into nothing.
-void require_finite(const IdentificationModel& model, std::span<const int> selected,
-                    const Configurations& configurations, std::size_t i, const BlockArray& blocks) {
-  for (int row = 0; row < blocks.rows(); ++row)
-    for (int j = 0; j < blocks.columns(); ++j) {
-      if (std::isfinite(blocks.row(i, row)[j])) continue;
-      std::string values;
-      for (const double q : configurations[i]) values += (values.empty() ? "" : ", ") + std::to_string(q);
-      throw CannotDo("the effect of '" + model.parameters()[std::size_t(selected[std::size_t(j)])].name + "' on " +
-                     model.readings().front().name + " … is no finite number at the configuration " + values);
-    }
+[[noreturn]] void throw_not_finite(const IdentificationModel& model, std::span<const int> selected,
+                                   std::span<const double> q, const BlockArray& blocks, std::size_t i) {
+  std::size_t column = 0;
+  while (blocks.block(i).col(Eigen::Index(column)).allFinite()) ++column;
+  throw CannotDo(fmt::format("the effect of '{}' on {} … is no finite number at the configuration {}",
+                             model.parameters()[std::size_t(selected[column])].name, model.readings().front().name,
+                             fmt::join(q, ", ")));
 }
 
 }  // namespace
@@ -295,7 +293,7 @@ BlockArray build_blocks(const IdentificationModel& model, std::span<const int> s
       if (!whitened_block(model, configurations[i], {}, selected, scratch[std::size_t(worker)], blocks.row(i, 0),
                           blocks.stride()))
         throw CannotDo("configuration " + std::to_string(i) + " is out of reach");
-      else require_finite(model, selected, configurations, i, blocks);
+      else if (!blocks.block(i).allFinite()) throw_not_finite(model, selected, configurations[i], blocks, i);
   });
   return blocks;
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "checks.hpp"
-#include "limits.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/workspace.hpp"

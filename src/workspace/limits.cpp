@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numbers>
 
 #include "posewright/model/pair_names.hpp"
 #include "posewright/problem/units.hpp"
-#include "posewright/workspace/workspace.hpp"
 
 namespace posewright {
 namespace {
@@ -156,9 +154,9 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
   if (problem.workspace.controller) keep_controller_ranges(coordinates, *problem.workspace.controller);
   for (Coordinate& c : coordinates) {
     if (c.periodic || c.choice()) continue;
-    const auto unknown =
-        cell == nullptr ? std::map<std::string, double>::const_iterator() : cell->joint_margin.find(c.name);
-    if (cell != nullptr && unknown != cell->joint_margin.end()) shrink(c, unknown->second, problem.at(0));
+    if (cell != nullptr)
+      if (const auto room = cell->joint_margin.find(c.name); room != cell->joint_margin.end())
+        shrink(c, room->second, problem.at(0));
     keep_listed(c, problem.at(0));
   }
   return coordinates;

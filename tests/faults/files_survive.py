@@ -53,12 +53,8 @@ design: {poses: 12, candidates: 300, restarts: 3, method: exchange}
 LOADING = 0.5
 
 
-def words(folder, *arguments):
-    return [str(PROGRAM), *arguments]
-
-
 def run(folder, *arguments, **options):
-    return subprocess.run(words(folder, *arguments), cwd=folder, capture_output=True, text=True, **options)
+    return subprocess.run([str(PROGRAM), *arguments], cwd=folder, capture_output=True, text=True, **options)
 
 
 def content(path):
@@ -145,7 +141,7 @@ class Killed(unittest.TestCase):
                 new = versions(other, files)
             self.assertNotIn(None, new)
             for moment in self.moments(seconds):
-                process = subprocess.Popen(words(folder, *command, *extra), cwd=folder, stdout=subprocess.DEVNULL,
+                process = subprocess.Popen([str(PROGRAM), *command, *extra], cwd=folder, stdout=subprocess.DEVNULL,
                                            stderr=subprocess.DEVNULL)
                 try:
                     process.wait(moment)
@@ -191,17 +187,16 @@ class Killed(unittest.TestCase):
 
 class Interrupted(unittest.TestCase):
     def start(self, folder, *arguments, **options):
-        return subprocess.Popen(words(folder, *arguments), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        return subprocess.Popen([str(PROGRAM), *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                 **options)
 
-    def long_plan(self, folder):
-        return ["plan", "problem.yaml", "--method", "tabu", "--restarts", "100000", "--candidates", "2000", "--force",
-                "-o", "best.json", "--poses-csv", "best.csv"]
+    LONG = ["plan", "problem.yaml", "--method", "tabu", "--restarts", "100000", "--candidates", "2000", "--force",
+            "-o", "best.json", "--poses-csv", "best.csv"]
 
     def test_a_search_keeps_its_best_so_far_whatever_asks_it_to_stop(self):
         for kill in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with Folder() as folder:
-                process = self.start(folder, *self.long_plan(folder))
+                process = self.start(folder, *self.LONG)
                 time.sleep(3)
                 asked = time.monotonic()
                 process.send_signal(kill)
@@ -213,7 +208,7 @@ class Interrupted(unittest.TestCase):
 
     def test_nohup_stays_nohup(self):
         with Folder() as folder:
-            process = self.start(folder, *self.long_plan(folder), "--time-limit", "4",
+            process = self.start(folder, *self.LONG, "--time-limit", "4",
                                  preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
             time.sleep(1)
             process.send_signal(signal.SIGHUP)

@@ -13,7 +13,6 @@ import tempfile
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 SECONDS = float(sys.argv[3]) if len(sys.argv) > 3 else 2
-GOLDEN, EXAMPLES = SOURCE / "tests/outputs/golden", SOURCE / "examples"
 
 STL = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\nendsolid\n"
 BINARY = b" " * 80 + (1).to_bytes(4, "little") + bytes(50)

@@ -5,6 +5,10 @@
 
 namespace posewright {
 
+/// Bytes of the UTF-8 sequence at the front of `text`, which is not empty; 0 if it is malformed (RFC 3629: no overlong
+/// form, no surrogate, at most U+10FFFF).
+std::size_t utf8_length(std::string_view text);
+
 /// Text for a message: in single quotes, control characters escaped and long text cut, so that a message keeps to
 /// one short line whatever the file holds.
 std::string in_quotes(std::string_view text);

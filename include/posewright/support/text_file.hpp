@@ -7,10 +7,6 @@
 
 namespace posewright {
 
-/// Bytes of the UTF-8 sequence at the front of `text`; 0 if it is malformed (RFC 3629: no overlong form, no surrogate,
-/// at most U+10FFFF).
-std::size_t utf8_length(std::string_view text);
-
 /// Throws InputError with the line of the first byte that cannot be part of a text file in UTF-8.
 void require_text(std::string_view bytes, const std::string& file);
 

@@ -47,8 +47,7 @@ class Workspace {
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be
-  /// proposed at most, or an
-  /// actuator within `actuator_share` of its stroke from an end.
+  /// proposed at most, or an actuator within `actuator_share` of its stroke from an end.
   bool on_boundary(std::span<const double> q, double actuator_share = 0.01) const;
   /// Share of the coordinates that sit there.
   double share_of_coordinates_on_limits(std::span<const double> q) const;
@@ -58,6 +57,10 @@ class Workspace {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// The robot's coordinates with the problem file's limits applied, the margin not. Throws InputError, see Workspace.
+/// @param cell  where a robot that is not calibrated yet keeps more room; null: it does not
+std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const Problem& problem,
+                                        const Cell* cell = nullptr);
 /// The problem's coupled limits, and those that its controller's settings make of a coupling: lower ≤ J3 − f·J2 ≤
 /// upper.
 std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const Problem& problem);

@@ -38,6 +38,18 @@ class Solids {
   std::map<Key, std::shared_ptr<const Solid>> solids_;
 };
 
+/// A rod or a finger that moves with the arm cannot be checked where it hangs at zero.
+void refuse_moving_branches(const Problem& problem) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return;
+  for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line)))
+    if (!link.follower.empty())
+      throw InputError({arm->urdf.string(), link.line},
+                       "link '" + link.name + "' is moved by joint '" + link.follower +
+                           "', which follows the chain from a branch; such shapes are not checked for collision yet",
+                       "remove its <collision>, or choose a tip whose chain has the joint");
+}
+
 }  // namespace
 
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip) {
@@ -61,6 +73,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
 }
 
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames) {
+  refuse_moving_branches(problem);
   Solids solids(problem, problem.workspace.collision->hulls);
   std::vector<Body> bodies;
   for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip()))

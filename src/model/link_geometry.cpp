@@ -1,6 +1,7 @@
 #include "posewright/model/link_geometry.hpp"
 
 #include <map>
+#include <set>
 
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
@@ -24,14 +25,15 @@ class LinkCollector {
     for (urdf::LinkConstSharedPtr link = urdf_.model().getLink(urdf_.base()); link->parent_joint != nullptr;
          link = urdf_.model().getLink(link->parent_joint->parent_link_name))
       X_RootBase = isometry(link->parent_joint->parent_to_joint_origin_transform) * X_RootBase;
-    collect(*urdf_.model().getRoot(), 0, isometry(arm.placement) * X_RootBase.inverse(), "");
+    collect(*urdf_.model().getRoot(), 0, isometry(arm.placement) * X_RootBase.inverse(), "", "");
   }
 
   std::vector<LinkGeometry> take() { return std::move(links_); }
 
  private:
-  void collect(const urdf::Link& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent) {
-    LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line};
+  void collect(const urdf::Link& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent,
+               const std::string& follower) {
+    LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line, follower};
     for (const auto& collision : link.collision_array)
       if (collision != nullptr && collision->geometry != nullptr)
         geometry.shapes.push_back({shape_of(*collision->geometry), X_FrameLink * isometry(collision->origin)});
@@ -42,8 +44,19 @@ class LinkCollector {
       const Eigen::Isometry3d X_FrameJoint = X_FrameLink * isometry(joint->parent_to_joint_origin_transform);
       // The frame of a moving joint of the chain is its own; all others hang on the frame before.
       collect(*urdf_.model().getLink(joint->child_link_name), moved == frame_after_.end() ? frame : moved->second,
-              moved == frame_after_.end() ? X_FrameJoint : Eigen::Isometry3d::Identity(), seen ? link.name : parent);
+              moved == frame_after_.end() ? X_FrameJoint : Eigen::Isometry3d::Identity(), seen ? link.name : parent,
+              moved == frame_after_.end() && follows_chain(*joint) ? joint->name : follower);
     }
+  }
+
+  bool follows_chain(const urdf::Joint& joint) const {
+    std::set<std::string> seen;
+    urdf::JointConstSharedPtr at = urdf_.model().getJoint(joint.name);
+    while (at != nullptr && at->mimic != nullptr && seen.insert(at->name).second) {
+      if (frame_after_.count(at->mimic->joint_name) > 0) return true;
+      at = urdf_.model().getJoint(at->mimic->joint_name);
+    }
+    return false;
   }
 
   ShapeSpec shape_of(const urdf::Geometry& geometry) const {

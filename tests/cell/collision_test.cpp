@@ -275,5 +275,26 @@ TEST(BadCells, AUrdfShapeWithABadNumberIsNamedWithItsLine) {
   }
 }
 
+TEST(BadCells, ShapesThatFollowTheChainFromABranchAreRefusedAndFingersStandAtZero) {
+  const auto refusal = [](const std::string& mimic) {
+    CellFiles s;
+    std::string urdf = planar;
+    urdf.insert(urdf.find("</robot>"),
+                "<link name=\"rod\"><collision><geometry><sphere radius=\"0.01\"/></geometry></collision></link>"
+                "<joint name=\"rod_joint\" type=\"revolute\"><parent link=\"upper\"/><child link=\"rod\"/>"
+                "<axis xyz=\"0 0 1\"/><limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"9\"/>" +
+                    mimic + "</joint>\n");
+    s.folder.write("arm.urdf", urdf);
+    try {
+      make_cell(read_problem(s.folder.write("p.yaml", planar_problem("  collision: {self: true}\n"))));
+      return std::string("accepted");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_THAT(refusal("<mimic joint=\"j2\"/>"), HasSubstr("'rod' is moved by joint 'rod_joint'"));
+  EXPECT_EQ(refusal(""), "accepted");
+}
+
 }  // namespace
 }  // namespace posewright

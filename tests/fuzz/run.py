@@ -1,7 +1,7 @@
-"""Fuzzes every reader of files: run.py PROGRAM SOURCE [SECONDS [TARGET...]].
+"""Fuzzes every reader of files: run.py PROGRAM SOURCE [SECONDS|INPUTSx [TARGET...]].
 
-PROGRAM is the fuzzer of a build with sanitizers. Each target gets SECONDS (2) and begins with files of the examples, the golden
-files, and what once went wrong (tests/fuzz/past/TARGET). Exit status 1 if anything goes wrong; the input is left in crash-*."""
+PROGRAM is the fuzzer of a build with sanitizers. Each target gets SECONDS (2) or, written 1000000x, that many inputs, and begins
+with files of the examples, the golden files, and what once went wrong (tests/fuzz/past/TARGET). Exit status 1 if anything goes wrong; the input is left in crash-*."""
 
 import os
 import pathlib
@@ -12,7 +12,8 @@ import sys
 import tempfile
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-SECONDS = float(sys.argv[3]) if len(sys.argv) > 3 else 2
+LONG = sys.argv[3] if len(sys.argv) > 3 else "2"
+COUNTED = LONG.endswith("x")
 
 STL = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\nendsolid\n"
 BINARY = b" " * 80 + (1).to_bytes(4, "little") + bytes(50)
@@ -61,8 +62,9 @@ def fuzz(target, folder):
         (corpus / f"seed-{k}").write_bytes(seed)
     for path in (SOURCE / "tests/fuzz/past" / target).glob("*"):
         shutil.copy(path, corpus)
-    seed = 1 if SECONDS <= 10 else 0
-    command = [PROGRAM, f"-max_total_time={SECONDS:g}", "-rss_limit_mb=3000", "-timeout=20", "-max_len=20000", f"-seed={seed}",
+    seed = 0 if COUNTED or float(LONG) > 10 else 1  # a short run is the same each time
+    length = f"-runs={int(LONG[:-1])}" if COUNTED else f"-max_total_time={LONG}"
+    command = [PROGRAM, length, "-rss_limit_mb=3000", "-timeout=20", "-max_len=20000", f"-seed={seed}",
                "-print_final_stats=1", "-detect_leaks=1", corpus]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace", cwd=os.getcwd(),
                           env=os.environ | {"POSEWRIGHT_FUZZ_TARGET": target, "ASAN_OPTIONS": "allocator_may_return_null=1"})

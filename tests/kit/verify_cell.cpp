@@ -36,6 +36,24 @@ std::vector<Eigen::Vector3d> stl_corners(const std::filesystem::path& file) {
   return corners;
 }
 
+/// Two triangles a side.
+std::vector<Eigen::Vector3d> box_corners(const Eigen::Vector3d& half) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto corner = [&](double u, double v) {
+        Eigen::Vector3d c;
+        c[axis] = side;
+        c[(axis + 1) % 3] = u;
+        c[(axis + 2) % 3] = v;
+        return Eigen::Vector3d(c.cwiseProduct(half));
+      };
+      corners.insert(corners.end(), {corner(-1, -1), corner(1, -1), corner(1, 1)});
+      corners.insert(corners.end(), {corner(-1, -1), corner(1, 1), corner(-1, 1)});
+    }
+  return corners;
+}
+
 Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   X.linear() =
@@ -79,12 +97,20 @@ struct CellVerifier::Implementation {
            moving(*model->getLink(link.parent_joint->parent_link_name));
   }
 
-  bool adjacent(const Link& a, const Link& b) const {
+  /// The link that moves it: joints without a value stand.
+  std::string carrier(const std::string& name, const std::map<std::string, double>& joints) const {
+    urdf::LinkConstSharedPtr link = model->getLink(name);
+    while (link->parent_joint != nullptr && joints.count(link->parent_joint->name) == 0)
+      link = model->getLink(link->parent_joint->parent_link_name);
+    return link->name;
+  }
+
+  bool adjacent(const Link& a, const Link& b, const std::map<std::string, double>& joints) const {
     for (const auto& [child, parent] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
       const auto link = model->getLink(child->name);
       if (link->parent_joint != nullptr && link->parent_joint->parent_link_name == parent->name) return true;
     }
-    return false;
+    return carrier(a.name, joints) == carrier(b.name, joints);
   }
 };
 
@@ -93,11 +119,14 @@ CellVerifier::CellVerifier(const std::filesystem::path& urdf, const std::filesys
   implementation_->model = urdf::parseURDF(bytes_of(urdf));
   for (const auto& [name, link] : implementation_->model->links_) {
     if (link->collision == nullptr) continue;
-    const auto& mesh = dynamic_cast<const urdf::Mesh&>(*link->collision->geometry);
-    Implementation::Link entry{name, std::make_shared<Mesh>(),
-                               stl_corners(package_root / mesh.filename.substr(std::strlen("package://"))),
-                               pose_of(link->collision->origin)};
-    for (auto& c : entry.corners) c = c.cwiseProduct(Eigen::Vector3d(mesh.scale.x, mesh.scale.y, mesh.scale.z));
+    Implementation::Link entry{name, std::make_shared<Mesh>(), {}, pose_of(link->collision->origin)};
+    if (const auto* box = dynamic_cast<const urdf::Box*>(link->collision->geometry.get())) {
+      entry.corners = box_corners(0.5 * Eigen::Vector3d(box->dim.x, box->dim.y, box->dim.z));
+    } else {
+      const auto& mesh = dynamic_cast<const urdf::Mesh&>(*link->collision->geometry);
+      entry.corners = stl_corners(package_root / mesh.filename.substr(std::strlen("package://")));
+      for (auto& c : entry.corners) c = c.cwiseProduct(Eigen::Vector3d(mesh.scale.x, mesh.scale.y, mesh.scale.z));
+    }
     entry.mesh->beginModel();
     for (std::size_t i = 0; i < entry.corners.size(); i += 3)
       entry.mesh->addTriangle(entry.corners[i], entry.corners[i + 1], entry.corners[i + 2]);
@@ -146,7 +175,7 @@ std::string CellVerifier::violation(const std::map<std::string, double>& joints,
     }
     for (std::size_t j = 0; j < i; ++j) {
       const std::string one = own.links[i].name, other = own.links[j].name;
-      if (own.adjacent(own.links[i], own.links[j]) || own.skipped.count(one + " and " + other) > 0 ||
+      if (own.adjacent(own.links[i], own.links[j], joints) || own.skipped.count(one + " and " + other) > 0 ||
           own.skipped.count(other + " and " + one) > 0)
         continue;
       fcl::CollisionRequestd request;

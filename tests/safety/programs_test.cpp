@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <urdf_parser/urdf_parser.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <utility>
@@ -95,8 +97,32 @@ Moves wanted(const Route& route) {
 struct Arm {
   const char *name, *urdf, *base, *tip;
   double scale;  ///< m, of its reach
+  const char *home = "{}", *limits = "{}";
 };
 void PrintTo(const Arm& arm, std::ostream* out) { *out << arm.name; }
+
+/// States that are asked of in each arm's motions; POSEWRIGHT_SCAN sets it.
+long states_asked() {
+  const char* const given = std::getenv("POSEWRIGHT_SCAN");
+  return given != nullptr ? std::atol(given) : 4000;
+}
+
+/// Asks other code of a motion, a millimetre of the arm's farthest point at a time; returns the states asked of: all
+/// or, of a longer way, so many in its middle.
+long scan(const CellVerifier& judge, const std::vector<std::string>& names, const std::vector<double>& a,
+          const std::vector<double>& b, double scale, double clearance) {
+  double way = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) way += (i < 3 ? 1.5 : 0.5) * scale * std::abs(b[i] - a[i]);
+  const long count = std::max(1L, long(way / 1e-3)), asked = std::min(count + 1, states_asked());
+  for (long step = (count + 1 - asked) / 2, end = step + asked; step < end; ++step) {
+    std::map<std::string, double> joints;
+    for (std::size_t i = 0; i < a.size(); ++i) joints[names[i]] = a[i] + double(step) / double(count) * (b[i] - a[i]);
+    const std::string violation = judge.violation(joints, clearance);
+    EXPECT_EQ(violation, "") << "after " << step << " of " << count;
+    if (!violation.empty()) break;
+  }
+  return asked;
+}
 
 class ProgramsOfRealArms : public testing::TestWithParam<Arm> {
  protected:
@@ -107,14 +133,16 @@ class ProgramsOfRealArms : public testing::TestWithParam<Arm> {
     const double s = GetParam().scale;
     return read_problem(folder.write(
         "p.yaml",
-        fmt::format("posewright: 1\nrobot: {{urdf: \"{}\", base: {}, tip: {}}}\n"
-                    "measurement: {{type: pose, device: {{type: isotropic, noise: {{position: 0.1 mm, rotation: "
-                    "0.2 mrad}}}}}}\nvariants: {{all: {{parameters: auto}}}}\n"
-                    "workspace: {{collision: {{clearance: 0.02, obstacles: [{{name: table, box: [{}, {}, 0.1], "
-                    "at: [{}, 0, -0.1]}}, {{name: post, box: [{}, {}, {}], at: [{}, {}, {}]}}]}}}}\n"
-                    "design: {{poses: 9, candidates: 60, restarts: 1, method: greedy}}\n",
-                    urdf().string(), GetParam().base, GetParam().tip, 1.2 * s, 1.6 * s, 0.2 * s, 0.3 * s, 0.3 * s, s,
-                    0.6 * s, 0.7 * s, 0.4 * s)));
+        fmt::format(
+            "posewright: 1\nrobot: {{urdf: \"{}\", base: {}, tip: {}}}\n"
+            "measurement: {{type: pose, device: {{type: isotropic, noise: {{position: 0.1 mm, rotation: "
+            "0.2 mrad}}}}}}\nvariants: {{all: {{parameters: auto}}}}\n"
+            "workspace: {{joints: {{limits: {}}}, collision: {{clearance: 0.02, obstacles: [{{name: table, box: [{}, "
+            "{}, 0.1], "
+            "at: [{}, 0, -0.1]}}, {{name: post, box: [{}, {}, {}], at: [{}, {}, {}]}}]}}, motion: {{home: {}}}}}\n"
+            "design: {{poses: 9, candidates: 60, restarts: 1, method: greedy}}\n",
+            urdf().string(), GetParam().base, GetParam().tip, GetParam().limits, 1.2 * s, 1.6 * s, 0.2 * s, 0.3 * s,
+            0.3 * s, s, 0.6 * s, 0.7 * s, 0.4 * s, GetParam().home)));
   }
 
   CellVerifier verifier(const Plan& plan) const {
@@ -165,29 +193,146 @@ TEST_P(ProgramsOfRealArms, DoWhatTheRouteDoesAndNothingComesNearOnTheWay) {
   const Moves moves = moves_of(controllers.front(), export_poses(find_pose_format("kuka-krl"), sequence, words));
   const CellVerifier judge = verifier(plan);
   long states = 0;
-  for (std::size_t k = 1; k < std::min<std::size_t>(moves.size(), 5); ++k) {
-    const std::vector<double> a = joints_of(controllers.front(), moves[k - 1]);
-    const std::vector<double> b = joints_of(controllers.front(), moves[k]);
-    double way = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) way += (i < 3 ? 1.5 : 0.5) * GetParam().scale * std::abs(b[i] - a[i]);
-    const long count = std::max(1L, long(way / 1e-3));
-    for (long step = 0; step <= count; ++step, ++states) {
-      std::map<std::string, double> joints;
-      for (std::size_t i = 0; i < a.size(); ++i)
-        joints[route.names[i]] = a[i] + double(step) / double(count) * (b[i] - a[i]);
-      ASSERT_EQ(judge.violation(joints, 0.02), "") << "move " << k;
-    }
-  }
+  for (std::size_t k = 1; k < moves.size() && states < states_asked(); ++k)
+    states += scan(judge, route.names, joints_of(controllers.front(), moves[k - 1]),
+                   joints_of(controllers.front(), moves[k]), GetParam().scale, 0.02);
   EXPECT_GT(states, 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, ProgramsOfRealArms,
-    testing::Values(Arm{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "base_link", "tool0", 0.6},
-                    Arm{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "base_link", "tool0", 1.0},
-                    Arm{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "base_link", "tool0",
-                        1.4}),
+    testing::Values(
+        Arm{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "base_link", "tool0", 0.6},
+        Arm{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "base_link", "tool0", 1.0},
+        Arm{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "base_link", "tool0", 1.4},
+        Arm{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf", "base_link", "tool0", 2.7},
+        Arm{"ur10", "example-robot-data/robots/ur_description/urdf/ur10_robot.urdf", "base_link", "tool0", 1.3,
+            "{shoulder_lift_joint: -90 deg}",
+            "{shoulder_pan_joint: [-180 deg, 180 deg], shoulder_lift_joint: [-180 deg, 0 deg], elbow_joint: [-150 deg, 150 deg], wrist_1_joint: [-180 "
+            "deg, 180 deg], wrist_2_joint: [-180 deg, 180 deg], wrist_3_joint: [-180 deg, 180 deg]}"}),
     [](const auto& instance) { return std::string(instance.param.name); });
+
+class TrajectoriesOfRealArms : public ProgramsOfRealArms {};
+
+/// Positions and times of a trajectory file.
+std::pair<Moves, std::vector<double>> points_of(const Exported& exported) {
+  std::pair<Moves, std::vector<double>> points;
+  for (const auto& point : YAML::Load(exported.files.front().bytes)["points"]) {
+    points.first.push_back(point["positions"].as<std::vector<double>>());
+    points.second.push_back(point["time_from_start"]["sec"].as<double>() +
+                            1e-9 * point["time_from_start"]["nanosec"].as<double>());
+  }
+  return points;
+}
+
+TEST_P(TrajectoriesOfRealArms, OfSevenAxesKeepSoftLimitsSpeedsAndTheCell) {
+  if (!fs::exists(robots_)) GTEST_SKIP() << "the folder of shared robots is absent";
+  const TemporaryFolder folder;
+  const Problem problem = this->problem(folder);
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  RouteOptions options;
+  options.from_home = true;
+  const Route route =
+      route_problem(problem, poses_in_file(folder.write("plan.json", plan_json(plan))), options, Monitor{});
+  const PoseSequence sequence = checked_sequence(problem, parse_sequence(route_json(route), "route.json"));
+  const auto [points, times] = points_of(export_poses(find_pose_format("joint-trajectory"), sequence, {}));
+  const Moves planned = wanted(route);
+  // Between stops a trajectory has points of its own: those of the route come in their order.
+  std::size_t next = 0;
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDFFile(urdf().string());
+  const CellVerifier judge = verifier(plan);
+  long states = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (next < planned.size() &&
+        testing::Matches(testing::Pointwise(testing::DoubleNear(1e-6), planned[next]))(points[k]))
+      ++next;
+    for (std::size_t i = 0; i < route.names.size(); ++i) {
+      const urdf::Joint& joint = *model->getJoint(route.names[i]);
+      EXPECT_GE(points[k][i], std::max(joint.limits->lower, joint.safety->soft_lower_limit)) << joint.name;
+      EXPECT_LE(points[k][i], std::min(joint.limits->upper, joint.safety->soft_upper_limit)) << joint.name;
+      if (k == 0) continue;
+      EXPECT_GT(times[k], times[k - 1]);
+      EXPECT_LE(std::abs(points[k][i] - points[k - 1][i]) / (times[k] - times[k - 1]), joint.limits->velocity * 1.0001);
+    }
+    if (k > 0 && states < states_asked())
+      states += scan(judge, route.names, points[k - 1], points[k], GetParam().scale, 0.02);
+  }
+  EXPECT_EQ(next, planned.size());
+  EXPECT_GT(states, 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TrajectoriesOfRealArms,
+                         testing::Values(Arm{"franka_panda", "moveit_resources_panda_description/urdf/panda.urdf",
+                                             "panda_link0", "panda_link8", 0.9,
+                                             "{panda_joint4: -90 deg, panda_joint6: 90 deg}"}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+/// Dimensions of an ABB IRB 2400 (ROS-Industrial's irb2400_macro.xacro at 04df6ec), links as boxes. Axis 3 as a serial
+/// joint: its own limits are wide, the controller's are those of the lower arm's parallelogram.
+const char* const parallelogram = R"(<robot name="irb2400"><link name="base"/>
+<link name="l1"><collision><origin xyz="0 0 -0.3"/><geometry><box size="0.3 0.3 0.5"/></geometry></collision></link>
+<link name="l2"><collision><origin xyz="0 0 0.35"/><geometry><box size="0.15 0.12 0.55"/></geometry></collision></link>
+<link name="l3"><collision><origin xyz="0.25 0 0.135"/><geometry><box size="0.6 0.12 0.12"/></geometry></collision></link>
+<link name="l4"/><link name="l5"/>
+<link name="l6"><collision><origin xyz="0.04 0 0"/><geometry><box size="0.04 0.08 0.08"/></geometry></collision></link>
+<joint name="j1" type="revolute"><parent link="base"/><child link="l1"/><origin xyz="0 0 0.615"/><axis xyz="0 0 1"/>
+<limit lower="-3.1416" upper="3.1416" velocity="2.6" effort="1"/></joint>
+<joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="0.1 0 0"/><axis xyz="0 1 0"/>
+<limit lower="-1.7453" upper="1.9199" velocity="2.6" effort="1"/></joint>
+<joint name="j3" type="revolute"><parent link="l2"/><child link="l3"/><origin xyz="0 0 0.705"/><axis xyz="0 1 0"/>
+<limit lower="-2.6" upper="1.7" velocity="2.6" effort="1"/></joint>
+<joint name="j4" type="revolute"><parent link="l3"/><child link="l4"/><origin xyz="0.258 0 0.135"/><axis xyz="1 0 0"/>
+<limit lower="-3.49" upper="3.49" velocity="6.2" effort="1"/></joint>
+<joint name="j5" type="revolute"><parent link="l4"/><child link="l5"/><origin xyz="0.497 0 0"/><axis xyz="0 1 0"/>
+<limit lower="-2.09" upper="2.09" velocity="6.2" effort="1"/></joint>
+<joint name="j6" type="revolute"><parent link="l5"/><child link="l6"/><origin xyz="0.085 0 0"/><axis xyz="1 0 0"/>
+<limit lower="-6.98" upper="6.98" velocity="7.8" effort="1"/></joint></robot>)";
+
+TEST(Programs, OfAParallelogramKeepTheControllersRangesAndTheCellOnEveryWay) {
+  const TemporaryFolder folder;
+  const fs::path arm = folder.write("arm.urdf", parallelogram);
+  const fs::path settings = fs::path(POSEWRIGHT_SOURCE_DIR) / "controllers/abb_irb2400.yaml";
+  const Problem problem = read_problem(folder.write(
+      "p.yaml", fmt::format("posewright: 1\nrobot: {{urdf: arm.urdf, tip: l6}}\n"
+                            "measurement: {{type: position, target: [0.1, 0, 0.05], device: {{type: isotropic, noise: "
+                            "0.1 mm}}}}\nvariants: {{all: {{parameters: auto}}}}\n"
+                            "workspace: {{joints: {{controller: \"{}\"}}, collision: {{clearance: 0.02, obstacles: ["
+                            "{{name: post, box: [0.3, 0.3, 1.6], at: [0.7, 0.9, 0.8]}}, {{name: table, box: [2, 2, "
+                            "0.1], at: [0, 0, -0.1]}}]}}}}\n"
+                            "design: {{poses: 14, candidates: 100, restarts: 1, method: greedy}}\n",
+                            settings.string())));
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  RouteOptions options;
+  options.from_home = true;
+  const Route route =
+      route_problem(problem, poses_in_file(folder.write("plan.json", plan_json(plan))), options, Monitor{});
+  const PoseSequence sequence = checked_sequence(problem, parse_sequence(route_json(route), "route.json"));
+  ExportOptions words;
+  words.controller = parse_controller_settings(
+      "coupling: -1\nrange_deg: [[-180, 180], [-100, 110], [-60, 65], [-200, 200], [-120, 120], [-400, 400]]\n", "c");
+  words.coupling = -1;
+  const Moves moves =
+      readers::read_rapid(export_poses(find_pose_format("abb-rapid"), sequence, words).files[0].bytes).moves;
+  ASSERT_EQ(moves.size(), wanted(route).size());
+  const double range[6][2] = {{-180, 180}, {-100, 110}, {-60, 65}, {-200, 200}, {-120, 120}, {-400, 400}};
+  CellVerifier judge(arm, folder.path());
+  judge.skip(plan.statistics.cell.always_touching);
+  judge.add(CellVerifier::Box{{0.3, 0.3, 1.6}, {0.7, 0.9, 0.8}});
+  judge.add(CellVerifier::Box{{2, 2, 0.1}, {0, 0, -0.1}});
+  const Controller abb{"abb-rapid", -1, std::vector<double>(6, 1), std::vector<double>(6, 0), 2e-6};
+  double beyond_serial = 0;
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_GE(moves[k][i], range[i][0]) << "axis " << i + 1 << " at move " << k;
+      EXPECT_LE(moves[k][i], range[i][1]) << "axis " << i + 1 << " at move " << k;
+    }
+    const std::vector<double> q = joints_of(abb, moves[k]);
+    beyond_serial = std::max(beyond_serial, std::abs(q[2]) / degree);
+    if (k > 0) scan(judge, route.names, joints_of(abb, moves[k - 1]), q, 1.5, 0.02);
+  }
+  // The ranges are those of the controller's axis, not of the joint.
+  EXPECT_GT(beyond_serial, 65);
+}
 
 /// Seven joints: a rail and six axes.
 const char* const on_a_rail =

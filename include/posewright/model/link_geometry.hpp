@@ -18,10 +18,12 @@ struct LinkGeometry {
   std::string parent;  ///< nearest link above it that has a shape; empty: none
   int frame = 0;       ///< 0: the measurement frame, k: frame of the chain's k-th joint after its motion
   std::vector<LinkShape> shapes;
-  int line = 0;  ///< of <link> in the URDF
+  int line = 0;          ///< of <link> in the URDF
+  std::string follower;  ///< joint beside the chain that moves the link with one of the chain's joints; empty: none
 };
 
-/// All links with a <collision> shape, also those before the base and on branches, which hang at zero position.
+/// All links with a <collision> shape, also those before the base and on branches, which hang at zero position
+/// (those of a follower move in truth: `follower` names it).
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 

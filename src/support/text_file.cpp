@@ -58,7 +58,7 @@ void require_text(std::string_view bytes, const std::string& file) {
     const unsigned first = static_cast<unsigned char>(bytes.front());
     const bool control = first == 0x7F || (first < 0x20 && first != '\t' && first != '\n' && first != '\r');
     if (length == 0 || control)
-      throw InputError(place, fmt::format("byte 0x{:02x} is no text", first), "a text file in UTF-8 is needed");
+      throw InputError(place, fmt::format("byte 0x{:02x} is not text", first), "a text file in UTF-8 is needed");
     if (first == '\n') ++place.line;
     bytes.remove_prefix(length);
   }
@@ -82,9 +82,15 @@ std::string read_xml_text(const std::filesystem::path& file, std::uintmax_t limi
   std::string name = text.substr(at, length);
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
   if (name != "UTF-8") {
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return c < 0x80 && (std::isalnum(c) || c == '-' || c == '_' || c == '.');
+    });
+    if (!plain) throw InputError(place, "declares an unknown encoding: " + in_quotes(name), "save it as UTF-8");
     // UTF-16 is known by its mark and converted already.
     if (name != "UTF-16") text = converted(text, name, place);
-    text.replace(at, length, "UTF-8");
+    // Converted text is longer or shorter.
+    const auto [now_at, now_length] = declared_encoding(text);
+    text.replace(now_at, now_length, now_length > 0 ? "UTF-8" : "");
   }
   require_text(text, file.string());
   return text;

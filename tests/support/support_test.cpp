@@ -10,6 +10,7 @@
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/support/sha256.hpp"
+#include "posewright/support/text_file.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -77,6 +78,20 @@ TEST(Random, StreamsDifferAndRepeat) {
   double mean = 0;
   for (int i = 0; i < 10000; ++i) mean += a.uniform() / 10000;
   EXPECT_NEAR(mean, 0.5, 0.02);
+}
+
+TEST(XmlText, IsConvertedFromWhatItDeclaresWhereverTheDeclarationIsThen) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& bytes) {
+    write_file_atomically(folder / "a.xml", bytes);
+    return read_xml_text(folder / "a.xml", 1000);
+  };
+  EXPECT_EQ(read("<?xml version=\"1.0\" encoding='ISO-8859-1'?><a n=\"\xe4\"/>"),
+            "<?xml version=\"1.0\" encoding='UTF-8'?><a n=\"\xc3\xa4\"/>");
+  // Letters before the name become longer.
+  EXPECT_EQ(read("<?xml \xe4\xe4 encoding='ISO-8859-1'?><a/>"), "<?xml \xc3\xa4\xc3\xa4 encoding='UTF-8'?><a/>");
+  EXPECT_THROW(read(std::string("<?xml encoding='UTF-16\0\0'?>", 27)), InputError);
+  EXPECT_THROW(read("<?xml encoding='ascii//IGNORE'?>"), InputError);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/random.hpp"
-#include "posewright/workspace/workspace.hpp"
 
 /// Full checks of a pose (limits, self-collision, obstacles, lines of sight) of the example cell, or of the problem
 /// file named in POSEWRIGHT_CELL. One thread. Configurations are uniform over the limits, so most of them collide
@@ -14,10 +14,11 @@ namespace {
 
 using namespace posewright;
 
-Site site() {
+Variant site() {
   const char* given = std::getenv("POSEWRIGHT_CELL");
-  const Problem problem = read_problem(given != nullptr ? given : POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml");
-  return make_site(problem, problem.variants.front(), make_cell(problem));
+  static const Problem problem =
+      read_problem(given != nullptr ? given : POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml");
+  return place_variant(problem, problem.variants.front(), make_cell(problem));
 }
 
 std::vector<std::vector<double>> configurations(const Workspace& workspace, bool feasible, std::size_t count) {
@@ -34,7 +35,7 @@ std::vector<std::vector<double>> configurations(const Workspace& workspace, bool
 }
 
 void check_poses(benchmark::State& state, bool feasible) {
-  const Site s = site();
+  const Variant s = site();
   const auto list = configurations(*s.workspace, feasible, 1000);
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(s.workspace->violation(list[i++ % list.size()]));
@@ -42,7 +43,7 @@ void check_poses(benchmark::State& state, bool feasible) {
 }
 
 void check_motions(benchmark::State& state) {
-  const Site s = site();
+  const Variant s = site();
   const auto list = configurations(*s.workspace, true, 200);
   std::size_t i = 0;
   for (auto _ : state) {

@@ -27,7 +27,7 @@ class Tree {
   Tree(const DesignTask& task, const Monitor& monitor, Design& best)
       : task_(task), function_(task.criterion->function()), monitor_(monitor), best_(best) {}
 
-  /// True where the best design is proved.
+  /// True if the best design is proved.
   bool run() {
     const std::size_t n = task_.candidates.blocks->count();
     std::vector<Node> open{{std::vector<int>(n, 0), std::vector<int>(n, task_.candidates.max_repeats)}};

@@ -8,7 +8,7 @@ namespace posewright {
 /// node fixes how often some candidates are chosen at least and at most; its bound is the approximate optimum of the
 /// rest with what is fixed as prior. Sensitivities also fix candidates that cannot be in, or cannot be missing from,
 /// anything better than the best design known, which `exchange` finds first. Criteria without a bound are enumerated;
-/// throws CannotDo where that would be more than a few million sets. Ends early when the monitor says so; `optimal`
+/// throws CannotDo if that would be more than a few million sets. Ends early when the monitor says so; `optimal`
 /// tells.
 class BranchAndBoundPlanner : public Planner {
  public:

@@ -22,7 +22,7 @@ void write_to(Design& design, const PoseSet& poses, std::size_t candidates);
 /// than it got, keeps poses apart where they may not repeat. Returns the number of moves accepted.
 long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor);
 
-/// The best design of `exchange`, improved. Throws CannotDo where the task has no configurations.
+/// The best design of `exchange`, improved. Throws CannotDo if the task has no configurations.
 class ContinuousPlanner : public Planner {
  public:
   std::string name() const override { return "continuous"; }

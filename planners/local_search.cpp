@@ -43,7 +43,7 @@ long settle(DesignState& state, const Monitor& monitor) {
     do {
       now = exchange_pass(state, order);
       accepted += now;
-      // Gains of a singular set are those of M plus a ridge; where no set is regular they may go round for ever.
+      // Gains of a singular set are those of M plus a ridge; if no set is regular they may go round for ever.
       if (!std::isfinite(state.value()) && ++singular >= most_singular_passes) break;
     } while (now > 0 && !monitor.should_stop());
     state.refresh();

@@ -31,7 +31,7 @@ void kick(DesignState& state, int candidates, Random& random);
 /// Puts the state back to `members` (as a multiset): what is missing takes the place of what is too much.
 void restore(DesignState& state, const std::vector<int>& members);
 
-/// Adds the best candidate until the design has `poses` members. Throws CannotDo where no candidate may enter.
+/// Adds the best candidate until the design has `poses` members. Throws CannotDo if no candidate may enter.
 void fill_greedily(DesignState& state, int poses);
 
 }  // namespace posewright

@@ -11,7 +11,7 @@ namespace posewright {
 /// part of a large candidate set; a search that ends with passes over all candidates loses nothing by it.
 class ReducedTask {
  public:
-  /// Keeps the full task where there is no approximate optimum or little to save.
+  /// Keeps the full task if there is no approximate optimum or little to save.
   /// @param also  candidates to keep whatever their sensitivity
   explicit ReducedTask(const DesignTask& task, const std::vector<int>& also = {});
   ReducedTask(const ReducedTask&) = delete;

@@ -16,7 +16,7 @@ struct PlannerEntry {
 };
 
 const std::vector<PlannerEntry>& planner_registry();
-/// nullptr where no planner has that name.
+/// nullptr if no planner has that name.
 std::unique_ptr<Planner> make_planner(const std::string& name);
 /// "exchange, …": for messages that say what is allowed.
 std::string planner_names();

@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// The N candidates with the largest N·w, the multiplicity N·w rounded down first where repeats are allowed.
+/// The N candidates with the largest N·w, the multiplicity N·w rounded down first if repeats are allowed.
 std::vector<int> rounded_start(const DesignTask& task);
 /// N draws from the optimal weights without exceeding the repeat policy; filled up uniformly where the support is
 /// small.

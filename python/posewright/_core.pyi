@@ -179,6 +179,7 @@ class Problem:
         base: Optional[_Path] = None,
         *,
         packages: dict[str, Any] = ...,
+        parameters: Optional[_Path] = None,
     ) -> None: ...
     @staticmethod
     def from_text(
@@ -416,6 +417,8 @@ def plan(
     prior: Optional[str] = None,
     reserve: bool = False,
     measured: Optional[_Poses] = None,
+    truth: str = "",
+    candidates_from: Optional[_Poses] = None,
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -495,3 +498,133 @@ def log_det(
     nuisance: Optional[int] = None,
     rows: Optional[int] = None,
 ) -> float: ...
+
+class Calibration:
+    @property
+    def variant(self) -> str: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def useful(self) -> bool: ...
+    @property
+    def values(self) -> dict[str, float]: ...
+    @property
+    def sigma(self) -> dict[str, float]: ...
+    @property
+    def columns(self) -> list[str]: ...
+    @property
+    def covariance(self) -> _Floats: ...
+    @property
+    def noise_factor(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def parameters_file(self) -> str: ...
+    def save(self, path: _Path, *, overwrite: bool = False, force: bool = False) -> None: ...
+
+class Simulation:
+    @property
+    def confirmed(self) -> bool: ...
+    @property
+    def verdict(self) -> list[str]: ...
+    @property
+    def first_readings(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+class Comparison:
+    @property
+    def notes(self) -> list[str]: ...
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+class Stations:
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __len__(self) -> int: ...
+
+class Report:
+    @property
+    def notes(self) -> list[str]: ...
+    def to_html(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def save(self, path: _Path, *, overwrite: bool = False) -> None: ...
+
+def calibrate(
+    problem: Problem,
+    data: _Path,
+    variant: str = "",
+    *,
+    weights: Optional[str] = None,
+    prior: bool = True,
+    validate: Optional[_Path] = None,
+    hold_back: int = 0,
+    in_steps: bool = False,
+    progress: _Report = None,
+) -> Calibration: ...
+def simulate(
+    problem: Problem,
+    poses: _Poses,
+    variant: str = "",
+    *,
+    truth: str = "",
+    draws: int = 1000,
+    exact: bool = False,
+    missing: float = 0.0,
+    outliers: float = 0.0,
+    weights: Optional[str] = None,
+    prior: bool = True,
+    validation: int = 50,
+    format: str = "",
+    seed: int = 0,
+    threads: int = 0,
+    time_limit: Optional[float] = None,
+    progress: _Report = None,
+) -> Simulation: ...
+def compare(
+    problem: Problem,
+    plans: Mapping[str, _Poses] = ...,
+    *,
+    variants: list[str] = ...,
+    truth: str = "",
+    poses: Optional[int] = None,
+    method: str = "",
+    candidates: Optional[int] = None,
+    restarts: Optional[int] = None,
+    seed: int = 0,
+    threads: int = 0,
+    progress: _Report = None,
+) -> Comparison: ...
+def stations(
+    problem: Problem,
+    *,
+    choose: Optional[int] = None,
+    full: int = 3,
+    poses: Optional[int] = None,
+    variant: str = "",
+    criterion: str = "",
+    candidates: Optional[int] = None,
+    restarts: Optional[int] = None,
+    seed: int = 0,
+    threads: int = 0,
+    time_limit: Optional[float] = None,
+    progress: _Report = None,
+) -> Stations: ...
+def report(
+    problem: Problem,
+    plan: _Path,
+    *,
+    route: Optional[_Path] = None,
+    brief: bool = False,
+    threads: int = 0,
+    time_limit: Optional[float] = None,
+    progress: _Report = None,
+) -> Report: ...

@@ -26,7 +26,7 @@ def _lines(value: Any, place: str, head: str, tail: str) -> Iterator[tuple[str, 
         yield head + "{", place
         for i, (key, entry) in enumerate(value.items()):
             if not isinstance(key, (str, int, float)):
-                raise TypeError(f"{place or 'the problem'}: the key {key!r} is no text")
+                raise TypeError(f"{place or 'the problem'}: the key {key!r} is not text")
             inner = f"{place}.{key}" if place else str(key)
             yield from _lines(entry, inner, _scalar(str(key), inner) + ": ", "," if i + 1 < len(value) else "")
         yield "}" + tail, place

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/repeats.hpp"
 
 namespace posewright::python {
 

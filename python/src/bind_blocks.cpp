@@ -5,8 +5,8 @@
 #include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "posewright/pipeline/select_blocks.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/tasks/select_blocks.hpp"
 
 namespace posewright::python {
 namespace {

@@ -12,7 +12,7 @@ namespace {
 std::unique_ptr<GivenModel> make_model(std::shared_ptr<GivenProblem> problem, const std::string& variant,
                                        std::vector<std::string> parameters, const py::object& candidates,
                                        const py::int_& seed, long long threads, py::object progress) {
-  VariantModelOptions options;
+  VariantOptions options;
   options.variant = variant;
   options.parameters = std::move(parameters);
   options.candidates =
@@ -25,7 +25,7 @@ std::unique_ptr<GivenModel> make_model(std::shared_ptr<GivenProblem> problem, co
   watch.run(
       [&](const Monitor& monitor) {
         made->variant =
-            with_places(*made->problem, [&] { return make_variant_model(made->problem->problem, options, monitor); });
+            with_places(*made->problem, [&] { return make_variant(made->problem->problem, options, monitor); });
       },
       OnInterrupt::raise);
   return made;

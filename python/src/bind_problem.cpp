@@ -3,6 +3,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "posewright/model/apply_parameters.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 
@@ -19,7 +20,7 @@ Packages packages_of(const py::dict& given) {
     const auto path = py::cast<fs::path>(folder);
     std::error_code code;
     if (!fs::is_directory(path, code))
-      throw InputError({}, "packages: '" + path.string() + "' is no folder", "an existing folder is expected");
+      throw InputError({}, "packages: '" + path.string() + "' is not a folder", "an existing folder is expected");
     packages.emplace_back(py::cast<std::string>(name), path);
   }
   return packages;
@@ -47,7 +48,7 @@ fs::path in_folder(const py::object& base, const char* name) {
   return base.is_none() ? fs::path(name) : base.cast<fs::path>() / name;
 }
 
-std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& base, const py::dict& packages) {
+std::shared_ptr<GivenProblem> read_given(const py::object& source, const py::object& base, const py::dict& packages) {
   if (const auto file = file_name(source)) {
     if (!base.is_none()) throw py::type_error("base belongs to a mapping; paths in a file are relative to the file");
     return read(*file, packages);
@@ -55,6 +56,17 @@ std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& 
   const py::tuple text = py::module_::import("posewright._mapping").attr("problem_text")(source);
   return parse(text[0].cast<std::string>(), in_folder(base, "problem"), text[1].cast<std::vector<std::string>>(),
                packages);
+}
+
+/// What the user must know of the parameters becomes a warning.
+std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& base, const py::dict& packages,
+                                    const py::object& parameters) {
+  auto problem = read_given(source, base, packages);
+  if (parameters.is_none()) return problem;
+  for (const std::string& note :
+       apply_parameters(problem->problem, read_calibrated_parameters(parameters.cast<fs::path>()), {}))
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+  return problem;
 }
 
 std::shared_ptr<GivenProblem> from_text(const std::string& text, const py::object& base, const std::string& name,
@@ -89,9 +101,9 @@ void bind_problem(py::module_& m) {
 
 source: the name of a problem file (docs/problem-file.md), or a mapping with its keys. base: folder that paths in a
 mapping are relative to (the current one); in a file they are relative to the file. packages: {name: folder} for meshes
-named package://name/…)")
+named package://name/…; parameters: a parameters file to linearise at, as Calibration.save writes it)")
       .def(py::init(&given), py::arg("source"), py::arg("base") = py::none(), py::kw_only(),
-           py::arg("packages") = py::dict())
+           py::arg("packages") = py::dict(), py::arg("parameters") = py::none())
       .def_static("from_text", &from_text, py::arg("text"), py::arg("base") = py::none(), py::kw_only(),
                   py::arg("name") = "problem", py::arg("packages") = py::dict(),
                   "The text of a problem file; messages call it by `name`.")

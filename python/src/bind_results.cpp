@@ -4,9 +4,9 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "posewright/outputs/route.hpp"
+#include "posewright/results/evaluation.hpp"
+#include "posewright/results/observation.hpp"
 #include "posewright/support/json.hpp"
-#include "src/cli/evaluation_report.hpp"
-#include "src/cli/observation_report.hpp"
 
 namespace posewright::python {
 namespace {
@@ -98,9 +98,9 @@ void bind_evaluation(py::module_& m) {
           "{criterion: Score}")
       .def_readonly("drop", &E::drop, "which poses to leave out, or None")
       .def_readonly("add", &E::add, "which poses to measure more, or None")
-      .def("summary", &cli::evaluation_text, "The table that the command line prints.")
-      .def("to_json", [](const E& e) { return json_text(cli::evaluation_json(e)); })
-      .def("to_dict", [](const E& e) { return parsed(json_text(cli::evaluation_json(e), JsonLayout::one_line)); })
+      .def("summary", &evaluation_text, "The table that the command line prints.")
+      .def("to_json", [](const E& e) { return json_text(evaluation_json(e)); })
+      .def("to_dict", [](const E& e) { return parsed(json_text(evaluation_json(e), JsonLayout::one_line)); })
       .def("__repr__", [](const E& e) { return "<Evaluation: " + plan_line(e.plan) + ">"; })
       .def("_repr_html_", [](const E& e) { return plan_html(e.plan); });
 }
@@ -108,7 +108,7 @@ void bind_evaluation(py::module_& m) {
 void bind_observation(py::module_& m) {
   bind_dependency(m);
   using O = Observation;
-  py::class_<O>(m, "Observation", "What a pool of configurations can tell about one variant.")
+  py::class_<O>(m, "Observation", "Which parameters of one variant a pool of configurations can identify.")
       .def_readonly("variant", &O::variant)
       .def_readonly("configurations", &O::configurations, "in the pool")
       .def_readonly("rows", &O::rows, "readings of one configuration")
@@ -125,7 +125,8 @@ void bind_observation(py::module_& m) {
                              [](const O& o) { return named(o.identifiability.dependencies, o.parameters); })
       .def_property_readonly(
           "indices", [](const O& o) { return indices_dict(o.indices); }, "of the whole pool")
-      .def_readonly("smallest_poses", &O::smallest_poses, "that determine all kept ones; None: the pool does not tell")
+      .def_readonly("smallest_poses", &O::smallest_poses,
+                    "that determine all kept ones; None: the pool does not suffice")
       .def_property_readonly(
           "recommended",
           [](const O& o) -> std::optional<Names> {
@@ -143,8 +144,8 @@ void bind_observation(py::module_& m) {
           "near_dependencies",
           [](const O& o) { return o.practical ? named(o.practical->near, o.kept) : std::vector<NamedDependency>(); },
           "of kept ones that mostly look like others")
-      .def("summary", &cli::observation_text, "The table that the command line prints.")
-      .def("to_dict", [](const O& o) { return parsed(json_text(cli::observation_json(o), JsonLayout::one_line)); })
+      .def("summary", &observation_text, "The table that the command line prints.")
+      .def("to_dict", [](const O& o) { return parsed(json_text(observation_json(o), JsonLayout::one_line)); })
       .def("__repr__", [](const O& o) {
         return py::str("<Observation of {}: rank {} of {} parameters>")
             .format(o.variant, o.identifiability.rank, o.parameters.size());

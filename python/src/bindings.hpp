@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "posewright/lists/pose_list.hpp"
 #include "posewright/outputs/plan.hpp"
-#include "posewright/pipeline/pose_list.hpp"
-#include "posewright/pipeline/variant_model.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/monitor.hpp"
 #include "watch.hpp"
 
@@ -20,7 +20,7 @@ namespace posewright::python {
 
 namespace py = pybind11;
 
-/// A problem, and what its lines stand for where it was no file.
+/// A problem, and what its lines stand for where it was not a file.
 struct GivenProblem {
   Problem problem;
   /// Key path of each line, first line first; empty: the lines are those of a file.
@@ -30,7 +30,7 @@ struct GivenProblem {
 /// A variant ready to give Jacobian blocks.
 struct GivenModel {
   std::shared_ptr<const GivenProblem> problem;
-  VariantModel variant;
+  Variant variant;
 };
 
 /// Whitened blocks with their labels.
@@ -42,7 +42,7 @@ struct Blocks {
 
 /// The error's text with `file: key path` for `file:line`, where the keys are known; as it is for other files.
 std::string place_in_keys(const InputError& error, const std::string& file, const std::vector<std::string>& places);
-/// Runs `work`; errors that name a line of a problem that was no file name its key path instead.
+/// Runs `work`; errors that name a line of a problem that was not a file name its key path instead.
 template <class Work>
 auto with_places(const GivenProblem& problem, Work&& work) {
   try {
@@ -53,7 +53,7 @@ auto with_places(const GivenProblem& problem, Work&& work) {
   }
 }
 
-/// None where the value is no text and no path.
+/// None where the value is not text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);
 /// A Plan, a file's name (with the format of a list that another program wrote), or an array of configurations.
 PoseSource pose_source(const py::object& poses, const std::string& format = "");
@@ -81,5 +81,6 @@ void bind_observation(py::module_& m);
 void bind_route(py::module_& m);
 void bind_blocks(py::module_& m);
 void bind_criteria(py::module_& m);
+void bind_tasks(py::module_& m);
 
 }  // namespace posewright::python

@@ -43,4 +43,5 @@ PYBIND11_MODULE(_core, m) {
   bind_observation(m);
   bind_route(m);
   bind_blocks(m);
+  bind_tasks(m);
 }

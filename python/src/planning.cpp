@@ -2,12 +2,13 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
-#include "posewright/pipeline/evaluate_problem.hpp"
-#include "posewright/pipeline/observe_problem.hpp"
-#include "posewright/pipeline/plan_problem.hpp"
-#include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/repeats.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
+#include "posewright/tasks/observe_problem.hpp"
+#include "posewright/tasks/plan_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
 
 namespace posewright::python {
 namespace {
@@ -17,8 +18,11 @@ using Limit = std::optional<double>;
 Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
-          const py::object& measured, const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+          const py::object& measured, const std::string& truth, const py::object& candidates_from, const py::int_& seed,
+          long long threads, Limit time_limit, py::object progress) {
   PlanOptions options;
+  options.truth = truth;
+  if (!candidates_from.is_none()) options.candidates_from = pose_source(candidates_from);
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
   else options.poses = optional_number(poses, "poses", most_poses);
   options.criterion = criterion;
@@ -123,12 +127,13 @@ void bind_planning(py::module_& m) {
   m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
         py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
         py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
-        py::arg("measured") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("measured") = none, py::arg("truth") = "", py::arg("candidates_from") = none, py::arg("seed") = 0,
+        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Searches for the poses to measure. What is not said is as in the problem.
 
 poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
-already (Plan, file or array); repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress.
+already (Plan, file or array); candidates_from: choose among these (Plan, file or array); truth: an alternative model,
+for criteria that test it; repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress.
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
 the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)");
   m.def("evaluate", &evaluate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("drop") = none,

@@ -103,7 +103,7 @@ void Watch::report(const Progress& progress) {
 }
 
 void bind_progress(py::module_& m) {
-  py::class_<Progress>(m, "Progress", "What a long computation tells while it runs.")
+  py::class_<Progress>(m, "Progress", "Progress of a long computation.")
       .def_readonly("stage", &Progress::stage, "candidates, certificate, exchange, …")
       .def_readonly("done", &Progress::done, "in units of the stage")
       .def_readonly("total", &Progress::total, "in units of the stage; 0: not known")

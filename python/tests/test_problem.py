@@ -98,5 +98,5 @@ def test_what_is_wrong_in_a_file_is_named_by_file_and_line(tmp_path):
 def test_base_and_packages_are_checked(examples):
     with pytest.raises(TypeError, match="base"):
         pw.Problem(examples / "kr270" / "problem.yaml", base=".")
-    with pytest.raises(pw.InputError, match="is no folder"):
+    with pytest.raises(pw.InputError, match="is not a folder"):
         pw.Problem(examples / "kr270" / "problem.yaml", packages={"arm": examples / "absent"})

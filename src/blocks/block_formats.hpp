@@ -13,7 +13,7 @@ bool is_npy(std::string_view bytes);
 BlockFile read_npy(const std::filesystem::path& file, std::optional<int> rows);
 BlockFile parse_csv(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
 
-/// n from the number of table rows; throws where `rows` does not divide it or n or m is zero.
+/// n from the number of table rows; throws if `rows` does not divide it or n or m is zero.
 std::size_t count_blocks(std::size_t table_rows, std::optional<int> rows, const SourcePlace& place);
 
 }  // namespace posewright

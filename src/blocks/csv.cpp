@@ -27,7 +27,7 @@ bool parse_number(std::string_view cell, double& value) {
   return code == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
 }
 
-/// Rows of numbers as one long vector; a first line with a cell that is no number is the header.
+/// Rows of numbers as one long vector; a first line with a cell that is not a number is the header.
 struct Table {
   std::vector<double> values;
   std::vector<std::string> header;
@@ -49,7 +49,7 @@ struct Table {
       columns = for_each_cell(line, [&](std::string_view cell, int) { header.emplace_back(cell); });
       return;
     }
-    if (!wrong.empty()) throw InputError(place, wrong + " is no finite number", "decimal point, no units");
+    if (!wrong.empty()) throw InputError(place, wrong + " is not a finite number", "decimal point, no units");
     if (columns == 0) columns = cells;
     if (cells != columns)
       throw InputError(place, "has " + std::to_string(cells) + " columns",

@@ -110,7 +110,7 @@ bool is_npy(std::string_view bytes) { return bytes.starts_with(magic); }
 
 namespace {
 
-/// n, r and m that the header announces; throws where the file does not hold as many numbers.
+/// n, r and m that the header announces; throws if the file does not hold as many numbers.
 std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, std::optional<int> rows,
                                     const SourcePlace& place) {
   std::size_t n = 0, r = 1, m = 0;
@@ -149,7 +149,7 @@ void fill_row(BlockArray& blocks, std::size_t i, const char* bytes, int item, co
 }  // namespace
 
 BlockArray parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place) {
-  if (!is_npy(bytes)) throw InputError(place, "is no .npy array", "save the array with numpy.save");
+  if (!is_npy(bytes)) throw InputError(place, "is not a .npy array", "save the array with numpy.save");
   const Header header = parse_header(bytes, place);
   const auto [n, r, m] = shape_of(header, bytes.size(), rows, place);
   BlockArray blocks(n, int(r), int(m));

@@ -34,7 +34,7 @@ CompensatorConstants compensator_from_compliances(const CompensatorSpec& geometr
   const Eigen::VectorXd b = root.matrixL().solve(stiffness);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whitened);
   if (!(std::abs(qr.matrixR()(2, 2)) > least_pivot * std::abs(qr.matrixR()(0, 0))))
-    throw CannotDo("the listed positions do not tell the joint's stiffness from spring and preload");
+    throw CannotDo("the listed positions do not separate the joint's stiffness from spring and preload");
   const Eigen::Vector3d scaled = qr.solve(b);
   const Eigen::Vector3d x = scaled.cwiseQuotient(scale.transpose());
   CompensatorConstants found;

@@ -51,7 +51,7 @@ struct Functor {
   int df(const Eigen::VectorXd& x, Eigen::MatrixXd& J) const { return stacked.jacobian(x, J) ? 0 : -1; }
 };
 
-/// Minimises from x on; false where it stopped for another reason than having arrived.
+/// Minimises from x on; false if it stopped for another reason than having arrived.
 bool minimise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, int& evaluations) {
   Functor functor{stacked};
   Eigen::LevenbergMarquardt<Functor> solver(functor);
@@ -196,10 +196,10 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
         const FitOptions& options) {
   StackedReadings stacked(model, columns, poses, options.prior, options.start);
   if (stacked.rows() < stacked.columns())
-    throw CannotDo(std::to_string(stacked.readings()) + " readings cannot tell " + std::to_string(stacked.columns()) +
-                   " parameters");
+    throw CannotDo(std::to_string(stacked.readings()) + " readings cannot determine " +
+                   std::to_string(stacked.columns()) + " parameters");
   if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
-    throw CannotDo("as many readings as parameters leave no residual to tell the noise from: use weights wls");
+    throw CannotDo("as many readings as parameters leave no residual to estimate the noise from: use weights wls");
   Fit result;
   Eigen::VectorXd x = stacked.start();
   Eigen::VectorXd f;

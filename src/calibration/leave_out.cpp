@@ -24,7 +24,7 @@ constexpr std::size_t most_named = 6;
 // Squares that differ by less, relatively, are the same.
 constexpr double rounding_of_squares = 1e-7;
 
-/// Readings that judge: lengths where there are any, since position is what a robot is calibrated for; else all.
+/// Readings that judge: lengths if there are any, since position is what a robot is calibrated for; else all.
 std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y) {
   std::vector<int> read = indices_read(y), lengths;
   for (const int i : read)
@@ -74,7 +74,7 @@ double gain_of(const std::vector<double>& estimated, const std::vector<double>& 
   return squares > 0 ? mean / std::sqrt(squares / (n - 1) / n) : 0.0;
 }
 
-/// Estimates from `rest` and adds how far the others are off; false, and why, where there is no estimate.
+/// Estimates from `rest` and adds how far the others are off; false, and why, if there is no estimate.
 bool predict_others(const IdentificationModel& model, const VariantColumns& columns, const FitOptions& options,
                     const std::vector<MeasuredPose>& rest, const std::vector<MeasuredPose>& others,
                     std::vector<double>& squares, std::string& why_not) {
@@ -153,8 +153,8 @@ std::string weakest_combination(const Fit& result, const VariantColumns& columns
     names += fmt::format("{}{:.2g} {}", i == 0 ? (share < 0 ? "−" : "") : (share < 0 ? " − " : " + "), std::abs(share),
                          columns.parameters[std::size_t(order[i])].name);
   }
-  return names + (least > 0 ? fmt::format(" (in tolerances) is told to {:.3g} tolerances only", 1 / least)
-                            : " (in tolerances) is not told at all");
+  return names + (least > 0 ? fmt::format(" (in tolerances) is known to {:.3g} tolerances only", 1 / least)
+                            : " (in tolerances) is not known at all");
 }
 
 }  // namespace posewright

@@ -18,7 +18,7 @@ constexpr double plausible = 1000.0;
 // The placing fit is a start for another: a few steps show which orientation is right.
 constexpr int few_evaluations = 60;
 
-/// Least whitened cost of the placing columns from this start; infinite where nothing was found.
+/// Least whitened cost of the placing columns from this start; infinite if nothing was found.
 double cost_from(const IdentificationModel& model, const VariantColumns& columns,
                  const std::vector<MeasuredPose>& poses, FitOptions options, const std::vector<double>& start,
                  std::vector<double>& found) {

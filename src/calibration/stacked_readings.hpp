@@ -22,7 +22,7 @@ class StackedReadings {
   /// The columns of the corrections to start from, in units of tolerance.
   Eigen::VectorXd start() const;
 
-  /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo where a pose is out
+  /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo if a pose is out
   /// of reach there.
   void weigh(const Eigen::VectorXd& x, Weighting weighting);
   /// Counts the noise of all readings so many times as stated, against the tolerances.
@@ -41,7 +41,7 @@ class StackedReadings {
   /// ‖whitened residual‖² of every group, without weights.
   Eigen::VectorXd group_squares(const Eigen::VectorXd& x);
 
-  /// False where a pose is out of reach at x.
+  /// False if a pose is out of reach at x.
   bool residual(const Eigen::VectorXd& x, Eigen::VectorXd& f);
   /// ∂residual/∂x, rows() × columns(); false as residual().
   bool jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J);
@@ -49,7 +49,7 @@ class StackedReadings {
   /// Corrections of all parameters of the model.
   const std::vector<double>& correction_of(const Eigen::VectorXd& x);
   const Eigen::VectorXd& tolerances() const { return tolerances_; }
-  /// Raw and whitened residuals as Fit has them; NaN where not read.
+  /// Raw and whitened residuals as Fit has them; NaN if not read.
   void spread(const Eigen::VectorXd& x, std::vector<Eigen::VectorXd>& raw, std::vector<Eigen::VectorXd>& whitened);
   const std::vector<int>& group_of() const { return group_of_; }
   const std::vector<std::vector<int>>& read() const { return read_; }

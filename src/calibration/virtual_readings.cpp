@@ -15,9 +15,9 @@ namespace {
 constexpr std::uint64_t readings_stream = 0x51e0, gross_stream = 0x6e055;
 
 /// Which targets are missing or wrong at one pose.
-class Gross {
+class GrossErrors {
  public:
-  Gross(const ExperimentOptions& options, int draw)
+  GrossErrors(const ExperimentOptions& options, int draw)
       : options_(options), random_(options.seed ^ gross_stream, std::uint64_t(draw)) {}
 
   /// Adds gross errors to `change`, whose covariance this is; marks rows of missing targets.
@@ -50,7 +50,7 @@ std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int
   const ExperimentOptions& options = experiment.options;
   const IdentificationModel& robot = *experiment.truth.model;
   Random random(options.seed ^ readings_stream, std::uint64_t(draw));
-  Gross gross(options, draw);
+  GrossErrors gross(options, draw);
   truth.assign(robot.parameters().size(), 0.0);
   const VariantColumns& drawn = experiment.truth.drawn;
   for (std::size_t j = 0; j < drawn.selected.size(); ++j) {

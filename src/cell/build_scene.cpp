@@ -43,7 +43,7 @@ class SceneBuilder {
       if (names.count(name.value) > 0) continue;
       std::string list;
       for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-      throw InputError(problem_.at(name.line), "'" + name.value + "' is no link, tool part or obstacle with a shape",
+      throw InputError(problem_.at(name.line), "'" + name.value + "' is not a link, tool part or obstacle with a shape",
                        list.empty() ? "there is none" : "allowed: " + list);
     }
   }

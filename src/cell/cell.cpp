@@ -33,7 +33,7 @@ void check_body_stations(const Problem& problem, const Cell& cell) {
         if (name == body.station) return;
         names += (names.empty() ? "allowed: " : ", ") + name;
       }
-    throw InputError(problem.at(body.line), "'" + body.station + "' is no station",
+    throw InputError(problem.at(body.line), "'" + body.station + "' is not a station",
                      names.empty() ? "there is none" : names);
   };
   for (const BodySpec& body : problem.workspace.collision->obstacles) check(body);

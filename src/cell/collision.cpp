@@ -131,7 +131,7 @@ class SmallestDistance {
 
   void place(std::span<const double> q, int pose) { scene_.frames->poses(q, pose, frames_); }
 
-  /// Lower bound of the pair's distance, exact where it may be the smallest.
+  /// Lower bound of the pair's distance, exact if it may be the smallest.
   double look_at(const BodyPair& pair) {
     const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
     const Eigen::Isometry3d X_a = frames_[std::size_t(a.frame)] * a.X_FrameBody;

@@ -107,7 +107,7 @@ void LineOfSight::add_normals(const Problem& problem) {
     if (!found) {
       std::string names;
       for (const Target& target : targets_) names += ", " + target.name;
-      throw InputError(problem.at(name.line), "'" + name.value + "' is no target", "allowed: *" + names);
+      throw InputError(problem.at(name.line), "'" + name.value + "' is not a target", "allowed: *" + names);
     }
   }
 }

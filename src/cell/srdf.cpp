@@ -16,7 +16,7 @@ std::vector<std::pair<std::string, std::string>> read_srdf_pairs(const std::file
   const std::string text = read_xml_text(file, 20'000'000);
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError({file.string(), document.ErrorLineNum()}, "is no well-formed XML", "an SRDF file is needed");
+    throw InputError({file.string(), document.ErrorLineNum()}, "is not well-formed XML", "an SRDF file is needed");
   const tinyxml2::XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
     throw InputError({file.string(), 0}, "has no <robot> at its root", "an SRDF file is needed");

@@ -132,7 +132,7 @@ TriangleMesh read_stl(std::string_view bytes) {
   const bool has_count = bytes.size() >= header + 4;
   if (has_count && bytes.size() == header + 4 + record * std::size_t(count_of(bytes))) return read_binary(bytes);
   if (bytes.starts_with("solid") && bytes.find("facet") != std::string_view::npos) return read_text(bytes);
-  if (!has_count) throw BadMesh("is no STL file");
+  if (!has_count) throw BadMesh("is not an STL file");
   return read_binary(bytes);
 }
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
-#include "calibration_report.hpp"
 #include "command.hpp"
-#include "dh_table_report.hpp"
+#include "posewright/lists/compliance_list.hpp"
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant.hpp"
-#include "posewright/pipeline/compliance_list.hpp"
+#include "posewright/results/calibration.hpp"
+#include "posewright/results/dh_table.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
@@ -19,8 +18,6 @@
 
 namespace posewright::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 po::options_description calibrate_command_options() {
   po::options_description options("Options");
@@ -109,11 +106,6 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   return calibrate;
 }
 
-Json begin_json(const char* schema, const Problem& problem, const CalibrateOptions& calibrate) {
-  return {
-      {"schema", schema}, {"version", version}, {"problem", problem_json(problem)}, {"data", calibrate.data.string()}};
-}
-
 void refuse_results(const Results& wanted, const std::string& why) {
   if (!wanted.parameters.empty() || !wanted.urdf.empty() || !wanted.dh.empty() || !wanted.deformation.empty())
     throw InputError({}, "-o, --urdf, --dh and --deformation are for one calibration", why);
@@ -132,15 +124,7 @@ int run_models(const CommonOptions& common, const Problem& problem, CalibrateOpt
   for (const Calibration& model : models)
     for (const std::string& note : model.notes) print_notes({model.variant + ": " + note});
   if (common.json) {
-    Json json = begin_json("posewright/calibrations/1", problem, calibrate);
-    json["models"] = Json::array();
-    for (const Calibration& model : models) {
-      Json one = begin_json("posewright/calibration/1", problem, calibrate);
-      one.update(calibration_json(model));
-      one["denavit_hartenberg"] = nullptr;
-      json["models"].push_back(std::move(one));
-    }
-    fmt::print("{}", json_text(json));
+    fmt::print("{}", json_text(models_json(problem, calibrate, models)));
   } else {
     print_report(models_text(models));
   }
@@ -152,9 +136,7 @@ int run_models(const CommonOptions& common, const Problem& problem, CalibrateOpt
 int run_compliances(const CommonOptions& common, const Problem& problem, const CalibrateOptions& calibrate) {
   const CompensatorConstants found = compensator_of_list(problem, calibrate.data);
   if (common.json) {
-    Json json = begin_json("posewright/compensator/1", problem, calibrate);
-    json["compensator"] = compensator_json(found);
-    fmt::print("{}", json_text(json));
+    fmt::print("{}", json_text(compensator_json(problem, calibrate, found)));
   } else {
     print_report(compensator_text(found));
   }
@@ -188,7 +170,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   if (written)
     for (FileToWrite& file : files_to_write(wanted, problem, result, result.notes)) files.push_back(std::move(file));
   else if (!wanted.parameters.empty() || !wanted.urdf.empty())
-    result.notes.emplace_back("nothing is written: these are no parameters to go on with");
+    result.notes.emplace_back("nothing is written: these parameters are not good enough to use");
   // These files do not belong together as a program and its points do: one at a time, each replaces its own.
   for (const FileToWrite& file : files) write_results({file});
   print_notes(result.notes);
@@ -198,10 +180,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
                                       : std::vector{wanted.deformation}));
     return written ? done : cannot_do;
   }
-  Json json = begin_json("posewright/calibration/1", problem, calibrate);
-  json.update(calibration_json(result));
-  json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
-  fmt::print("{}", json_text(json));
+  fmt::print("{}", json_text(calibration_json(problem, calibrate, result, table)));
   return written ? done : cannot_do;
 }
 

@@ -61,9 +61,9 @@ std::string single(const Words& positional, const std::string& what);
 
 /// A whole number within [lower, upper] as an optional; InputError names the option and the range.
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper);
-/// The text of an option, empty where it is not given.
+/// The text of an option, empty if it is not given.
 std::string text_of(const po::variables_map& values, const std::string& option);
-/// One of the allowed words, or empty where the option is not given. Throws InputError for another word.
+/// One of the allowed words, or empty if the option is not given. Throws InputError for another word.
 std::string choice_of(const po::variables_map& values, const std::string& option,
                       std::initializer_list<std::string_view> allowed);
 

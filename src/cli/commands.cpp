@@ -22,7 +22,7 @@ po::options_description common_options() {
       ("threads", text("T"), "threads (all); never changes a result")  //
       ("json", "result as JSON on stdout, nothing else there")         //
       ("quiet", "no progress")                                         //
-      ("verbose", "progress also where stderr is no terminal")         //
+      ("verbose", "progress also where stderr is not a terminal")      //
       ("help", "this text");
   return options;
 }
@@ -36,7 +36,7 @@ CommonOptions common_values(const po::variables_map& values) {
   const std::string seed = text_of(values, "seed");
   const auto [end, code] = std::from_chars(seed.data(), seed.data() + seed.size(), common.seed);
   if (!seed.empty() && (code != std::errc() || end != seed.data() + seed.size()))
-    throw InputError({}, "--seed " + seed + " is no seed", "a whole number from 0 to 18446744073709551615");
+    throw InputError({}, "--seed " + seed + " is not a seed", "a whole number from 0 to 18446744073709551615");
   return common;
 }
 

@@ -1,19 +1,16 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "comparison_report.hpp"
 #include "planners/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/results/comparison.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 po::options_description compare_command_options() {
   po::options_description options("Options");
@@ -64,12 +61,7 @@ int run_compare(const po::variables_map& values, const Words& positional) {
     print_report(comparison_text(result, !compare.truth.empty()));
     return done;
   }
-  Json json = {{"schema", "posewright/comparison/1"},
-               {"version", version},
-               {"seed", common.seed},
-               {"problem", problem_json(problem)}};
-  json.update(comparison_json(result));
-  fmt::print("{}", json_text(json));
+  fmt::print("{}", json_text(comparison_json(problem, compare, result)));
   return done;
 }
 

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "evaluation_report.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
-#include "posewright/pipeline/evaluate_problem.hpp"
+#include "posewright/results/evaluation.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"

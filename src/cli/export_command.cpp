@@ -8,9 +8,9 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
-#include "posewright/pipeline/check_sequence.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
+#include "posewright/tasks/check_sequence.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
@@ -35,8 +35,8 @@ po::options_description export_command_options() {
       ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")            //
       ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")              //
       ("digital-output", text("N"),
-       "tells the instrument to measure: number, or name for abb-rapid and staubli-val3")    //
-      ("digital-input", text("N"), "tells that it has measured")                             //
+       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")  //
+      ("digital-input", text("N"), "signals that it has measured")                           //
       ("tool", text("N"), "tool of the controller")                                          //
       ("base", text("N"), "base or user frame of the controller")                            //
       ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")  //

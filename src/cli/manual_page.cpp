@@ -82,7 +82,7 @@ std::string manual_page() {
       ".PP\n.B posewright help\n\\fICOMMAND\\fR | \\fB\\-\\-man\\fR\n"
       ".PP\n.B posewright completion\nbash | zsh\n"
       ".PP\n.B posewright \\-\\-version\n"
-      ".SH DESCRIPTION\nSearches for the poses whose measurement tells most about a robot's\n"
+      ".SH DESCRIPTION\nSearches for the poses from which a measurement identifies best a robot's\n"
       "geometric or elastic parameters, and says how near the best possible\nplan the result is. Tables go to "
       "standard output, progress and messages\nto standard error.\n"
       ".SH COMMANDS\n",

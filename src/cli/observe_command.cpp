@@ -1,17 +1,14 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "observation_report.hpp"
+#include "posewright/results/observation.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 po::options_description observe_command_options() {
   po::options_description options("Options");
@@ -37,13 +34,7 @@ int run_observe(const po::variables_map& values, const Words& positional) {
   // A shortened pool would be shown as if it were whole.
   if (was_interrupted) return interrupted;
   if (common.json) {
-    Json json = {{"schema", "posewright/observation/1"},
-                 {"version", version},
-                 {"seed", common.seed},
-                 {"problem", problem_json(problem)},
-                 {"variants", Json::array()}};
-    for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
-    fmt::print("{}", json_text(json));
+    fmt::print("{}", json_text(observations_json(problem, observe, observations)));
     return done;
   }
   for (std::size_t i = 0; i < observations.size(); ++i) {

@@ -18,7 +18,7 @@ struct Expected {
 /// One option as manual page and completion need it.
 struct OptionFacts {
   std::string name;         ///< without dashes
-  std::string letter;       ///< short name without dash, empty where there is none
+  std::string letter;       ///< short name without dash, empty if there is none
   std::string value;        ///< what the help calls the value; empty for an option without value
   std::string description;  ///< as in the help
   bool many = false;        ///< may be given several times

@@ -3,8 +3,9 @@
 #include "command.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/pipeline/plan_problem.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "posewright/support/repeats.hpp"
+#include "posewright/tasks/plan_problem.hpp"
 #include "problem_source.hpp"
 #include "write_result.hpp"
 

@@ -1,9 +1,9 @@
 #include "problem_source.hpp"
 
+#include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/apply_parameters.hpp"
-#include "posewright/pipeline/parameters_file.hpp"
-#include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
 #include "session.hpp"
 
 namespace posewright::cli {
@@ -19,7 +19,7 @@ std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po:
     const std::filesystem::path folder = text.substr(equal + 1);
     std::error_code code;
     if (!std::filesystem::is_directory(folder, code))
-      throw InputError({}, "--package " + text + ": '" + folder.string() + "' is no folder",
+      throw InputError({}, "--package " + text + ": '" + folder.string() + "' is not a folder",
                        "an existing folder is expected");
     packages.emplace_back(text.substr(0, equal), folder);
   }
@@ -95,13 +95,6 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
     for (const BodySpec& body : *bodies)
       if (const auto* mesh = std::get_if<MeshShape>(&body.shape)) add(mesh->file);
   return files;
-}
-
-nlohmann::ordered_json problem_json(const Problem& problem) {
-  nlohmann::ordered_json json = {{"file", problem.file.string()}, {"sha256", problem.sha256}};
-  if (const ParametersFile stated = parameters_of(problem); !stated.file.empty())
-    json["parameters"] = {{"file", stated.file}, {"sha256", stated.sha256}, {"variant", stated.variant}};
-  return json;
 }
 
 }  // namespace posewright::cli

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,7 @@ namespace posewright::cli {
 
 /// --package NAME=DIR and --parameters FILE, for every command that reads a problem file.
 po::options_description problem_options();
-/// Names of --variant, given once, several times or with commas; none where the command has no such option.
+/// Names of --variant, given once, several times or with commas; none if the command has no such option.
 /// Throws InputError for an empty name.
 std::vector<std::string> variants_of(const po::variables_map& values);
 /// The problem file with what these options say. Variants that keep their nominal values are told on stderr.
@@ -20,7 +19,7 @@ std::vector<std::string> variants_of(const po::variables_map& values);
 /// is not there.
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values);
 
-/// The problem file of a plan: --problem, else the one that the plan names. Throws InputError where there is none.
+/// The problem file of a plan: --problem, else the one that the plan names. Throws InputError if there is none.
 std::filesystem::path problem_file(const po::variables_map& values, const std::filesystem::path& plan);
 /// given_problem() of that file; without --parameters at the parameters that the plan states.
 Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
@@ -28,7 +27,5 @@ Problem problem_for_plan(const std::filesystem::path& file, const po::variables_
 
 /// Files that nothing may be written over: the problem file and those it names.
 std::vector<std::filesystem::path> files_of(const Problem& problem);
-/// Key `problem` of results.
-nlohmann::ordered_json problem_json(const Problem& problem);
 
 }  // namespace posewright::cli

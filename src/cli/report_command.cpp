@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "posewright/pipeline/report_problem.hpp"
+#include "posewright/tasks/report_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Plans are smaller; what is larger is no plan of ours.
+// Plans are smaller; what is larger is not a plan of ours.
 constexpr std::size_t most_bytes = 200'000'000;
 
 /// Bytes without a note that they were an input; empty if there are none.

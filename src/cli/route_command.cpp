@@ -3,7 +3,7 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
-#include "posewright/pipeline/route_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"

@@ -1,7 +1,7 @@
 #include "command.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/pipeline/select_blocks.hpp"
+#include "posewright/tasks/select_blocks.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {

@@ -58,7 +58,7 @@ auto watched(const CommonOptions& common, double seconds, const Work& work)
 /// What a result says to its user, on stderr.
 void print_notes(const std::vector<std::string>& notes);
 
-/// Seconds of --time-limit; 0 where it is not given.
+/// Seconds of --time-limit; 0 if it is not given.
 double time_limit(const po::variables_map& values);
 
 }  // namespace posewright::cli

@@ -5,20 +5,17 @@
 #include "command.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
+#include "posewright/results/simulation.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/version.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
-#include "simulation_report.hpp"
 #include "terminal.hpp"
 #include "weighting.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 po::options_description simulate_command_options() {
   po::options_description options("Options");
@@ -103,16 +100,6 @@ SimulateOptions options_of(const po::variables_map& values, const CommonOptions&
   return simulate;
 }
 
-void print_json(const Simulation& result, const SimulateOptions& simulate, const CommonOptions& common,
-                const Problem& problem) {
-  Json json = {{"schema", "posewright/simulation/1"},
-               {"version", version},
-               {"seed", common.seed},
-               {"problem", problem_json(problem)}};
-  json.update(simulation_json(result, simulate));
-  fmt::print("{}", json_text(json));
-}
-
 int run_simulate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.size() != 2)
@@ -130,7 +117,7 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
   });
   print_notes(result.notes);
   if (!data.empty()) write_results({{data, result.first_readings}});
-  if (common.json) print_json(result, simulate, common, problem);
+  if (common.json) fmt::print("{}", json_text(simulation_json(problem, simulate, result)));
   else print_report(simulation_text(result, simulate) + written_text({data}));
   return was_interrupted ? interrupted : done;
 }

@@ -32,7 +32,7 @@ void print_error(const std::string& text) {
   print_aside(fmt::format("{}posewright:{} {}\n", colour ? "\x1b[1;31m" : "", colour ? "\x1b[0m" : "", text));
 }
 
-// A terminal that is gone is no reason to lose a result.
+// A terminal that is gone is not a reason to lose a result.
 void print_aside(const std::string& text) {
   if (std::fputs(text.c_str(), stderr) < 0) std::clearerr(stderr);
 }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "posewright/outputs/write_plan.hpp"
-#include "posewright/problem/design_words.hpp"
+#include "posewright/support/repeats.hpp"
 #include "result_files.hpp"
 #include "terminal.hpp"
 

@@ -11,17 +11,17 @@
 
 namespace posewright::cli {
 
-/// -o, --poses-csv (where there are configurations), --force, --time-limit.
+/// -o, --poses-csv (if there are configurations), --force, --time-limit.
 po::options_description output_options(bool poses);
 /// The value of --repeats; InputError for anything but allow, forbid and a number.
 std::optional<Repeats> repeats_of(const po::variables_map& values);
 
-/// The file that an output option names: `standard` where it is not given, empty for "-". InputError for an empty name.
+/// The file that an output option names: `standard` if it is not given, empty for "-". InputError for an empty name.
 std::filesystem::path output_file(const po::variables_map& values, const std::string& option, const char* standard);
 /// check_outputs of those that are not empty, with --force.
 void check_output_files(const po::variables_map& values, const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
-/// "Written: a, b" with a line end; empty where none of them is named.
+/// "Written: a, b" with a line end; empty if none of them is named.
 std::string written_text(const std::vector<std::filesystem::path>& outputs);
 
 /// Where a plan goes: files, and the table or JSON on stdout.

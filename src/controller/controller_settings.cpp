@@ -18,7 +18,7 @@ class SettingsReader {
   SettingsReader(const yaml::Document& yaml, ControllerSettings& settings) : yaml_(yaml), settings_(settings) {}
 
   void read(const YAML::Node& root) {
-    if (!root.IsMap()) yaml_.fail(root, "is no mapping", allowed_keys);
+    if (!root.IsMap()) yaml_.fail(root, "is not a mapping", allowed_keys);
     for (const auto& entry : root) {
       const std::string key = yaml_.text(entry.first, "a key");
       if (!settings_.lines.emplace(key, yaml_.line(entry.first)).second)
@@ -100,7 +100,7 @@ ControllerSettings parse_controller_settings(const std::string& text, const std:
   try {
     SettingsReader(yaml, settings).read(YAML::Load(text));
   } catch (const YAML::Exception& error) {
-    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + in_quotes(error.msg), "");
+    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is not valid YAML: " + in_quotes(error.msg), "");
   }
   return settings;
 }

@@ -17,19 +17,20 @@ void Document::fail(const YAML::Node& node, const std::string& what, const std::
 }
 
 YAML::Node Document::at(const YAML::Node& mapping, const std::string& key) const {
-  if (!mapping.IsMap()) fail(mapping, "is no mapping with '" + key + "'", "key: value");
+  if (!mapping.IsMap()) fail(mapping, "is not a mapping with '" + key + "'", "key: value");
   const YAML::Node value = mapping[key];
   if (!value.IsDefined()) fail(mapping, "has no '" + key + "'", "it is needed here");
   return value;
 }
 
 std::vector<YAML::Node> Document::items(const YAML::Node& node, const std::string& what) const {
-  if (!node.IsSequence() || node.size() == 0) fail(node, what + " is no list", "a list that is not empty is expected");
+  if (!node.IsSequence() || node.size() == 0)
+    fail(node, what + " is not a list", "a list that is not empty is expected");
   return {node.begin(), node.end()};
 }
 
 std::string Document::text(const YAML::Node& node, const std::string& what) const {
-  if (!node.IsScalar() || node.Scalar().empty()) fail(node, what + " is no text", "a text is expected");
+  if (!node.IsScalar() || node.Scalar().empty()) fail(node, what + " is not text", "a text is expected");
   return node.Scalar();
 }
 
@@ -45,7 +46,7 @@ double Document::number(const YAML::Node& node, const std::string& what) const {
   double value = 0;
   const auto [end, code] = std::from_chars(begin, written.data() + written.size(), value);
   if (written.empty() || code != std::errc() || end != written.data() + written.size() || !std::isfinite(value))
-    fail(node, fmt::format("{}: {} is no number", what, in_quotes(written)), "a finite number is expected");
+    fail(node, fmt::format("{}: {} is not a number", what, in_quotes(written)), "a finite number is expected");
   return value == 0 ? 0.0 : value;
 }
 

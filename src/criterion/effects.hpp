@@ -7,7 +7,7 @@ namespace posewright {
 
 inline void require_effects(const CriterionData& data) {
   if (data.effects.columns == 0)
-    throw CannotDo("the criterion needs a variant that may be the case: set design: truth or --truth");
+    throw CannotDo("the criterion needs an alternative model to test: set design: truth or --truth");
 }
 
 /// Mix of the trailing columns in whitened coordinates: effects are J_f mix = (J_f,w R_ff + J_a,w R_af) mix.

@@ -92,7 +92,7 @@ class TraceState : public DesignState {
   double trace(int j) const { return traces_[std::size_t(j)]; }
   double gain_of(double fall) const { return fall < variance_ ? -std::log1p(-fall / variance_) : infinity; }
 
-  /// V, B and the pass over all candidates from the information as it is; false where it is singular.
+  /// V, B and the pass over all candidates from the information as it is; false if it is singular.
   bool invert() {
     const Eigen::LLT<Eigen::MatrixXd> factor(information_);
     if (!is_regular(factor)) return false;
@@ -111,7 +111,7 @@ class TraceState : public DesignState {
     result.noalias() = rotated_ * J.transpose();
   }
 
-  /// Projections of the leaving member; false where it is indispensable.
+  /// Projections of the leaving member; false if it is indispensable.
   bool leave(int k) {
     const auto J = blocks().block(std::size_t(k));
     project(J, V_, y_);

@@ -29,7 +29,7 @@ const VariantSpec& target_of(const Problem& problem, const CalibratedParameters&
   std::string names;
   for (const VariantSpec& variant : problem.variants) names += (names.empty() ? "" : ", ") + variant.name;
   throw InputError(parameters.at(parameters.variant.line),
-                   "'" + calibrated + "' is no variant of " + problem.file.string(),
+                   "'" + calibrated + "' is not a variant of " + problem.file.string(),
                    "variants: " + names + "; --variant names one that takes the values");
 }
 
@@ -42,7 +42,7 @@ void require_names(const Problem& problem, const VariantSpec& variant, const Cal
     const int i = names.index_of(entry.name.value);
     if (i < 0)
       throw InputError(parameters.at(entry.name.line),
-                       "'" + entry.name.value + "' is no parameter of variant '" + variant.name + "'",
+                       "'" + entry.name.value + "' is not a parameter of variant '" + variant.name + "'",
                        names.allowed(entry.name.value));
     const std::string& unit = model->parameters()[std::size_t(i)].unit;
     if (!entry.unit.empty() && entry.unit != unit)

@@ -144,7 +144,7 @@ CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place,
 
   CorrectedUrdf result{editor.text(), {}};
   for (const CalibratedValue& v : correction.base.by)
-    result.left_out.push_back(left_out_text(v, "where the robot stands is no part of the robot"));
+    result.left_out.push_back(left_out_text(v, "where the robot stands is not part of the robot"));
   if (!has_tip)
     for (const CalibratedValue& v : correction.tip.by)
       result.left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip() + "'"));

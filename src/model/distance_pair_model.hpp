@@ -41,7 +41,7 @@ class DistancePairModel : public IdentificationModel {
   double repeats_;
   Repeatability repeatability_;
   int tip_parameters_ = 0;
-  std::size_t moving_ = 0;  ///< the robot's coordinates that are no choices; these come first
+  std::size_t moving_ = 0;  ///< the robot's coordinates that are not choices; these come first
 };
 
 }  // namespace posewright

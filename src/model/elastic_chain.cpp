@@ -17,7 +17,7 @@ namespace {
 constexpr double relative_tolerance = 0.3;
 constexpr double compliance_tolerance = 0.3e-6;  // rad/(N·m); m/N for prismatic joints
 
-// A joint that springs bend by more than this is no small deflection.
+// A joint that springs bend by more than this is not a small deflection.
 constexpr double small_angle = 0.5 * degree;
 constexpr int steps_of_range = 200;
 
@@ -39,7 +39,7 @@ int coordinate_named(const std::vector<Coordinate>& coordinates, const Located<s
                      const SourcePlace& place) {
   for (int i = 0; i < int(coordinates.size()); ++i)
     if (coordinates[std::size_t(i)].name == name.value) return i;
-  throw InputError({place.file, name.line}, "'" + name.value + "' is no joint of this arm that moves by itself",
+  throw InputError({place.file, name.line}, "'" + name.value + "' is not a joint of this arm that moves by itself",
                    joint_names(coordinates));
 }
 

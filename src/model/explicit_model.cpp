@@ -87,7 +87,7 @@ bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> select
   return true;
 }
 
-/// Each target, or each reading where there are none, moves on its own.
+/// Each target, or each reading if there are none, moves on its own.
 void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, Linearisation& out) const {
   out.rows.resize(rows_, 3);
   measurement_->rows_of_twists(sighting, repeatability_.independent * Twists::Identity(6, 3), out.rows);

@@ -22,7 +22,7 @@ void throw_unknown_coordinate(const SourcePlace& place, const std::string& name,
   std::string names;
   for (const Coordinate& c : coordinates)
     if (!c.choice() && !is_second(c.name)) names += (names.empty() ? "allowed: " : ", ") + c.name;
-  throw InputError(place, "'" + name + "' is no coordinate of this robot", names);
+  throw InputError(place, "'" + name + "' is not a coordinate of this robot", names);
 }
 
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels) {

@@ -18,7 +18,7 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
   for (const Located<std::string>& name : spec.sensors) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name.value; });
     if (found == all.end())
-      throw InputError(problem.at(name.line), "'" + name.value + "' is no redundant sensor of this robot", names);
+      throw InputError(problem.at(name.line), "'" + name.value + "' is not a redundant sensor of this robot", names);
     sensors_.push_back(int(found - all.begin()));
   }
   if (sensors_.empty())

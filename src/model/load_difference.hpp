@@ -11,7 +11,7 @@ namespace posewright {
 /// cancels: the model inside must be built without it.
 class LoadDifference : public IdentificationModel {
  public:
-  /// @param inside  a model with a coordinate `load_case`. Throws CannotDo where it has fewer than two load cases.
+  /// @param inside  a model with a coordinate `load_case`. Throws CannotDo if it has fewer than two load cases.
   explicit LoadDifference(std::unique_ptr<IdentificationModel> inside);
 
  private:

@@ -7,7 +7,7 @@
 namespace posewright {
 
 /// Positions of targets fixed to the tip. Rows: target by target, the chosen components of its position in the frame of
-/// the station that looks (the measurement frame where there are no stations). Own parameters: target.NAME.{x,y,z} in
+/// the station that looks (the measurement frame if there are no stations). Own parameters: target.NAME.{x,y,z} in
 /// the tip frame (m), station.NAME.{x,…,rz}.
 class PointsModel : public MeasurementModel {
  public:

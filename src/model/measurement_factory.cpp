@@ -11,7 +11,7 @@ namespace posewright {
 namespace {
 
 /// One overload an instrument: a new one is one file and one row here.
-struct Make {
+struct ModelOfMeasurement {
   const MeasurementSpec& spec;
   std::unique_ptr<MeasurementModel> operator()(const PoseMeasurement&) const {
     return std::make_unique<PoseModel>(spec);
@@ -21,7 +21,7 @@ struct Make {
   }
   std::unique_ptr<MeasurementModel> operator()(const DistanceMeasurement& distance) const {
     if (distance.anchors.empty())
-      throw std::invalid_argument("a distance between configurations is no view of one tip");
+      throw std::invalid_argument("a distance between configurations is not a view of one tip");
     return std::make_unique<DistanceModel>(spec);
   }
   std::unique_ptr<MeasurementModel> operator()(const CameraMeasurement&) const {
@@ -35,7 +35,7 @@ struct Make {
 }  // namespace
 
 std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec) {
-  return std::visit(Make{spec}, spec.instrument);
+  return std::visit(ModelOfMeasurement{spec}, spec.instrument);
 }
 
 }  // namespace posewright

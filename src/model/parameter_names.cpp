@@ -31,7 +31,7 @@ ParameterNames::ParameterNames(const IdentificationModel& model, const Problem& 
   for (const Parameter& p : model.parameters()) shown_.push_back(p.name);
   const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
   if (arm == nullptr) return;
-  // Names given to joint frames' parameters say nothing where a variant has another convention.
+  // Names given to joint frames' parameters say nothing if a variant has another convention.
   if (std::none_of(shown_.begin(), shown_.end(), [](const std::string& n) { return n.ends_with(".gear"); })) return;
   for (const auto& [mine, theirs] : arm->parameter_names) {
     const auto& all = model.parameters();

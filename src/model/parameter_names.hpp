@@ -13,11 +13,11 @@ class ParameterNames {
  public:
   ParameterNames(const IdentificationModel& model, const Problem& problem);
 
-  /// The user's name where there is one.
+  /// The user's name if there is one.
   const std::string& shown(int index) const { return shown_[std::size_t(index)]; }
-  /// Indices matched by a shell-style pattern with * and ?, in the model's order; InputError where there are none.
+  /// Indices matched by a shell-style pattern with * and ?, in the model's order; InputError if there are none.
   std::vector<int> find(const Located<std::string>& pattern) const;
-  /// The parameter of exactly that name; −1 where there is none.
+  /// The parameter of exactly that name; −1 if there is none.
   int index_of(const std::string& name) const;
   /// "parameters: a, b, …"
   std::string allowed(const std::string& wanted = {}) const;

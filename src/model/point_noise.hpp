@@ -5,7 +5,7 @@
 namespace posewright {
 
 /// Covariance (m²) of one reading of a point at p in the station's frame. A tracker's is an ellipsoid with one axis
-/// along p: σ∥ = range + range_per_m·‖p‖, σ⊥ = transverse + angle·‖p‖ (design §3.5).
+/// along p: σ∥ = range + range_per_m·‖p‖, σ⊥ = transverse + angle·‖p‖ (theory.md eq. (10)).
 Eigen::Matrix3d point_covariance(const PointNoise& noise, const Eigen::Vector3d& p_Station);
 
 }  // namespace posewright

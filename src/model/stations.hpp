@@ -15,7 +15,7 @@ class Stations {
   void append(std::vector<Parameter>& parameters) const;
   const std::vector<std::string>& names() const { return names_; }
 
-  /// Pose of a station with the corrections (of all stations, or empty); identity where there are no stations.
+  /// Pose of a station with the corrections (of all stations, or empty); identity if there are no stations.
   Eigen::Isometry3d pose(int station, std::span<const double> correction) const;
   /// Twist of the tip that looks the same as moving along station parameter `index`: zero for the others' parameters.
   Twist apparent_motion(int station, std::span<const double> correction, int index) const;

@@ -42,10 +42,10 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   try {
     model = urdf::parseURDF(text);
   } catch (const std::exception& error) {
-    throw InputError({file, 0}, std::string("is no valid URDF: ") + error.what(), "");
+    throw InputError({file, 0}, std::string("is not valid URDF: ") + error.what(), "");
   }
   if (model == nullptr)
-    throw InputError({file, 0}, "is no valid URDF: " + (messages.first().empty() ? "not accepted" : messages.first()),
+    throw InputError({file, 0}, "is not valid URDF: " + (messages.first().empty() ? "not accepted" : messages.first()),
                      "");
   return model;
 }
@@ -65,7 +65,7 @@ std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, 
   if (arm.tip) {
     if (model.links_.count(arm.tip->value) == 0)
       throw InputError({place.file, arm.tip->line},
-                       "tip '" + arm.tip->value + "' is no link of " + arm.urdf.filename().string(),
+                       "tip '" + arm.tip->value + "' is not a link of " + arm.urdf.filename().string(),
                        "links: " + names_of(links));
     return arm.tip->value;
   }
@@ -81,7 +81,7 @@ std::string base_of(const urdf::ModelInterface& model, const SerialArmSpec& arm,
     std::vector<std::string> links;
     for (const auto& entry : model.links_) links.push_back(entry.first);
     throw InputError({place.file, arm.base->line},
-                     "base '" + arm.base->value + "' is no link of " + arm.urdf.filename().string(),
+                     "base '" + arm.base->value + "' is not a link of " + arm.urdf.filename().string(),
                      "links: " + names_of(links));
   }
   return arm.base->value;

@@ -62,7 +62,7 @@ bool are_positive(const std::string& text) {
   return true;
 }
 
-// Of a file; more is no robot.
+// Of a file; more is not a robot.
 constexpr std::size_t most_joints = 50'000;
 
 /// Names of joints become columns of lists and words of programs: what would break those is refused here.
@@ -102,7 +102,7 @@ void check_numbers(const tinyxml2::XMLElement& parent, std::span<const NumberAtt
     }
 }
 
-/// Name of a joint's parent or child link, empty where there is none.
+/// Name of a joint's parent or child link, empty if there is none.
 std::string end_of(const tinyxml2::XMLElement& joint, const char* which) {
   const tinyxml2::XMLElement* end = joint.FirstChildElement(which);
   const char* name = end == nullptr ? nullptr : end->Attribute("link");
@@ -150,7 +150,7 @@ void check_tree(const tinyxml2::XMLElement& robot, const std::string& file) {
 UrdfLines::UrdfLines(const std::string& text, const std::string& file) : text_(text), file_(file) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError({file, document.ErrorLineNum()}, "is no well-formed XML", "a URDF file is needed");
+    throw InputError({file, document.ErrorLineNum()}, "is not well-formed XML", "a URDF file is needed");
   const tinyxml2::XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
     throw InputError({file, robot == nullptr ? 0 : robot->GetLineNum()}, "has no <robot> at its root",

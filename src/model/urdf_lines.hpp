@@ -11,13 +11,13 @@ namespace posewright {
 /// The same URDF as tinyxml2 sees it: urdfdom knows no lines and reads "1,5" as 1.
 class UrdfLines {
  public:
-  /// Throws InputError where the text is no XML, has no <robot>, or a number in it is malformed or not finite.
+  /// Throws InputError if the text is not XML, has no <robot>, or a number in it is malformed or not finite.
   UrdfLines(const std::string& text, const std::string& file);
-  /// Place of <joint name="…"> or <link name="…">; line 0 where there is none.
+  /// Place of <joint name="…"> or <link name="…">; line 0 if there is none.
   SourcePlace joint(const std::string& name) const { return find("joint", name); }
   SourcePlace link(const std::string& name) const { return find("link", name); }
 
-  /// Throws InputError where a number of a <collision> shape is malformed or a size is not positive.
+  /// Throws InputError if a number of a <collision> shape is malformed or a size is not positive.
   void check_collision_shapes() const;
 
  private:

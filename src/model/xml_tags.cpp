@@ -12,7 +12,7 @@ std::size_t behind(std::string_view text, std::string_view mark, std::size_t fro
   return at == std::string_view::npos ? text.size() : at + mark.size();
 }
 
-/// Behind a comment, CDATA section, processing instruction or declaration that begins at `at`; `at` where there is
+/// Behind a comment, CDATA section, processing instruction or declaration that begins at `at`; `at` if there is
 /// none.
 std::size_t behind_other(std::string_view text, std::size_t at) {
   const std::string_view rest = text.substr(at);
@@ -23,7 +23,7 @@ std::size_t behind_other(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Reads a start tag; `at` is its '<'. True where it is an empty element.
+/// Reads a start tag; `at` is its '<'. True if it is an empty element.
 bool read_tag(std::string_view text, std::size_t at, XmlTag& tag) {
   const auto clip = [&](std::size_t n) { return std::min(n, text.size()); };
   std::size_t here = clip(text.find_first_of(" \t\r\n/>", at));

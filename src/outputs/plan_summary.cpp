@@ -117,7 +117,7 @@ std::string indices_text(const Plan& plan) {
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.by_test_poses && plan.test_errors.size() == 1)
-    text += "A single test pose: the plan crowds around it and tells little of other places; give several.\n";
+    text += "A single test pose: the plan crowds around it and says little about other places; give several.\n";
   if (plan.condition > 1e6)
     text += fmt::format("Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some directions are hardly measured.\n",
                         plan.condition);
@@ -147,7 +147,7 @@ std::string dropped_text(const Plan& plan) {
   std::string text;
   for (const PlannedParameter& p : plan.parameters)
     if (!p.dropped_because.empty()) text += "  " + p.dropped_because + "\n";
-  return text.empty() ? text : "Dropped, because the measurement cannot tell them from others:\n" + text;
+  return text.empty() ? text : "Dropped, because the measurement cannot identify them separately from others:\n" + text;
 }
 
 /// Where candidates were lost, most first: what to move so that fewer are.

@@ -38,7 +38,7 @@ std::vector<double> numbers_of(const nlohmann::json& json, const SourcePlace& pl
   return numbers;
 }
 
-/// −1 for anything that is no id.
+/// −1 for anything that is not an id.
 int id_of(const nlohmann::json& json) {
   const bool fits = json.is_number_integer() && json >= 0 && json <= 1'000'000'000;
   return fits ? json.get<int>() : -1;
@@ -219,7 +219,7 @@ PoseSequence parse_sequence(const std::string& text, const std::string& file) {
     const nlohmann::json json = parse_json(text);
     return SequenceReader(json, file).read();
   } catch (const nlohmann::json::exception&) {
-    throw InputError({file, 0}, "is no plan with configurations",
+    throw InputError({file, 0}, "is not a plan with configurations",
                      "plan.json or route.json as posewright writes them are expected");
   }
 }

@@ -115,7 +115,7 @@ double RestrictedDesign::gap() const {
   return (best_mean({d_.data(), d_.data() + d_.size()}, cap_) + prior_sensitivity_) / degree_ - 1;
 }
 
-/// False where no step leaves M regular.
+/// False if no step leaves M regular.
 bool RestrictedDesign::newton_step(double mu) {
   expansion_->curvature(rows_, blocks_.rows(), hessian_);
   const Eigen::ArrayXd room = cap_ - w_.array();

@@ -26,7 +26,7 @@ class RestrictedDesign {
                    const Eigen::MatrixXd& prior);
 
   /// New working set; candidates already in it keep their weight, new ones enter with a small one.
-  /// Returns false where they leave M(w) singular; the set is then of no use.
+  /// Returns false if they leave M(w) singular; the set is then of no use.
   bool set_candidates(const std::vector<int>& candidates);
   /// Newton steps until the optimality gap on the working set, relative to Φ's degree, is at
   /// most `gap`. Returns the number of steps. Ends early where the best weights leave M singular.

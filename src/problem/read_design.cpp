@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "posewright/problem/design_words.hpp"
+#include "posewright/support/repeats.hpp"
 #include "posewright/support/text.hpp"
 #include "sections.hpp"
 

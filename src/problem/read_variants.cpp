@@ -31,7 +31,7 @@ void read_parameters(const Value& value, VariantSpec& variant) {
     if (!is_set(value.text(expected))) value.fail("is a single name", expected);
     return;
   }
-  if (!value.is_list()) value.fail("is no list", expected);
+  if (!value.is_list()) value.fail("is not a list", expected);
   const std::vector<Located<std::string>> names = value.texts();
   for (const Located<std::string>& name : names) {
     if (variant.automatic || !is_set(name.value)) variant.parameters.push_back(name);

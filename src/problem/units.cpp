@@ -12,7 +12,7 @@
 namespace posewright {
 namespace {
 
-/// SI value = written value · times / over. One of both is 1 and the other exact where it can be, so that "1 mm" is
+/// SI value = written value · times / over. One of both is 1 and the other exact if it can be, so that "1 mm" is
 /// the double nearest to 0.001 and not a product of two rounded numbers.
 struct Unit {
   std::string_view name;
@@ -79,7 +79,7 @@ double take_number(std::string_view& text, const std::string& allowed) {
   double value = 0.0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code == std::errc::result_out_of_range) fail(whole, "is out of range", "a finite double is needed");
-  if (code != std::errc() || !std::isfinite(value)) fail(whole, "is no finite number", allowed);
+  if (code != std::errc() || !std::isfinite(value)) fail(whole, "is not a finite number", allowed);
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   if (text.size() > 1 && text[0] == ',' && text[1] >= '0' && text[1] <= '9')
     fail(whole, "has a decimal comma", "write a decimal point");
@@ -128,7 +128,7 @@ Measured parse_measured(std::string_view text, std::initializer_list<Quantity> a
   const std::string names = allowed_units(accepted);
   const std::string allowed =
       names.empty() ? "a plain number is needed" : "a number is needed, with unit (" + names + ") or in SI";
-  if (whole.empty()) fail(whole, "is no number", allowed);
+  if (whole.empty()) fail(whole, "is not a number", allowed);
   std::string_view rest = whole;
   const double number = take_number(rest, allowed);
   rest = trimmed_blanks(rest);

@@ -93,7 +93,7 @@ YAML::Node load_document(const std::string& text, const std::string& file) {
   } catch (const YAML::Exception& error) {
     std::string what = in_quotes(error.msg);
     what = what.substr(1, what.size() - 2);
-    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + what, "");
+    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is not valid YAML: " + what, "");
   }
 }
 

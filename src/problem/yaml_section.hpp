@@ -78,7 +78,7 @@ class Section {
   /// reported as a missing one.
   void allow(std::initializer_list<std::string_view> keys) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
-  /// Null where the key is absent.
+  /// Null if the key is absent.
   const Value* find(std::string_view key) const;
   const Value& at(std::string_view key) const;
   /// A name usable in messages for the entry `key`.
@@ -91,7 +91,7 @@ class Section {
   std::vector<Entry> entries_;
 };
 
-/// The only document in `text`; throws where YAML is malformed, empty or in several documents.
+/// The only document in `text`; throws if YAML is malformed, empty or in several documents.
 YAML::Node load_document(const std::string& text, const std::string& file);
 
 /// [lower, upper] with lower < upper, both in the same one of the accepted quantities.

@@ -63,7 +63,7 @@ FileReader::FileReader(const fs::path& file) : file_(file) {
   std::error_code code;
   if (!in_) throw InputError(place, std::string("cannot be read: ") + std::strerror(errno), "");
   size_ = fs::file_size(file, code);
-  if (code) throw InputError(place, "is no ordinary file", "a file is needed");
+  if (code) throw InputError(place, "is not an ordinary file", "a file is needed");
   record_input(file);
 }
 

@@ -274,7 +274,7 @@ namespace {
                                    std::span<const double> q, const BlockArray& blocks, std::size_t i) {
   std::size_t column = 0;
   while (blocks.block(i).col(Eigen::Index(column)).allFinite()) ++column;
-  throw CannotDo(fmt::format("the effect of '{}' on {} … is no finite number at the configuration {}",
+  throw CannotDo(fmt::format("the effect of '{}' on {} … is not a finite number at the configuration {}",
                              model.parameters()[std::size_t(selected[column])].name, model.readings().front().name,
                              fmt::join(q, ", ")));
 }

@@ -41,7 +41,7 @@ class CoupledCheck : public SingleCheck {
   double lower_, upper_;
 };
 
-/// Factors in the order of a configuration, for its first poses or (second_suffix) its second ones. Empty where
+/// Factors in the order of a configuration, for its first poses or (second_suffix) its second ones. Empty if
 /// there are none of these.
 std::vector<double> factors_of(const CheckContext& context, const CoupledLimits& coupled, const std::string& suffix) {
   std::vector<double> factors(context.coordinates.size(), 0.0);

@@ -23,7 +23,7 @@ Checks motion_checks(const CheckContext& context);
 /// All constraints on a measurement, in the order of cost.
 Checks pose_checks(const CheckContext& context);
 
-// One maker a constraint; where the problem does not ask for it, nothing is added.
+// One maker a constraint; if the problem does not ask for it, nothing is added.
 void add_limits_check(const CheckContext& context, Checks& checks);
 void add_coupled_checks(const CheckContext& context, Checks& checks);
 void add_actuator_checks(const CheckContext& context, Checks& checks);

@@ -13,7 +13,7 @@ namespace {
 
 // Limits written with fewer digits than the robot's own ("3.1416") are taken as the same.
 constexpr double slack = 1e-4;
-// The margin where none is asked for: of the range, and at most.
+// The margin if none is asked for: of the range, and at most.
 constexpr double default_share = 0.01, most_angle = 2 * std::numbers::pi / 180, most_length = 5e-3;
 
 std::string range_text(const Coordinate& c) {

@@ -102,7 +102,7 @@ class MotionSpace::Implementation {
     return configuration;
   }
 
-  /// False where q is unreachable.
+  /// False if q is unreachable.
   bool actuators(std::span<const double> q, std::vector<double>& values) const {
     values.resize(movers.size());
     return model.actuator_values(whole(q), values);

@@ -76,7 +76,7 @@ class Workspace::Implementation {
     const auto state_space = std::make_shared<Space>(unsigned(coordinates.size()));
     ob::RealVectorBounds bounds(unsigned(coordinates.size()));
     for (unsigned i = 0; i < coordinates.size(); ++i) {
-      // A coordinate with one value only is no interval; OMPL wants one.
+      // A coordinate with one value only is not an interval; OMPL wants one.
       const double room = proposed[i].lower < proposed[i].upper ? 0.0 : 0.5;
       bounds.setLow(i, proposed[i].lower - room);
       bounds.setHigh(i, proposed[i].upper + room);
@@ -132,7 +132,7 @@ std::string Workspace::within_margin(std::span<const double> q) const {
   std::string names;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const Coordinate &all = coordinates()[i], &inner = proposed()[i];
-    // Rounding of a list is no reason to speak.
+    // Rounding of a list is not a reason to speak.
     const double rounding = 1e-6 * (1 + all.upper - all.lower);
     const bool beyond = q[i] < inner.lower - rounding || q[i] > inner.upper + rounding;
     if (!all.choice() && !all.periodic && beyond) names += (names.empty() ? "" : ", ") + all.name;
@@ -163,19 +163,6 @@ bool Workspace::on_boundary(std::span<const double> q, double actuator_share) co
     if (values[i] - actuators[i].lower <= near || actuators[i].upper - values[i] <= near) return true;
   }
   return false;
-}
-
-Site make_site(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell) {
-  Site site;
-  site.model = make_model(problem, variant);
-  if (cell != nullptr && cell->sight_is_asked) {
-    if (site.model->rows_per_target() > 0 &&
-        site.model->rows() != cell->sight->targets() * site.model->rows_per_target())
-      throw std::logic_error("targets of the instrument and of the line of sight differ");
-    site.model->set_visibility({cell, cell->sight.get()});
-  }
-  site.workspace = std::make_unique<Workspace>(*site.model, problem, cell);
-  return site;
 }
 
 }  // namespace posewright

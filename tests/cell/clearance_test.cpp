@@ -84,7 +84,7 @@ TEST(Clearance, IsSetForAnyPair) {
     cell_with(std::string("self_clearance: {pairs: [{between: [base, gun], clearance: 90 mm}]}, ") + hand);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("p.yaml:6: 'gun' is no link, tool part or obstacle with a shape"));
+    EXPECT_THAT(error.what(), HasSubstr("p.yaml:6: 'gun' is not a link, tool part or obstacle with a shape"));
   }
 }
 

@@ -228,7 +228,7 @@ TEST_P(BadCells, AreNamedWithTheirReason) {
   CellFiles s;
   s.folder.write("arm.urdf", planar);
   s.folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-  s.folder.write("text.stl", "this is no mesh");
+  s.folder.write("text.stl", "this is not a mesh");
   s.folder.write("empty.obj", "v 0 0 0\n");
   s.folder.write("bad.srdf", "<robot><disable_collisions link1=\"upper\"/></robot>");
   try {
@@ -251,13 +251,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadCell{"package_without_path", "  collision: {obstacles: [{mesh: \"package://parts\"}]}\n", "names no file"},
         BadCell{"missing_srdf", "  collision: {srdf: no.srdf}\n", "is not there"},
         BadCell{"half_srdf", "  collision: {srdf: bad.srdf}\n", "lacks link1 or link2"},
-        BadCell{"unknown_link", "  collision: {ignore: [[upper, elbow]]}\n", "'elbow' is no link"},
+        BadCell{"unknown_link", "  collision: {ignore: [[upper, elbow]]}\n", "'elbow' is not a link"},
         BadCell{"two_shapes", "  collision: {obstacles: [{sphere: 1, box: [1, 1, 1]}]}\n", "2 shapes"},
         BadCell{"no_shape", "  collision: {obstacles: [{at: [1, 1, 1]}]}\n", "0 shapes"},
         BadCell{"plane_as_tool", "  collision: {tool: [{plane: [0, 0, 1]}]}\n", "a tool has an end"},
         BadCell{"same_name", "  collision: {obstacles: [{name: a, sphere: 1}, {name: a, sphere: 1}]}\n", "once"},
         BadCell{"flat_box", "  collision: {obstacles: [{box: [1, 0, 1]}]}\n", "> 0"},
-        BadCell{"unknown_station", "  collision: {obstacles: [{sphere: 1, station: B}]}\n", "'B' is no station"},
+        BadCell{"unknown_station", "  collision: {obstacles: [{sphere: 1, station: B}]}\n", "'B' is not a station"},
         BadCell{"no_sight", "  line_of_sight: {visible: all}\n", "stands nowhere"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 

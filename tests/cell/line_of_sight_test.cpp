@@ -7,9 +7,9 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/workspace/candidates.hpp"
-#include "posewright/workspace/workspace.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -35,7 +35,7 @@ struct Scenery {
   TemporaryFolder folder;
   Problem problem;
   std::shared_ptr<const Cell> cell;
-  Site site;
+  Variant site;
 
   Scenery(const std::string& targets, const std::string& stations, const std::string& workspace) {
     folder.write("gantry.urdf", gantry);
@@ -46,7 +46,7 @@ struct Scenery {
             "}}}\nvariants: {all: {parameters: [\"x.offset\", \"target.*\"], nuisance: []}}\nworkspace:\n" +
             workspace));
     cell = make_cell(problem);
-    site = make_site(problem, problem.variants.front(), cell);
+    site = place_variant(problem, problem.variants.front(), cell);
   }
   const LineOfSight& sight() const { return *cell->sight; }
   std::string reason(const std::vector<double>& q) const {

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/pipeline/measured_data.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -53,7 +53,7 @@ TEST_F(CalibrateCommand, RobustNamesThePosesThatLostWeight) {
   const ProgramRun shown = run({"--weights", "robust"});
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("Poses with readings that lost weight: 5 (0.00), 12 (0.00)"));
-  EXPECT_THAT(shown.out, HasSubstr("The residuals tell the noise: "));
+  EXPECT_THAT(shown.out, HasSubstr("Noise estimated from the residuals: "));
 }
 
 TEST_F(CalibrateCommand, JsonHasEveryPoseAndTheCovariance) {

@@ -50,7 +50,7 @@ TEST(CommandLine, PlanWritesBothFilesAndASummary) {
   EXPECT_THAT(run.out, HasSubstr("40 poses for variant rigid: 42 parameters"));
   EXPECT_THAT(run.out, HasSubstr("as informative as any plan of 40 of these"));
   EXPECT_THAT(run.out, HasSubstr("boundary of the feasible set"));
-  EXPECT_EQ(run.err, "") << "no progress where stderr is no terminal";
+  EXPECT_EQ(run.err, "") << "no progress where stderr is not a terminal";
   const auto json = nlohmann::json::parse(read_file(folder / "p.json"));
   EXPECT_EQ(json["schema"], "posewright/plan/1");
   EXPECT_EQ(json["problem"]["sha256"].get<std::string>().size(), 64U);
@@ -105,7 +105,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"plan", telescope, "--poses", "many"}, 2, "--poses many; a whole number from 1"},
       {{"plan", telescope, "--poses", "0"}, 2, "a whole number from 1"},
       {{"plan", telescope, "--poses", "4.5"}, 2, "a whole number from 1"},
-      {{"plan", telescope, "--seed", "-1"}, 2, "--seed -1 is no seed"},
+      {{"plan", telescope, "--seed", "-1"}, 2, "--seed -1 is not a seed"},
       {{"plan", telescope, "--threads", "0"}, 2, "--threads 0; a whole number from 1 to 4096"},
       {{"plan", telescope, "--time-limit", "soon"}, 2, "--time-limit soon"},
       {{"plan", telescope, "--variant", "none"},

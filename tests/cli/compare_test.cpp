@@ -31,7 +31,7 @@ TEST(CompareCommand, TablesNameVariantsPlansBiasAndWhatPays) {
   EXPECT_THAT(run.out, HasSubstr("best for matrix"));
   EXPECT_THAT(run.out, HasSubstr("bias/σ"));
   EXPECT_THAT(run.out, HasSubstr("matrix over rigid: pays if matrix is the case: "));
-  EXPECT_THAT(run.out, HasSubstr("only measurements tell"));
+  EXPECT_THAT(run.out, HasSubstr("only measurements can show that"));
   EXPECT_EQ(run.err, "");
 }
 

@@ -99,7 +99,7 @@ TEST(ParametersOption, BadFilesAndOutputsOverItEndWithTwo) {
     return run.err;
   };
   EXPECT_THAT(complaint({"--parameters", "bad.yaml"}),
-              HasSubstr("bad.yaml:3: 'leg_9.distal' is no parameter of variant 'links_and_offsets'; parameters: "));
+              HasSubstr("bad.yaml:3: 'leg_9.distal' is not a parameter of variant 'links_and_offsets'; parameters: "));
   EXPECT_THAT(complaint({"--parameters", "none.yaml"}), HasSubstr("none.yaml"));
   EXPECT_THAT(complaint({"--parameters", "cal.yaml", "--force", "-o", "cal.yaml"}), HasSubstr("cal.yaml is an input"));
   EXPECT_EQ(read_file(folder / "cal.yaml"), calibrated);

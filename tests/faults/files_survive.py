@@ -418,7 +418,7 @@ class Encodings(unittest.TestCase):
         with Folder() as folder:
             done = self.plan(folder, "", "latin-1")
             self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertRegex(done.stderr, r"arm\.urdf:\d+: byte 0xe4 is no text; a text file in UTF-8 is needed")
+            self.assertRegex(done.stderr, r"arm\.urdf:\d+: byte 0xe4 is not text; a text file in UTF-8 is needed")
             done = self.plan(folder, '<?xml version="1.0" encoding="EBCDIC-XX"?>', "latin-1")
             self.assertEqual(done.returncode, 2)
             self.assertIn("encoding 'EBCDIC-XX' is not known", done.stderr)

@@ -14,16 +14,16 @@
 
 #include "posewright/blocks/read_blocks.hpp"
 #include "posewright/controller/controller_settings.hpp"
+#include "posewright/lists/measured_data.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/outputs/pose_formats.hpp"
-#include "posewright/pipeline/measured_data.hpp"
 #include "posewright/problem/calibrated_parameters.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 #include "src/cell/scene.hpp"
 #include "src/cell/triangle_files.hpp"
-#include "src/pipeline/read_poses.hpp"
 #include "tests/kit/urdf_text.hpp"
 
 namespace posewright {

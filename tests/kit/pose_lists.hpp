@@ -2,14 +2,14 @@
 
 #include <vector>
 
-#include "posewright/pipeline/variant_model.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
 
 /// Configurations evenly through the workspace.
 inline std::vector<std::vector<double>> list_of(const Problem& problem, std::size_t count) {
-  const VariantModel variant = make_variant_model(problem, {}, Monitor{});
+  const Variant variant = make_variant(problem, {}, Monitor{});
   SamplingOptions sampling;
   sampling.count = count;
   sampling.seed = 7;

@@ -101,14 +101,14 @@ TEST_F(ApplyParameters, CorrectionsAreThoseFromTheRobotsOwnValues) {
 
 TEST_F(ApplyParameters, UnknownNamesOtherUnitsAndOtherKindsAreRefusedWithTheLineOfTheFile) {
   EXPECT_THAT(complaint(parameters("j9.offset: {value: 1}")),
-              HasSubstr("cal.yaml:3: 'j9.offset' is no parameter of variant 'few'; parameters: base.x"));
+              HasSubstr("cal.yaml:3: 'j9.offset' is not a parameter of variant 'few'; parameters: base.x"));
   EXPECT_THAT(complaint(parameters("j1.offset: {value: 1, unit: deg}")),
               HasSubstr("cal.yaml:3: 'j1.offset' is in 'deg'; allowed: rad, values are in SI"));
   EXPECT_THAT(complaint(parameters("j1.offset: {value: 0.001, nominal: 0.1}")),
               HasSubstr("cal.yaml:3: 'j1.offset' was 0.1 before it was calibrated, this robot's is 0: these are "
                         "parameters of another robot"));
   EXPECT_THAT(complaint(parameters("j1.offset: {value: 1}", "before")),
-              HasSubstr("cal.yaml:2: 'before' is no variant of"));
+              HasSubstr("cal.yaml:2: 'before' is not a variant of"));
   EXPECT_THAT(complaint(parameters("j1.offset: {value: 1}"), {"table"}),
               HasSubstr("cal.yaml:2: has parameters of the kind 'frames', variant 'table' is 'dh'"));
   EXPECT_THAT(complaint(parameters("j1.offset: {value: 1}"), {"none"}), HasSubstr("has no variant 'none'"));

@@ -270,7 +270,7 @@ TEST(ClosedChain, TwistsOfParametersAreThoseOfThePlatformWhenActuatorsStandStill
 }
 
 TEST(ClosedChain, InformationEqualsThatOfTheWeightedLoopEquations) {
-  // Design §3.4: J = W^{1/2} ∂f/∂ξ, W = (F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ)⁻¹, the residual written on the legs.
+  // theory.md eq. (7): J = W^{1/2} ∂f/∂ξ, W = (F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ)⁻¹, the residual written on the legs.
   const SixLegsSpec spec = inclined_telescope();
   MeasurementSpec pose;
   Eigen::Matrix<double, 6, 6> sigma = Eigen::Matrix<double, 6, 6>::Zero();

@@ -196,7 +196,7 @@ TEST(CorrectedUrdf, NamesWithItsValueWhatAUrdfCannotSay) {
                                                {"b & c.gear", "1", 0, 0},
                                                {"d.offset", "rad", 0, 0.5}};
   const CorrectedUrdf with_tip = corrected_urdf(arm_of(urdf, "tip"), {}, Convention::frames, values);
-  const std::vector<std::string> common = {"base.x = 0.5 m: where the robot stands is no part of the robot",
+  const std::vector<std::string> common = {"base.x = 0.5 m: where the robot stands is not part of the robot",
                                            "a.gear = 0.001: a URDF has no gear errors",
                                            "d.compliance = 2e-06 rad/(N·m): a URDF has no place for it",
                                            "compensator.preload = 12 N: a URDF has no place for it",

@@ -277,7 +277,7 @@ TEST(ElasticChain, UnknownJointsAreNamed) {
     const ElasticChain model(heavy_chain(), spec, {"p.yaml", 3});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("p.yaml:12: 'joint_9' is no joint of this arm"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("p.yaml:12: 'joint_9' is not a joint of this arm"));
   }
 }
 

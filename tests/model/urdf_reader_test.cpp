@@ -106,17 +106,17 @@ TEST(UrdfReader, EveryMalformedFileGivesOneLineThatSaysWhere) {
       {"zero axis", "xyz=\"0 0 2\"", "xyz=\"0 0 0\"", "r.urdf:7: joint 'j1' has a zero axis"},
       {"floating", "type=\"continuous\"", "type=\"floating\"", "joint 'j2' is of a type that no arm has"},
       {"planar", "type=\"continuous\"", "type=\"planar\"", "joint 'j2' is of a type that no arm has"},
-      {"unknown type", "type=\"continuous\"", "type=\"hinge\"", "is no valid URDF"},
-      {"unknown parent", "<parent link=\"b\"/>", "<parent link=\"x\"/>", "is no valid URDF"},
+      {"unknown type", "type=\"continuous\"", "type=\"hinge\"", "is not valid URDF"},
+      {"unknown parent", "<parent link=\"b\"/>", "<parent link=\"x\"/>", "is not valid URDF"},
       {"two roots",
        "<joint name=\"j2\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/><axis xyz=\"0 1 0\"/></joint>",
-       "", "is no valid URDF"},
-      {"duplicate joint", "name=\"j2\"", "name=\"j1\"", "is no valid URDF"},
-      {"duplicate link", "<link name=\"c\"/>", "<link name=\"c\"/><link name=\"a\"/>", "is no valid URDF"},
+       "", "is not valid URDF"},
+      {"duplicate joint", "name=\"j2\"", "name=\"j1\"", "is not valid URDF"},
+      {"duplicate link", "<link name=\"c\"/>", "<link name=\"c\"/><link name=\"a\"/>", "is not valid URDF"},
       {"two parents", "<child link=\"c\"/>", "<child link=\"a\"/>", "r.urdf:13: link 'a' is the child of two joints"},
       {"loop", "<child link=\"c\"/>", "<child link=\"base\"/>", "r.urdf:13: link 'base' is its own ancestor"},
-      {"not closed", "</robot>", "", "is no well-formed XML"},
-      {"other root", "<robot name=\"r\">", "<model name=\"r\">", "is no well-formed XML"},
+      {"not closed", "</robot>", "", "is not well-formed XML"},
+      {"other root", "<robot name=\"r\">", "<model name=\"r\">", "is not well-formed XML"},
       {"mimic outside", "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"zz\"/>",
        "mimics 'zz', which is not in the chain"},
       {"mimic garbage", "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"j1\" multiplier=\"1,5\"/>",
@@ -152,10 +152,10 @@ TEST(UrdfReader, BadBaseTipAndFilesAreNamed) {
   SerialArmSpec arm;
   arm.urdf = folder.write("r.urdf", good);
   arm.tip = Located<std::string>{"nowhere", 5};
-  EXPECT_THAT(text_of(arm), HasSubstr("p.yaml:5: tip 'nowhere' is no link of r.urdf; links: a, b, base, c"));
+  EXPECT_THAT(text_of(arm), HasSubstr("p.yaml:5: tip 'nowhere' is not a link of r.urdf; links: a, b, base, c"));
   arm.tip = Located<std::string>{"a", 5};
   arm.base = Located<std::string>{"nobase", 4};
-  EXPECT_THAT(text_of(arm), HasSubstr("p.yaml:4: base 'nobase' is no link"));
+  EXPECT_THAT(text_of(arm), HasSubstr("p.yaml:4: base 'nobase' is not a link"));
   arm.base = Located<std::string>{"b", 4};
   EXPECT_THAT(text_of(arm), HasSubstr("tip 'a' is not below base 'b'"));
   arm.base = Located<std::string>{"a", 4};
@@ -170,7 +170,7 @@ TEST(UrdfReader, BadBaseTipAndFilesAreNamed) {
   second.urdf = folder / "missing.urdf";
   EXPECT_THAT(text_of(second), HasSubstr("cannot be read"));
   second.urdf = folder.write("empty.urdf", "");
-  EXPECT_THAT(text_of(second), HasSubstr("is no well-formed XML"));
+  EXPECT_THAT(text_of(second), HasSubstr("is not well-formed XML"));
   second.urdf = folder.path();
   EXPECT_THAT(text_of(second), HasSubstr("is a folder"));
 }

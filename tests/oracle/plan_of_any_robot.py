@@ -76,7 +76,7 @@ def refused_rightly(message, file, variant):
 
 
 def check(program, label, file, variant):
-    """Prints a line; whether all agrees. A problem that the program says cannot be planned is no disagreement, one that it cannot
+    """Prints a line; whether all agrees. A problem that the program says cannot be planned is not a disagreement, one that it cannot
     read is."""
     with tempfile.TemporaryDirectory() as name:
         done, plan_file = plan_of(program, file, variant, pathlib.Path(name))

@@ -116,12 +116,12 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
   const std::string text = inputs.write("poses.csv", "a,b\n1,2\n").string();
   const std::string settings = inputs.write("r.yaml", "colour: red\n").string();
   const std::vector<BadExport> table = {
-      {{plan, "--to", "excel"}, 2, "'excel' is no format that is written; allowed: kuka-krl, abb-rapid, fanuc-tp"},
+      {{plan, "--to", "excel"}, 2, "'excel' is not a format that is written; allowed: kuka-krl, abb-rapid, fanuc-tp"},
       {{"--to", "csv"}, 2, "PLAN is missing"},
       {{plan, "another", "--to", "csv"}, 2, "unexpected argument 'another'"},
       {{"missing.json", "--to", "csv"}, 2, "missing.json"},
-      {{blocks, "--to", "csv"}, 2, "is no plan with configurations"},
-      {{text, "--to", "moveit"}, 2, "is no plan with configurations"},
+      {{blocks, "--to", "csv"}, 2, "is not a plan with configurations"},
+      {{text, "--to", "moveit"}, 2, "is not a plan with configurations"},
       {{plan, "--to", "fanuc-tp"}, 2, "fanuc-tp needs --coupling F"},
       {{plan, "--to", "yaskawa-inform", "--coupling", "0"}, 2, "needs pulses_per_degree in --controller FILE"},
       {{plan, "--to", "kuka-krl", "--controller", settings}, 2, "r.yaml:1: unknown key 'colour'"},
@@ -133,7 +133,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
       {{plan, "--to", "kuka-krl", "-o", "-"}, 2, "kuka-krl has several files"},
       {{plan, "--to", "csv", "-o", "-", "--json"}, 2, "both want stdout"},
       {{plan, "--to", "kuka-krl", "-o", "A.src", "--name", "B"}, 2, "--name B is not the name of A.src"},
-      {{plan, "--to", "kuka-krl", "-o", "no good.src"}, 2, "'no good' is no name of a kuka-krl program"},
+      {{plan, "--to", "kuka-krl", "-o", "no good.src"}, 2, "'no good' is not a name of a kuka-krl program"},
       {{plan, "--to", "moveit", "-o", "states.txt"}, 2, "reads files that end in .yaml"},
       {{plan, "--to", "hexapod-gcs"}, 1, "is for six-legged platforms"},
       {{route, "--to", "joint-trajectory"}, 1, "cannot wait for a change of station or load case"},
@@ -193,7 +193,7 @@ TEST(PosesBack, EveryReadableFormatScoresAsThePlan) {
     EXPECT_EQ(run.err.find("names no joints") != run.err.npos, nameless) << format.name << run.err;
   }
   EXPECT_THAT(evaluate({"p.json", "--from", "kuka-krl"}).err,
-              HasSubstr("'kuka-krl' is no format that is read; allowed: joint-"));
+              HasSubstr("'kuka-krl' is not a format that is read; allowed: joint-"));
 }
 
 TEST(PosesBack, ARouteIsAPoseListAndListsAreRouted) {

@@ -280,8 +280,8 @@ TEST(RobotPrograms, RefuseWhatWouldBeWrong) {
            {"urscript", "", [](PoseSequence&s, ExportOptions&) { s.poses[1].values[3] = -6.3; },
             "urscript: P2 turns wrist1 to -6.3000 rad; the controller takes -2 pi to 2 pi"},
            {"kuka-krl", "", named("CALIBRATION_OF_THE_KR_270"), "at most 24 in all"},
-           {"abb-rapid", "", named("1st"), "'1st' is no name of a abb-rapid program"},
-           {"fanuc-tp", "", named("CAL-1"), "'CAL-1' is no name"},
+           {"abb-rapid", "", named("1st"), "'1st' is not a name of a abb-rapid program"},
+           {"fanuc-tp", "", named("CAL-1"), "'CAL-1' is not a name"},
            {"kuka-krl", "", [](PoseSequence&, ExportOptions&o) { o.digital_output = "0"; },
             "--digital-output '0'; a whole number from 1"},
            {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.digital_input = "8"; },
@@ -318,13 +318,13 @@ TEST(ControllerSettings, BadFilesNameTheLineAndWhatIsAllowed) {
            Bad{"colour: red", "r.yaml:1: unknown key 'colour'; allowed: sign, zero_deg"},
            Bad{"sign: [1, 2]", "r.yaml:1: sign has a number that is not allowed; 1 or -1"},
            Bad{"coupling: 1\ncoupling: 1", "r.yaml:2: has 'coupling' twice"},
-           Bad{"coupling: one", "r.yaml:1: coupling: 'one' is no number"},
+           Bad{"coupling: one", "r.yaml:1: coupling: 'one' is not a number"},
            Bad{"decimals: 12", "r.yaml:1: decimals is 12; 3 to 9"},
            Bad{"pivot_mm: [1, 2]", "r.yaml:1: pivot_mm has not three numbers"},
-           Bad{"zero_deg: [0, .nan]", "is no number"},
+           Bad{"zero_deg: [0, .nan]", "is not a number"},
            Bad{"pulses_per_degree: [0]", "numbers above 0"},
-           Bad{"- 1", "is no mapping"},
-           Bad{"a: [", "is no valid YAML"},
+           Bad{"- 1", "is not a mapping"},
+           Bad{"a: [", "is not valid YAML"},
        }) {
     try {
       parse_controller_settings(bad.text, "r.yaml");

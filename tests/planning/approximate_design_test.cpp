@@ -177,7 +177,7 @@ TEST(ApproximateDesign, TraceCriteriaAreBoundedTooWithCapsAndPriors) {
         EXPECT_LE(design.max_sensitivity_ratio, 1 + 1e-6) << rows << " " << cap << " " << known;
         Random random(8, 0);
         for (int trial = 0; trial < 200; ++trial) {
-          // As many alike as the cap asks for; a partial one where 1/cap is no whole number.
+          // As many alike as the cap asks for; a partial one where 1/cap is not a whole number.
           Eigen::MatrixXd M = known ? options.prior : Eigen::MatrixXd::Zero(6, 6);
           std::vector<int> order(200);
           std::iota(order.begin(), order.end(), 0);

@@ -7,7 +7,7 @@
 
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/planning/practical_identifiability.hpp"
-#include "src/pipeline/search.hpp"
+#include "posewright/search/search.hpp"
 #include "tests/kit/random_blocks.hpp"
 
 namespace posewright {

@@ -84,7 +84,7 @@ const BadFile serial_robot[] = {
     {"PositionInDegrees", arm, "20 mm", "20 deg", 6,
      "robot.placement.position[2] is wrong: '20 deg' has the wrong unit"},
     {"EncoderNoiseNegative", arm, "\"0.001 deg\"", "-1e-6", 7, "is '-1e-6'; a value >= 0 is expected"},
-    {"EncoderNoiseNotANumber", arm, "\"0.001 deg\"", ".nan", 7, "no finite number"},
+    {"EncoderNoiseNotANumber", arm, "\"0.001 deg\"", ".nan", 7, "not a finite number"},
     {"ParameterNameTaken", arm, "joint_a2.y", "joint_a2.x", 8, "already has the name 'px1'"},
     {"ParameterNameTwice", arm, "py1:", "px1:", 8, "duplicate key 'px1'"},
     {"ParameterNameGlob", arm, "joint_a2.y", "\"joint_*\"", 8, "* and ? are not allowed in a name"},

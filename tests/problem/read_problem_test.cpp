@@ -9,6 +9,7 @@
 
 #include "example_files.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "posewright/support/repeats.hpp"
 #include "posewright/support/sha256.hpp"
 
 namespace posewright {
@@ -277,8 +278,8 @@ TEST_F(ReadProblemFile, WhatIsNoTextFileIsRefused) {
   EXPECT_THAT(error("/dev/zero"), HasSubstr("is a device"));
   EXPECT_THAT(error(write(std::string(10'000'001, '#'))), HasSubstr("has 10000001 bytes"));
   EXPECT_THAT(error(write(std::string("posewright: 1\n\0\1\2", 17))),
-              HasSubstr("problem.yaml:2: byte 0x00 is no text"));
-  EXPECT_THAT(error(write("posewright: 1\n# \xFF\n")), HasSubstr("problem.yaml:2: byte 0xff is no text"));
+              HasSubstr("problem.yaml:2: byte 0x00 is not text"));
+  EXPECT_THAT(error(write("posewright: 1\n# \xFF\n")), HasSubstr("problem.yaml:2: byte 0xff is not text"));
   EXPECT_THAT(error(write("")), HasSubstr("problem.yaml: is empty"));
   EXPECT_THAT(error(write("# nothing\n")), HasSubstr("problem.yaml: is empty"));
 }

@@ -79,7 +79,7 @@ TEST(Tour, NodesOnACircleAreVisitedAroundIt) {
   Eigen::MatrixXd cost(n, n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      // Shuffled, so that the order given is no help.
+      // Shuffled, so that the order given is not a help.
       const double a = 2 * M_PI * ((i * 23) % n) / n, b = 2 * M_PI * ((j * 23) % n) / n;
       cost(i, j) = std::hypot(std::cos(a) - std::cos(b), std::sin(a) - std::sin(b));
     }

@@ -17,11 +17,11 @@
 
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/write_plan.hpp"
-#include "posewright/pipeline/check_sequence.hpp"
-#include "posewright/pipeline/plan_problem.hpp"
-#include "posewright/pipeline/route_problem.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/tasks/check_sequence.hpp"
+#include "posewright/tasks/plan_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
 #include "tests/outputs/program_readers.hpp"
@@ -201,15 +201,16 @@ TEST_P(ProgramsOfRealArms, DoWhatTheRouteDoesAndNothingComesNearOnTheWay) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, ProgramsOfRealArms,
-    testing::Values(
-        Arm{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "base_link", "tool0", 0.6},
-        Arm{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "base_link", "tool0", 1.0},
-        Arm{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "base_link", "tool0", 1.4},
-        Arm{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf", "base_link", "tool0", 2.7},
-        Arm{"ur10", "example-robot-data/robots/ur_description/urdf/ur10_robot.urdf", "base_link", "tool0", 1.3,
-            "{shoulder_lift_joint: -90 deg}",
-            "{shoulder_pan_joint: [-180 deg, 180 deg], shoulder_lift_joint: [-180 deg, 0 deg], elbow_joint: [-150 deg, 150 deg], wrist_1_joint: [-180 "
-            "deg, 180 deg], wrist_2_joint: [-180 deg, 180 deg], wrist_3_joint: [-180 deg, 180 deg]}"}),
+    testing::Values(Arm{"abb_irb120_3_58", "abb_irb120_support/urdf/irb120_3_58.urdf", "base_link", "tool0", 0.6},
+                    Arm{"staubli_tx2_90", "staubli_tx2_90_support/urdf/tx2_90.urdf", "base_link", "tool0", 1.0},
+                    Arm{"fanuc_m10ia", "moveit_resources_fanuc_description/urdf/fanuc.urdf", "base_link", "tool0", 1.4},
+                    Arm{"kuka_kr300_r2700_2", "kuka_quantec_support/urdf/kr300_r2700_2.urdf", "base_link", "tool0",
+                        2.7},
+                    Arm{"ur10", "example-robot-data/robots/ur_description/urdf/ur10_robot.urdf", "base_link", "tool0",
+                        1.3, "{shoulder_lift_joint: -90 deg}",
+                        "{shoulder_pan_joint: [-180 deg, 180 deg], shoulder_lift_joint: [-180 deg, 0 deg], "
+                        "elbow_joint: [-150 deg, 150 deg], wrist_1_joint: [-180 "
+                        "deg, 180 deg], wrist_2_joint: [-180 deg, 180 deg], wrist_3_joint: [-180 deg, 180 deg]}"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 class TrajectoriesOfRealArms : public ProgramsOfRealArms {};

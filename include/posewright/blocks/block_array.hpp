@@ -17,7 +17,7 @@ class BlockArray {
   using ConstMap = Eigen::Map<const RowMatrix, Eigen::Unaligned, Eigen::OuterStride<>>;
 
   BlockArray() = default;
-  /// All zero. Throws std::bad_alloc where memory does not suffice.
+  /// All zero. Throws std::bad_alloc if memory does not suffice.
   BlockArray(std::size_t count, int rows, int columns);
 
   std::size_t count() const { return count_; }

@@ -14,7 +14,7 @@ namespace posewright {
 /// Jacobian blocks that a user brings.
 struct BlockFile {
   BlockArray blocks;
-  std::vector<std::string> columns;  ///< from the CSV header; "column 0", … where there is none
+  std::vector<std::string> columns;  ///< from the CSV header; "column 0", … if there is none
   std::string sha256;                ///< of the file's bytes
 };
 

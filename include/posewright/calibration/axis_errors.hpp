@@ -27,7 +27,7 @@ std::vector<AxisErrors> errors_by_axis(const IdentificationModel& model, const s
 
 /// How far one pose is off: root mean square over its targets of the norm of x, y, z (m), and norm of the turn (rad).
 struct PoseError {
-  double position = 0.0, rotation = 0.0;  ///< NaN where nothing of that kind is read
+  double position = 0.0, rotation = 0.0;  ///< NaN if nothing of that kind is read
 };
 
 /// What the covariance of the estimate makes of the poses, J C Jᵀ, in the rows that were read, and the same with the

@@ -66,7 +66,7 @@ struct VirtualCalibration {
 
 /// True parameters (correction of every parameter of the true model) and readings of one draw, poses without any
 /// reading left out. Depends on the seed and `draw` alone; noise is the same with and without --exact, gross errors and
-/// missing targets. Throws CannotDo where the true robot does not reach a pose.
+/// missing targets. Throws CannotDo if the true robot does not reach a pose.
 std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth);
 
 /// All draws, in parallel; the same for any number of threads. Those that the monitor stopped are `not_run`.

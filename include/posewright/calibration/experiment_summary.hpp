@@ -31,7 +31,7 @@ struct ExperimentSummary {
   double largest = 0.0;               ///< m
 };
 
-/// Reduced in the order of the draws. Throws CannotDo where fewer than two draws were fitted, saying why.
+/// Reduced in the order of the draws. Throws CannotDo if fewer than two draws were fitted, saying why.
 ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vector<VirtualCalibration>& draws);
 
 }  // namespace posewright

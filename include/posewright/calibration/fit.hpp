@@ -49,8 +49,8 @@ struct Fit {
   double noise_factor = 1.0;
   /// R of the readings' Jacobian J = Q R with columns in units of tolerance, noise as stated: what the data alone tell.
   Eigen::MatrixXd root;
-  std::vector<Eigen::VectorXd> residuals;  ///< per pose: measured less predicted, SI; NaN where not read
-  std::vector<Eigen::VectorXd> whitened;   ///< per pose: unit variance if model and noise are right; NaN where not read
+  std::vector<Eigen::VectorXd> residuals;    ///< per pose: measured less predicted, SI; NaN if not read
+  std::vector<Eigen::VectorXd> whitened;     ///< per pose: unit variance if model and noise are right; NaN if not read
   std::vector<std::vector<double>> weights;  ///< robust: per pose and target (or per pose) from 0 to 1; else empty
   int evaluations = 0;
   bool converged = false;
@@ -65,18 +65,18 @@ struct Fit {
 /// on the norm of each target's whitened residual, in units of their median; covariance by Huber (Robust Statistics
 /// 1981, eq. 7.6.6).
 /// @param columns  what is estimated; independent over these poses (see undetermined())
-/// Throws CannotDo where a pose is out of reach at the nominal parameters, where the readings are fewer than the
+/// Throws CannotDo if a pose is out of reach at the nominal parameters, where the readings are fewer than the
 /// columns, or where the columns are dependent at the solution.
 Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
         const FitOptions& options);
 
-/// Residuals of given parameters at other poses: measured less predicted, SI, NaN where not read.
-/// Throws CannotDo where a pose is out of reach.
+/// Residuals of given parameters at other poses: measured less predicted, SI, NaN if not read.
+/// Throws CannotDo if a pose is out of reach.
 std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, const std::vector<double>& correction,
                                           const std::vector<MeasuredPose>& poses);
 
 /// Whitened blocks of the poses at these corrections of all parameters (empty: zero), rows of what was not read zero:
-/// what tells which columns the data can determine. Throws CannotDo where a pose is out of reach.
+/// what tells which columns the data can determine. Throws CannotDo if a pose is out of reach.
 BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
                      const std::vector<MeasuredPose>& poses, const std::vector<double>& correction = {});
 

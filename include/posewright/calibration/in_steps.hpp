@@ -26,7 +26,7 @@ struct StepwiseFit {
 /// stiffnesses): Klimchik et al. (2013), section III, gone through again until no parameter moves by more than a
 /// thousandth of its σ in the joint fit. Steps without columns are left out.
 /// @param columns  what the joint fit estimates
-/// Throws CannotDo where one step cannot be estimated.
+/// Throws CannotDo if one step cannot be estimated.
 StepwiseFit fit_in_steps(const IdentificationModel& model, const VariantColumns& columns,
                          const std::vector<MeasuredPose>& poses, const FitOptions& options, const Fit& joint);
 

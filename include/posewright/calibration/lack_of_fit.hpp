@@ -10,7 +10,7 @@ namespace posewright {
 /// What was read more than once without moving.
 struct RepeatedReadings {
   std::vector<double> q;
-  Eigen::MatrixXd deviations;  ///< readings × rows of the data: each less their mean, SI; NaN where not read
+  Eigen::MatrixXd deviations;  ///< readings × rows of the data: each less their mean, SI; NaN if not read
 };
 
 /// Residuals of poses against the scatter of the readings within them *and* what is stated to stay at a pose.
@@ -22,7 +22,7 @@ struct RepeatedReadings {
 /// @param model       that was fitted: C
 /// @param instrument  the same with what stays at a pose left out: E/n
 /// @param repeats     readings a pose that both count with
-/// f is Fit::left. Not possible where nothing was read twice, without degrees of freedom, and for robust fits.
+/// f is Fit::left. Not possible if nothing was read twice, without degrees of freedom, and for robust fits.
 TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,
                        const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,
                        const Fit& result);

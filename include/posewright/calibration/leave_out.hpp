@@ -13,7 +13,8 @@ struct LeaveOut {
   int groups = 0;          ///< 0: not judged, `why_not` says why
   double estimated = 0.0;  ///< root mean square of whitened residuals of poses left out, all columns estimated
   double placed = 0.0;     ///< the same with only those estimated that say where things stand
-  /// Mean gain of the estimate over all poses left out, paired, in its own standard errors: above 2 it is no accident.
+  /// Mean gain of the estimate over all poses left out, paired, in its own standard errors: above 2 it is not an
+  /// accident.
   double gain = 0.0;
   std::string why_not;  ///< not judged, or: why the estimate cannot predict (infinite)
 
@@ -23,7 +24,7 @@ struct LeaveOut {
 
 /// Leaves out one pose after the other (above 30 poses one of ten groups: every tenth pose), estimates from the rest
 /// and predicts what was left out, once with all columns and once with the placing columns alone (placing_columns()).
-/// Judged by the lengths among the readings where there are any. A predicted variance cannot judge this: a prior always
+/// Judged by the lengths among the readings if there are any. A predicted variance cannot judge this: a prior always
 /// lowers it, and the noise may not be as stated. With robust weights medians take the place of means, and the gain is
 /// that of a sign test.
 /// @param start  corrections of all parameters: things placed, nothing else estimated
@@ -33,7 +34,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
                    const Fit& whole, const Monitor& monitor);
 
 /// The combination of the columns that the readings alone tell least of, in units of tolerance: "0.71 a2.offset − 0.70
-/// base.ry are told apart to 531 tolerances only". Empty where all are told better than three tolerances.
+/// base.ry are told apart to 531 tolerances only". Empty if all are told better than three tolerances.
 std::string weakest_combination(const Fit& result, const VariantColumns& columns);
 
 }  // namespace posewright

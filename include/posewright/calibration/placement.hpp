@@ -18,7 +18,7 @@ VariantColumns determined(const IdentificationModel& model, const VariantColumns
 /// Fits the placing columns alone. Nobody knows how an instrument's axes lie to a robot's base before the first fit:
 /// where the nominal base leaves residuals that no error of a robot explains, the 24 rotations of a cube are tried as
 /// its orientation and the best is kept.
-/// @return corrections of all parameters; zero where there are no such columns
+/// @return corrections of all parameters; zero if there are no such columns
 std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const FitOptions& options);
 

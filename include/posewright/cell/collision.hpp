@@ -45,13 +45,13 @@ class Collision {
 
   /// Index into reasons() of what q collides with, or −1. Bodies keep their clearance, and half a millimetre more.
   int violation(std::span<const double> q) const;
-  /// "link_3 and table" for the first pair that is too near; empty where q is free.
+  /// "link_3 and table" for the first pair that is too near; empty if q is free.
   std::string colliding(std::span<const double> q) const;
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
   double slack(std::span<const double> q, double cap) const;
 
   /// The two bodies that are nearest to each other, of those that are checked; none if nothing is. Links that only must
-  /// not touch each other count only where there is nothing else.
+  /// not touch each other count only if there is nothing else.
   std::optional<Separation> nearest(std::span<const double> q) const;
   /// The same on the straight motion, where the smallest distance is at most half a millimetre below the one returned.
   std::optional<Separation> nearest(std::span<const double> from, std::span<const double> to) const;

@@ -31,7 +31,7 @@ class LineOfSight : public Visibility {
  public:
   /// @param model      nominal one of the problem; must outlive this
   /// @param collision  bodies that may hide a target; null: nothing does. Must outlive this.
-  /// Null for an instrument without stations and targets. Throws InputError where the problem's line_of_sight asks for
+  /// Null for an instrument without stations and targets. Throws InputError if the problem's line_of_sight asks for
   /// what the instrument does not have.
   static std::unique_ptr<LineOfSight> make(const Problem& problem, const IdentificationModel& model,
                                            const Collision* collision);

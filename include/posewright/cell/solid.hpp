@@ -37,13 +37,13 @@ class Solid {
   std::vector<Eigen::Vector3d> corners_;
 };
 
-/// Meshes are surfaces; closed ones count as solid. Throws std::invalid_argument where nothing is left of a mesh.
+/// Meshes are surfaces; closed ones count as solid. Throws std::invalid_argument if nothing is left of a mesh.
 std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMesh* mesh);
 
 /// Distance between two solids in m, at most `cap`; 0 where they touch or one is in the other.
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b, double cap);
 
-/// Lower bound of the distance, by boxes and spheres around both; may be negative where they overlap.
+/// Lower bound of the distance, by boxes and spheres around both; may be negative if they overlap.
 double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b);
 
 /// Whether a solid comes nearer than `radius` to the segment.

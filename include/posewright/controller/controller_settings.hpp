@@ -10,7 +10,7 @@
 namespace posewright {
 
 /// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
-/// of the plan's joints, empty where the file has none.
+/// of the plan's joints, empty if the file has none.
 struct ControllerSettings {
   std::string file;
   std::map<std::string, int> lines;  ///< keys that are given, and where

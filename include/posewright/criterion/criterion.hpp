@@ -54,7 +54,7 @@ class DesignState {
   virtual Swap best_addition() = 0;
   /// Φ without the member at `position` less Φ now, exact; −∞ where it is indispensable.
   virtual double removal(int position) = 0;
-  /// Recomputes every running quantity from the blocks. Returns false where the information is singular; the
+  /// Recomputes every running quantity from the blocks. Returns false if the information is singular; the
   /// state then works with a small ridge (M + εI) until a later refresh succeeds without.
   virtual bool refresh() = 0;
 

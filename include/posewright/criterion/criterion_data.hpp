@@ -27,7 +27,7 @@ struct EffectGroup {
   int columns = 0;      ///< trailing ones; 0: no effects are known
   Eigen::MatrixXd mix;  ///< columns × effects, raw: effect e moves the readings by (trailing columns) mix.col(e)
   Eigen::MatrixXd error_rows{};    ///< for `bias`: error that counts = error_rows · (error of the fitted), raw
-  Eigen::MatrixXd error_offset{};  ///< rows × effects: what each effect does there that is no trailing column's
+  Eigen::MatrixXd error_offset{};  ///< rows × effects: what each effect does there that is not a trailing column's
 };
 
 /// What criteria need beyond the blocks. Blocks are whitened, J = J_raw R⁻¹, so M_raw = Rᵀ M R.

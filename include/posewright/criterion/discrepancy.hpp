@@ -47,7 +47,7 @@ class BiasFunction : public InformationFunction {
   Eigen::MatrixXd rows_, mix_, offset_;
 };
 
-/// `discriminate`, `bias`. Throw CannotDo where no effects are known.
+/// `discriminate`, `bias`. Throw CannotDo if no effects are known.
 std::unique_ptr<Criterion> make_discriminate_criterion(const CriterionData& data);
 std::unique_ptr<Criterion> make_bias_criterion(const CriterionData& data);
 

@@ -32,7 +32,7 @@ class InformationFunction {
   /// h of Φ(cM) = Φ(M) + h ln c where e^{Φ/h} is concave: then Φ(v) ≤ Φ(w) + h ln(Σ v_i d_i(w) / h) for all weights v,
   /// w, and exp((Φ − bound)/h) is an efficiency. 0: Φ has no such bound, and expand() must not be called.
   virtual double degree() const { return 0.0; }
-  /// Null where M is singular.
+  /// Null if M is singular.
   virtual std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const;
 };
 

@@ -27,7 +27,7 @@ class InverseInformation {
   void cross(int candidate, const std::vector<double>& y, Eigen::MatrixXd& c) const;
   /// D_candidate = J V Jᵀ, r × r.
   void own(int candidate, Eigen::MatrixXd& d);
-  /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter; −1 for nobody. Returns false where the update would lose all accuracy:
+  /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter; −1 for nobody. Returns false if the update would lose all accuracy:
   /// nothing has changed then and the caller refreshes instead.
   bool change(int leave, int enter);
 

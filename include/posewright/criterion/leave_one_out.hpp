@@ -16,7 +16,7 @@ class LeaveOneOut {
  public:
   LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd* prior);
 
-  /// Σ JᵀJ over the members. Returns false where it is singular.
+  /// Σ JᵀJ over the members. Returns false if it is singular.
   bool set_members(const std::vector<int>& members);
   /// −1 for nobody, here and below.
   void exchange(int leave, int enter);

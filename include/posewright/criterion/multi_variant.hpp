@@ -11,7 +11,7 @@ namespace posewright {
 /// below each other, so that M is block diagonal; the efficiency of variant v is
 ///   e_v = ((det S_v) / best det S_v)^{1/s_v},
 /// S_v its interest information, s_v its number of interest parameters, the best that of its own bound.
-/// Both throw CannotDo where the data name no variants.
+/// Both throw CannotDo if the data name no variants.
 
 /// `compound`: Φ = Σ ω_v ln e_v, Σ ω = 1: a geometric mean of concave functions of degree one (Atkinson, Donev & Tobias
 /// 2007, ch. 21).

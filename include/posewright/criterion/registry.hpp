@@ -14,7 +14,7 @@ namespace posewright {
 struct CriterionEntry {
   std::string name;
   std::string summary;
-  /// Throws CannotDo where the data lack what it needs.
+  /// Throws CannotDo if the data lack what it needs.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
   /// Φ of a design in the criterion's own terms (docs/plan-file.md); `indices` are those of the same design.
   double (*shown)(double phi, const ObservabilityIndices& indices);
@@ -35,11 +35,11 @@ double shown_variance(double phi, const ObservabilityIndices&);
 /// References to its rows stay valid.
 const std::deque<CriterionEntry>& criterion_registry();
 /// One row more, for programs that bring a criterion of their own; before the first search, by one thread.
-/// Throws std::invalid_argument where the name is taken or a function is missing.
+/// Throws std::invalid_argument if the name is taken or a function is missing.
 void register_criterion(CriterionEntry entry);
-/// nullptr where no criterion has that name.
+/// nullptr if no criterion has that name.
 const CriterionEntry* find_criterion(const std::string& name);
-/// nullptr where no criterion has that name.
+/// nullptr if no criterion has that name.
 std::unique_ptr<Criterion> make_criterion(const std::string& name, const CriterionData& data);
 /// "o1, …": for messages that say what is allowed.
 std::string criterion_names();

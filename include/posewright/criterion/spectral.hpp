@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// Functions of the singular values σ1 ≥ … ≥ σs of the scaled G with nuisance eliminated (design §4):
+/// Functions of the singular values σ1 ≥ … ≥ σs of the scaled G with nuisance eliminated (theory.md eq. (18)):
 ///   o2 = σs/σ1 (Driels & Pathre 1990), o3 = σs (Nahvi et al. 1994), o4 = σs²/σ1 (Nahvi & Hollerbach 1996),
 ///   o5 = 1/Σ σi⁻¹ (Sun & Hollerbach 2008).
 /// The search maximises the logarithm. They depend on the scale of the columns. ln o3 is concave in M, the others are

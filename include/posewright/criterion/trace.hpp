@@ -14,7 +14,7 @@ namespace posewright {
 /// `a`: the parameters of interest in units of `scale`; φ is the sum of their variances.
 Eigen::MatrixXd variance_rows(const CriterionData& data);
 /// `test_pose`: rows √(w_t/Σw) A_t; φ is the mean squared position error at the test points.
-/// Throws CannotDo where there are no test points.
+/// Throws CannotDo if there are no test points.
 Eigen::MatrixXd test_point_rows(const CriterionData& data);
 
 /// Φ = −ln φ, φ = tr(A M⁻¹ Aᵀ). 1/φ is concave and of degree one in M, so degree() is 1 and an efficiency is a ratio of
@@ -46,7 +46,7 @@ class TraceCriterion : public Criterion {
   TraceFunction function_;
 };
 
-/// `test_pose_max`: Φ = −ln max_t tr(A_t M⁻¹ A_tᵀ), concave. Throws CannotDo where there are no test points.
+/// `test_pose_max`: Φ = −ln max_t tr(A_t M⁻¹ A_tᵀ), concave. Throws CannotDo if there are no test points.
 std::unique_ptr<Criterion> make_worst_test_point_criterion(const CriterionData& data);
 
 }  // namespace posewright

@@ -15,7 +15,7 @@ inline std::string near_singularity() { return "near a singularity"; }
 ///   twist of the platform along a parameter = −B F_x⁻¹ F_ξ,  along an actuator reading = −B F_x⁻¹ F_ρ,
 /// F_x = ∂f/∂x, B = twists along the coordinates (6 × d). So every instrument works with every closed chain, also one
 /// that sees only a part of the pose. Where it sees all six values this gives the same information as the residual f
-/// itself, weighted by (F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ)⁻¹ (design §3.4): both differ by the regular factor F_x.
+/// itself, weighted by (F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ)⁻¹ (theory.md eq. (7)): both differ by the regular factor F_x.
 ///
 /// Parameters: base.{x,…,rz} (displacement of the base in M), the robot's own, tool.{x,…,rz} (of the platform).
 class ClosedChain : public TipModel {
@@ -35,7 +35,7 @@ class ClosedChain : public TipModel {
   bool configuration_at(std::span<const double> actuators, std::span<const double> start,
                         std::span<const double> correction, std::span<double> q) const final;
 
-  /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty where it
+  /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty if it
   /// does not converge in 50 steps or meets a singularity.
   /// @param correction  of all parameters, or empty for zero
   std::optional<std::vector<double>> forward_kinematics(std::span<const double> actuators,
@@ -70,7 +70,7 @@ class ClosedChain : public TipModel {
  private:
   /// Pose of the platform in the base frame, and the twists (6 × d, spatial, base frame) along its coordinates.
   virtual Eigen::Isometry3d do_platform(std::span<const double> q, Twists& freedoms) const = 0;
-  /// False where q is out of reach.
+  /// False if q is out of reach.
   virtual bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
                                      std::span<double> actuators) const = 0;
   /// `out` has the right sizes and is all zero.

@@ -18,7 +18,7 @@ struct CorrectedUrdf {
 /// the tool. Readings keep their meaning and limits theirs. An <origin> is put in where a joint has none.
 /// @param place       where the problem file names the robot
 /// @param convention  whose names the values have
-/// Throws as read_urdf_chain and chain_correction, InputError too for a joint whose name is no well-formed text.
+/// Throws as read_urdf_chain and chain_correction, InputError too for a joint whose name is not well-formed text.
 CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
                              const std::vector<CalibratedValue>& values);
 

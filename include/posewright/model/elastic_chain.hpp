@@ -13,13 +13,13 @@ namespace posewright {
 /// followed the sorted positions and not the file's, so they cannot be taken for anything.
 bool is_numbered_place(std::string_view name);
 
-/// How far the torque of a compensator bends its joint without any load (`effect: torque`), where that is no small
-/// angle in which springs are linear: one line for the user. Empty where nothing is to be said.
+/// How far the torque of a compensator bends its joint without any load (`effect: torque`), if that is not a small
+/// angle in which springs are linear: one line for the user. Empty if nothing is to be said.
 std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates);
 
-/// Serial arm whose joints give way (virtual joint springs, design §3.3): each joint stands deflected by δ = k·τ, with
-/// the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the undeflected arm
-/// with its nominal parameters (take_loads_at()): the difference is of second order.
+/// Serial arm whose joints give way (virtual joint springs, theory.md eq. (11)): each joint stands deflected by δ =
+/// k·τ, with the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the
+/// undeflected arm with its nominal parameters (take_loads_at()): the difference is of second order.
 ///
 /// Configuration: the chain's, then the load case. Parameters: the chain's without tool.*; for each coordinate
 /// NAME.compliance (rad/(N·m) or m/N), or NAME.compliance@-25.2deg, … for listed positions (in the order in which they

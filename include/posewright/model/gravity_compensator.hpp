@@ -6,9 +6,9 @@
 
 namespace posewright {
 
-/// Linkage of a gravity compensator at joint position q2 (design §3.3): a = |P0P2|, γ = α − q2 with α = atan2(ax, ay),
-/// s = |P0P1| = √(a² + L² + 2 a L cos γ). Both results are linear in the spring's stiffness Kc (N/m) and its preload
-/// s0·Kc (N).
+/// Linkage of a gravity compensator at joint position q2 (theory.md eq. (12)): a = |P0P2|, γ = α − q2 with α =
+/// atan2(ax, ay), s = |P0P1| = √(a² + L² + 2 a L cos γ). Both results are linear in the spring's stiffness Kc (N/m) and
+/// its preload s0·Kc (N).
 template <class T>
 struct CompensatorLinkage {
   T aL, sine, cosine, s;

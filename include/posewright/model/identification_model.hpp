@@ -109,7 +109,7 @@ class IdentificationModel {
   /// Fills out.G (columns in the order of `selected`, indices into parameters()) and out.covariance.
   /// @param q           configuration, size coordinates()
   /// @param correction  ξ − nominal for every parameter, or empty for all zero
-  /// @return false where q has no solution (unreachable) or cannot be measured; `out` is then unspecified
+  /// @return false if q has no solution (unreachable) or cannot be measured; `out` is then unspecified
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Linearisation& out) const;
   /// The same with G factored into out.basis and out.coefficients, random motions of the tip into
@@ -122,25 +122,25 @@ class IdentificationModel {
   /// Readings h(ρ, ξ) with the parameters nominal + correction, while the actuators ρ stand as they do at q with
   /// nominal ones: a parallel robot settles in another pose, a serial arm turns its joints as far as it reads.
   /// @param y  resized to readings()
-  /// @return false where q is out of reach or a closed chain does not settle near q
+  /// @return false if q is out of reach or a closed chain does not settle near q
   /// Throws CannotDo for an instrument whose readings cannot be told (PoseModel with a part of the orientation).
   bool predict(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const;
   /// predict() and, where the robot then stands, linearise().
   bool predict_and_linearise(std::span<const double> q, std::span<const double> correction,
                              std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y) const;
   /// Measured less predicted readings as the rows of linearise() count them: orientations by the rotation vector
-  /// between them, angles of joints within half a turn; NaN where the measured one is NaN.
+  /// between them, angles of joints within half a turn; NaN if the measured one is NaN.
   /// @param out  size readings()
   void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted, Eigen::VectorXd& out) const;
   /// Readings whose difference() to the predicted ones is `change`.
   void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
   /// Where a robot with nominal parameters stands when its actuators have these values (size actuators()), searched
-  /// from `start`; a robot without actuators stays there. False where the closed chain does not close.
+  /// from `start`; a robot without actuators stays there. False if the closed chain does not close.
   bool configuration_at(std::span<const double> actuators, std::span<const double> start, std::span<double> q) const;
 
-  /// False where the instrument cannot see q; why, in words for the table of rejections.
+  /// False if the instrument cannot see q; why, in words for the table of rejections.
   bool measurable(std::span<const double> q) const;
-  /// Empty where every reachable configuration can be measured.
+  /// Empty if every reachable configuration can be measured.
   const std::string& unmeasurable_reason() const { return unmeasurable_reason_; }
 
   /// Who says which targets can be seen: from now on the rows of hidden ones are zero in every linearisation, so that a
@@ -149,11 +149,11 @@ class IdentificationModel {
   /// Rows that one target has; 0: the instrument sees the pose as a whole.
   int rows_per_target() const { return rows_per_target_; }
 
-  /// Twists of the tip per unit of each reading (joint or actuator), 6 × readings (see TipModel); false where q is
+  /// Twists of the tip per unit of each reading (joint or actuator), 6 × readings (see TipModel); false if q is
   /// unreachable or the model has no single tip.
   bool reading_twists(std::span<const double> q, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
 
-  /// Actuator coordinates at q (size actuators()); false where q is unreachable.
+  /// Actuator coordinates at q (size actuators()); false if q is unreachable.
   bool actuator_values(std::span<const double> q, std::span<double> values) const;
 
   /// Nominal pose of the tip (or platform) in the measurement frame.

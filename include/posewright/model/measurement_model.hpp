@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// Prior 1σ of a target's coordinates where nothing else is said, m.
+/// Prior 1σ of a target's coordinates if nothing else is said, m.
 inline constexpr double default_target_tolerance = 1e-3;
 
 /// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
@@ -31,9 +31,9 @@ class MeasurementModel {
   int rows() const { return rows_; }
   /// Rows that belong to one target each, target by target; 0: readings are of the pose as a whole.
   int rows_per_target() const { return rows_per_target_; }
-  /// Names of the stations that a measurement can be taken from; empty where there is nothing to choose.
+  /// Names of the stations that a measurement can be taken from; empty if there is nothing to choose.
   const std::vector<std::string>& stations() const { return stations_; }
-  /// True where targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
+  /// True if targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
   bool replaces_tool() const { return replaces_tool_; }
 
   /// What it delivers, in the order of the rows.
@@ -55,13 +55,13 @@ class MeasurementModel {
   /// true, and the twist where `twist` is not null.
   virtual bool motion(const Sighting& sighting, int index, Twist* twist) const;
 
-  /// Column (size rows) of an own parameter that is no motion. Throws std::logic_error for others.
+  /// Column (size rows) of an own parameter that is not a motion. Throws std::logic_error for others.
   virtual void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const;
 
   /// Covariance of the rows (rows × rows): reading noise over repeats, plus what stays at a pose.
   virtual void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const = 0;
 
-  /// False where the instrument cannot read the tip there; unseen_reason() says why, empty where it always can.
+  /// False if the instrument cannot read the tip there; unseen_reason() says why, empty if it always can.
   virtual bool sees(const Sighting& sighting) const;
   const std::string& unseen_reason() const { return unseen_reason_; }
 
@@ -78,7 +78,7 @@ class MeasurementModel {
 
 /// Covariance (6 × 6) of the pose in spatial twists about the tip's origin, by the linear fit of the pose to an
 /// instrument's readings: Σ_X = (Yᵀ Σ_y⁻¹ Y)⁻¹, Y = derivative of the readings along those twists.
-/// Throws CannotDo where the readings do not fix all six degrees of freedom.
+/// Throws CannotDo if the readings do not fix all six degrees of freedom.
 Eigen::Matrix<double, 6, 6> fitted_pose_covariance(const MeasurementModel& measurement, const Eigen::Isometry3d& X);
 
 }  // namespace posewright

@@ -13,8 +13,8 @@ class SerialChain : public TipModel {
   /// Throws std::invalid_argument for a chain without joints or with more than 64.
   explicit SerialChain(ChainDescription chain);
 
-  /// Columns are spatial twists (design §3.1): rotation about axis ω through o gives (o × ω, ω), translation (axis, 0).
-  /// Selected indices beyond the chain's own parameters give zero columns.
+  /// Columns are spatial twists (theory.md eq. (5)): rotation about axis ω through o gives (o × ω, ω), translation
+  /// (axis, 0). Selected indices beyond the chain's own parameters give zero columns.
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
 

@@ -13,7 +13,7 @@ struct LegParameters {
   T a[3], b[3], u[2], l;  ///< u without its third component, which is √(1 − ux² − uy²) with the nominal sign
 };
 
-/// Loop equation of one leg, g = l + extension − ‖p + R (b + lift·z) − a − slide·u‖ (design §3.4). A leg with a
+/// Loop equation of one leg, g = l + extension − ‖p + R (b + lift·z) − a − slide·u‖ (theory.md eq. (8)). A leg with a
 /// prismatic base joint slides, a leg of variable length extends; `lift` is the platform's deformation at b.
 /// @param p, R    platform pose in the base frame (m; row-major rotation)
 /// @param u_sign  sign of the third component of u
@@ -36,7 +36,7 @@ T leg_residual(const T* p, const T* R, const T& slide, const T& extension, const
 ///
 /// Configuration: x, y, z (m) added to the reference position, rx, ry, rz (rad): R = Rz Ry Rx R_reference. Own
 /// parameters: leg_i.{ax, ay, az, bx, by, bz, ux, uy, l}, i = 1 … 6 (no ux, uy for a Gough platform); a in the base
-/// frame, b in the platform's. A 6-PUS adds the deformation of the platform by the actuators' positions (design §3.4),
+/// frame, b in the platform's. A 6-PUS adds the deformation of the platform by the actuators' positions,
 ///   Δb_i = ((kappa + kappa_i) Δρ_i + Σ_j K_ij Δρ_j) z,   Δρ = ρ − ρ⁰,
 /// ρ⁰ the actuators of the nominal robot at the reference; kappa_i as in eq. (7), K as in eq. (8) of the telescope's
 /// study, kappa one for all legs. All zero unless a variant's nominal values say otherwise. Actuators leg_i.rho by

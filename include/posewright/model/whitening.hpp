@@ -6,14 +6,14 @@
 
 namespace posewright {
 
-/// Cholesky factor of a residual's covariance. Throws CannotDo where that is not positive definite.
+/// Cholesky factor of a residual's covariance. Throws CannotDo if that is not positive definite.
 void factorise_covariance(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen::MatrixXd>& factor);
 
 /// Whitened block J = L⁻¹ G with covariance = L Lᵀ of the residual, i.e. J = W^{1/2} ∂g/∂ξ up to a rotation of the
 /// rows, W = (G_y Σ_y G_yᵀ + G_ρ Σ_ρ G_ρᵀ)⁻¹; JᵀJ = Gᵀ W G. Written row-major, r rows of selected.size() doubles,
 /// `stride` doubles apart. Does not allocate once `scratch` has been used with the same sizes.
-/// @return false where q is unreachable; nothing is written then
-/// Throws CannotDo where the covariance is not positive definite.
+/// @return false if q is unreachable; nothing is written then
+/// Throws CannotDo if the covariance is not positive definite.
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
                     std::span<const int> selected, Linearisation& scratch, double* out, int stride);
 

@@ -47,7 +47,7 @@ struct PlannedPose {
   bool measured = false;                       ///< was there before: not to be measured again
   std::vector<NamedValue> configuration;       ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;           ///< of a parallel robot
-  std::string load_case, station;              ///< empty where the problem has none
+  std::string load_case, station;              ///< empty if the problem has none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<TargetSight> sights;             ///< where to look for the targets
   std::optional<BodyDistance> nearest{};       ///< of the bodies that are checked for collision
@@ -58,13 +58,13 @@ struct PlannedPose {
 
 struct PlannedParameter {
   Parameter label;
-  std::string variant;          ///< empty where the plan serves one
-  std::optional<double> sigma;  ///< predicted 1σ after calibration, SI; none where not identifiable
-  std::string dropped_because;  ///< equation among kept parameters; empty where it is kept
+  std::string variant;          ///< empty if the plan serves one
+  std::optional<double> sigma;  ///< predicted 1σ after calibration, SI; none if not identifiable
+  std::string dropped_because;  ///< equation among kept parameters; empty if it is kept
 };
 
 /// What is proved about a plan over its candidates, and what a search says over the whole workspace. Bounds are of Φ,
-/// what the search maximises: log det, −ln of a variance, or ln of an efficiency (docs/theory.md).
+/// what the search maximises: log det, −ln of a variance, or ln of an efficiency (theory.md).
 struct Certificate {
   bool proved = true;                  ///< false: the criterion has no bound, the rest says nothing
   double efficiency = 0.0;             ///< lower bound of what the plan reaches of the best, in (0, 1]
@@ -183,7 +183,7 @@ struct Plan {
   ObservabilityIndices indices;
   double condition = 0.0;
   Certificate certificate;
-  std::optional<Discrimination> discrimination;  ///< where a truth is named
+  std::optional<Discrimination> discrimination;  ///< if a truth is named
   std::vector<VariantResult> variants{};         ///< of a plan for several
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones

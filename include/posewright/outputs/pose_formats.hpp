@@ -83,7 +83,7 @@ const PoseFormat& find_pose_format(const std::string& name);
 const PoseFormat& find_readable_format(const std::string& name);
 std::string readable_format_names();
 
-/// What the format's writer makes. Throws CannotDo where the format is for joints and the plan's coordinates are those
+/// What the format's writer makes. Throws CannotDo if the format is for joints and the plan's coordinates are those
 /// of a platform or of pairs of configurations; else as the writer.
 Exported export_poses(const PoseFormat& format, const PoseSequence& sequence, const ExportOptions& options);
 

@@ -20,7 +20,7 @@ struct SequencePose {
   int id = 0;
   bool measured = false;                       ///< was there before the plan: not to be measured again
   std::vector<double> values;                  ///< SI, in the order of PoseSequence::names
-  std::string load_case, station;              ///< empty where there is none
+  std::string load_case, station;              ///< empty if there is none
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<SequenceTarget> targets;
   std::vector<std::string> references;  ///< reference targets to measure while the robot stands here
@@ -50,7 +50,7 @@ struct PoseSequence {
 };
 
 /// Reads plan.json, route.json (their schemas), an evaluation or a plain pose list (`export --to json`).
-/// Throws InputError where the text is none of them, poses differ in their coordinates, or motions do not lead from
+/// Throws InputError if the text is none of them, poses differ in their coordinates, or motions do not lead from
 /// pose to pose in their order.
 PoseSequence parse_sequence(const std::string& text, const std::string& file);
 

@@ -6,12 +6,13 @@
 
 namespace posewright {
 
-/// Alias matrix A = (X₁ᵀX₁)⁻¹X₁ᵀX₂ (Box & Draper): where the readings hold X₂ δ that the fitted columns X₁ know nothing
-/// of, least squares gives their parameters A δ too much. By QR on columns of unit length; no inverse is formed.
+/// Alias matrix A = (X₁ᵀX₁)⁻¹X₁ᵀX₂ (Box & Draper; theory.md eq. (24)): where the readings hold X₂ δ that the fitted
+/// columns X₁ know nothing of, least squares gives their parameters A δ too much. By QR on columns of unit length; no
+/// inverse is formed.
 /// @param blocks  whitened; the leading `own` columns are those that are fitted, the rest X₂
 /// @param known   1σ of what is known before of each fitted column, its estimate held to zero so far; empty: nothing
 /// @return own × (columns − own), in the units of the columns
-/// Throws std::invalid_argument for sizes that do not fit, CannotDo where the fitted columns are dependent.
+/// Throws std::invalid_argument for sizes that do not fit, CannotDo if the fitted columns are dependent.
 Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known = {});
 
 /// What least squares makes of the readings X₂.

@@ -49,7 +49,7 @@ struct ApproximateDesignOptions {
 ///
 /// @param blocks    whitened (see whiten())
 /// @param function  of positive degree
-/// Throws std::invalid_argument where cap · n < 1 or Φ has no degree, CannotDo where no weights give a regular M.
+/// Throws std::invalid_argument if cap · n < 1 or Φ has no degree, CannotDo if no weights give a regular M.
 ApproximateDesign solve_approximate_design(const BlockArray& blocks, const InformationFunction& function,
                                            const ApproximateDesignOptions& options, const Monitor& monitor);
 

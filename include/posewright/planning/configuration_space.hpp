@@ -22,7 +22,7 @@ class ConfigurationSpace {
     virtual ~Probe() = default;
     virtual bool feasible(std::span<const double> q) = 0;
     /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False
-    /// where q has none.
+    /// if q has none.
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
   };
 
@@ -30,7 +30,7 @@ class ConfigurationSpace {
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
-  /// How far apart poses must be that are no candidates (no points in it): the task's spacing, or, where poses may not
+  /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
   /// Configuration of a candidate of the task.

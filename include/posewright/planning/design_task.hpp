@@ -32,7 +32,7 @@ struct PlannerOptions {
   int kicks = 50;     ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0 = all
-  bool use_all_time = true;  ///< `auto` goes on until the monitor's deadline, where there is one
+  bool use_all_time = true;  ///< `auto` goes on until the monitor's deadline, if there is one
 };
 
 /// What a part of a search reached.
@@ -44,10 +44,10 @@ struct SearchStage {
 
 /// The best exact design found.
 struct Design {
-  /// N candidate indices, ascending; equal ones only where repeats are allowed. Indices from the number of candidates
+  /// N candidate indices, ascending; equal ones only if repeats are allowed. Indices from the number of candidates
   /// on are those of `added`.
   std::vector<int> members;
-  std::vector<std::vector<double>> added{};  ///< configurations that were no candidates
+  std::vector<std::vector<double>> added{};  ///< configurations that were not candidates
   double value = 0.0;                        ///< Φ from a fresh factorisation, whitened coordinates
   int restarts = 0;                          ///< carried out
   long exchanges = 0;                        ///< accepted over all restarts
@@ -62,7 +62,7 @@ class Planner {
   virtual ~Planner() = default;
   virtual std::string name() const = 0;
   /// Checks the task, runs the search. At least one start is carried out however early the monitor stops.
-  /// Throws std::invalid_argument on a task that contradicts itself, CannotDo where every start stays singular.
+  /// Throws std::invalid_argument on a task that contradicts itself, CannotDo if every start stays singular.
   Design plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const;
 
  private:

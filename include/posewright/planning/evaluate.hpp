@@ -27,7 +27,7 @@ struct Evaluation {
 /// @param parameters  labels of the columns; role nuisance for exactly the leading ones, tolerance > 0
 /// @param prior       which tolerances count as one more measurement of their parameter: M = GᵀG + diag(1/tolerance²)
 /// @param scale       what columns are multiplied by for the singular values and indices; empty: their tolerances
-/// Throws CannotDo where G is rank deficient (fewer independent rows than parameters), naming a parameter.
+/// Throws CannotDo if G is rank deficient (fewer independent rows than parameters), naming a parameter.
 Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, Prior prior = Prior::none,
                     const Eigen::VectorXd& scale = {});
 

@@ -11,7 +11,7 @@ namespace posewright {
 double chi_square_power(double lambda, double degrees_of_freedom, double level);
 
 /// How often a measurement must be done for the test of its residuals to have the power: λ and the readings count k
-/// times, what is fitted once. None where a million times do not suffice.
+/// times, what is fitted once. None if a million times do not suffice.
 /// @param readings  of the measurement done once
 /// @param fitted    parameters, estimated from all readings together
 std::optional<int> repetitions_for_power(double lambda, int readings, int fitted, double level, double power);

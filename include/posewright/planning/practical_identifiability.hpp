@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What N poses can tell at best, and whether that is more than is known already (design §5).
+/// What N poses can tell at best, and whether that is more than is known already (theory.md eq. (31)).
 struct PracticalIdentifiability {
   int poses = 0;
   /// 1σ of every parameter after N poses spread as the D-optimal weights say, SI. A plan of N whole poses comes near.
@@ -27,7 +27,7 @@ struct PracticalIdentifiability {
 /// @param pool        raw blocks of many configurations, columns independent (see identifiability())
 /// @param poses       N
 /// @param near_share  e.g. 0.1: nine tenths of an effect look like other parameters'
-/// Throws CannotDo where the pool leaves the information singular.
+/// Throws CannotDo if the pool leaves the information singular.
 PracticalIdentifiability practical_identifiability(const BlockArray& pool, const std::vector<Parameter>& parameters,
                                                    int poses, double near_share, const Monitor& monitor);
 

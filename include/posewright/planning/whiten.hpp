@@ -18,7 +18,7 @@ struct Whitening {
 /// Replaces every block J by J R⁻¹ so that Σ JᵀJ / n = I over the whole array. R is triangular: the leading k columns
 /// keep their span, so Schur complements only gain a constant factor. Two passes of Cholesky QR on columns scaled to
 /// unit length (Yamamoto et al. 2015, ETNA 44): orthogonal to machine precision for condition numbers up to about 1e8.
-/// Throws CannotDo where the columns are linearly dependent.
+/// Throws CannotDo if the columns are linearly dependent.
 /// With a prior (information per pose) Σ JᵀJ / n + prior becomes I, so that candidates need not tell everything.
 Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior = {});
 

@@ -28,7 +28,7 @@ struct WorkspaceBound {
   double degree = 0.0;     ///< h
   double max_ratio = 1.0;  ///< largest d found over h
   int searches = 0;        ///< local searches carried out
-  std::vector<std::vector<double>> support;  ///< configurations with weight that were no candidates
+  std::vector<std::vector<double>> support;  ///< configurations with weight that were not candidates
   bool stopped = false;
 
   double bound_for(int poses) const;

@@ -10,15 +10,9 @@
 
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/repeats.hpp"
 
 namespace posewright {
-
-/// How often one configuration may be measured. In files and on the command line: forbid, allow, or a number.
-struct Repeats {
-  int most = 1;
-  static constexpr int any_number = std::numeric_limits<int>::max();
-  friend bool operator==(Repeats, Repeats) = default;
-};
 
 /// What the columns are divided by where a criterion or an index depends on it.
 enum class Scaling { tolerance, norm, none };

@@ -25,7 +25,7 @@ struct GaussianNoise {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m²
 };
 /// Noise of a laser tracker, an ellipsoid along the line of sight (1σ): range + range_per_m·R along the beam,
-/// transverse + angle·R across. Defaults: an interferometer's data sheet (design §3.5).
+/// transverse + angle·R across. Defaults: an interferometer's data sheet (theory.md eq. (10)).
 struct TrackerNoise {
   double range = 2.5e-6, range_per_m = 0.075e-6;  ///< m, m/m
   double transverse = 3.75e-6, angle = 1.5e-6;    ///< m, rad

@@ -31,7 +31,7 @@ struct LoadCaseSpec {
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< m, tip frame
 };
 
-/// Spring between the base and the link that one joint carries (design §3.3).
+/// Spring between the base and the link that one joint carries (theory.md eq. (13)).
 struct CompensatorSpec {
   Located<std::string> joint;
   double L = 0.0;                ///< m, radius of the pin on the link about the joint's axis

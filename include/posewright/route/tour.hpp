@@ -12,7 +12,7 @@ struct TourOptions {
   std::optional<int> start;  ///< first node; none: any (an open tour begins where that is cheapest)
   std::uint64_t seed = 0;
   bool exact = true;  ///< whether few nodes are solved exactly
-  int kicks = 300;    ///< restarts of the local search from a disturbed tour, where it is not solved exactly
+  int kicks = 300;    ///< restarts of the local search from a disturbed tour, if it is not solved exactly
 };
 
 /// Nodes in the order of the cheapest tour found. Up to `exact_nodes` nodes it is the cheapest there is (dynamic

@@ -3,7 +3,7 @@
 namespace posewright {
 
 /// Probability functions, by Boost.Math behind one source: its templates take a compiler seconds wherever they are met.
-/// All throw std::domain_error where degrees of freedom are not positive or a probability is outside (0, 1).
+/// All throw std::domain_error if degrees of freedom are not positive or a probability is outside (0, 1).
 
 /// Chance that a χ² of `freedom` degrees is larger than `value`.
 double chi_square_exceeded(double value, double freedom);

@@ -9,7 +9,7 @@
 namespace posewright {
 
 /// Whole file as bytes. Pipes are read too; of what has no end, no more than `limit`.
-/// Throws InputError where it is missing, a folder, a device, unreadable or larger than `limit` bytes.
+/// Throws InputError if it is missing, a folder, a device, unreadable or larger than `limit` bytes.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = std::uintmax_t(1) << 31);
 
 /// A file read from front to back without holding all of it. Throws InputError as read_file() does.
@@ -51,7 +51,7 @@ void write_files(const std::vector<FileToWrite>& files);
 /// write_files() of one file.
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Throws CannotDo unless write_files() can write `file`: its folder exists and is writable, it is no folder and not
+/// Throws CannotDo unless write_files() can write `file`: its folder exists and is writable, it is not a folder and not
 /// protected against writing. Long searches call it before they start.
 void require_writable(const std::filesystem::path& file);
 

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What a long computation tells while it runs.
+/// Progress of a long computation.
 struct Progress {
   std::string stage;                 ///< "candidates", "certificate", "exchange", …
   double done = 0.0, total = 0.0;    ///< in units of the stage (restarts, samples); total 0 = unknown

@@ -48,7 +48,7 @@ struct SamplingOptions {
 /// Half of the configurations fill the workspace evenly (Sobol points with Owen scrambling), half lie on its boundary:
 /// corners, edges, faces of the box; where a constraint cuts those off, the last feasible point on the way from a
 /// feasible one. Optimal poses lie there. Depends on the seed alone.
-/// Throws CannotDo where nothing feasible is found, naming the constraint that rejects most. Fewer than wanted are
+/// Throws CannotDo if nothing feasible is found, naming the constraint that rejects most. Fewer than wanted are
 /// returned where the draws run out.
 Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
                                      const Monitor& monitor);

@@ -31,7 +31,7 @@ class MotionSpace {
   std::vector<double> whole(std::span<const double> q) const;
   std::vector<double> home() const;
 
-  /// What forbids q ("limits", "collision with table", …); empty where it is free.
+  /// What forbids q ("limits", "collision with table", …); empty if it is free.
   std::string violation(std::span<const double> q) const;
   bool is_free(std::span<const double> q) const;
   /// Whether the straight motion is free all the way; both ends are looked at too.
@@ -67,7 +67,7 @@ class Roadmap {
   Roadmap(const Roadmap&) = delete;
   Roadmap& operator=(const Roadmap&) = delete;
 
-  /// A motion between two free configurations, simplified; empty `points` where none is found.
+  /// A motion between two free configurations, simplified; empty `points` if none is found.
   Motion motion(std::span<const double> from, std::span<const double> to);
   /// Milestones that are connected with `q`, q first.
   std::vector<std::vector<double>> connected(std::span<const double> q);

@@ -37,7 +37,7 @@ class Workspace {
   const std::vector<std::string>& reasons() const;
   /// Index of the first reason that forbids q, or −1.
   int violation(std::span<const double> q) const;
-  /// Null where there is none.
+  /// Null if there is none.
   const Cell* cell() const;
   /// Whether collisions or sights constrain configurations: checks then cost much more.
   bool cut_by_cell() const;
@@ -46,7 +46,7 @@ class Workspace {
   const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
-  /// True where q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be
+  /// True if q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be
   /// proposed at most, or an actuator within `actuator_share` of its stroke from an end.
   bool on_boundary(std::span<const double> q, double actuator_share = 0.01) const;
   /// Share of the coordinates that sit there.
@@ -64,13 +64,5 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
 /// The problem's coupled limits, and those that its controller's settings make of a coupling: lower ≤ J3 − f·J2 ≤
 /// upper.
 std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const Problem& problem);
-
-/// Robot and workspace of one variant, as the cell lets it be.
-struct Site {
-  std::unique_ptr<IdentificationModel> model;
-  std::unique_ptr<Workspace> workspace;
-};
-/// Blocks of the model count visible targets only, where line of sight is asked for.
-Site make_site(const Problem& problem, const VariantSpec& variant, const std::shared_ptr<const Cell>& cell);
 
 }  // namespace posewright

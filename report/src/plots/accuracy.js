@@ -109,7 +109,7 @@ function one(list, key, quantity) {
     caption:
       'The line shows what is known after so many poses in measuring order, so what remains if you stop early' +
       (searched.length > 0 ? '; orange dots are the best plans found for other numbers of poses.' : '.') +
-      ' It begins where all parameters can be told apart.',
+      ' It begins where all parameters can be identified.',
     options: {
       series: [
         { label: 'poses' },

@@ -118,7 +118,7 @@ function droppedList(plan) {
   return h(
     'details',
     { class: 'printed', open: dropped.length <= 8 },
-    h('summary', {}, `Left out: ${dropped.length} that cannot be told from others`),
+    h('summary', {}, `Left out: ${dropped.length} that cannot be identified separately`),
     h(
       'p',
       { class: 'note' },

@@ -122,7 +122,7 @@ export function clearance(plan, route) {
 export function dropped(plan) {
   const names = plan.parameters.filter((p) => !p.identifiable).map((p) => p.name);
   return names.length > 0
-    ? `${plural(names.length, 'parameter')} cannot be told from others by this measurement and ${names.length === 1 ? 'is' : 'are'} left out: ${list(names)}.`
+    ? `${plural(names.length, 'parameter')} cannot be identified separately by this measurement and ${names.length === 1 ? 'is' : 'are'} left out: ${list(names)}.`
     : '';
 }
 

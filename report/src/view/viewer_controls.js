@@ -32,7 +32,7 @@ export function layerBoxes(report, layers, show) {
     'span',
     { class: 'ramp', hidden: true },
     h('span', { class: 'ramp-bar' }),
-    ' colour: how much a measurement there would tell, from least (dark) to most (bright)',
+    ' colour: how much a measurement there would add, from least (dark) to most (bright)',
   );
   return h(
     'div',

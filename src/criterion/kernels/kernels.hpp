@@ -28,7 +28,7 @@ struct Kernels {
   long (*scan_rows)(const double* x, std::size_t n, int stride, const double* u, const double* d, double d_leaving,
                     const unsigned char* blocked, double* best);
   /// Next block j ≥ first that may gain (r > 1, determinant): d[j] > least_d, not blocked, and
-  /// d[j] + Σ_rows Σ_l (x·y_l)² > least_sum, y of `vectors` rows. Returns n where there is none.
+  /// d[j] + Σ_rows Σ_l (x·y_l)² > least_sum, y of `vectors` rows. Returns n if there is none.
   std::size_t (*next_block)(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
                             int vectors, const double* d, const unsigned char* blocked, double least_d,
                             double least_sum);

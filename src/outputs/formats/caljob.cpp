@@ -23,7 +23,7 @@ Exported write_caljob(const PoseSequence& all, const ExportOptions&) {
 PoseTable read_caljob(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
-    if (!root.IsMap()) yaml.fail(root, "is no mapping", "poses: or scenes:");
+    if (!root.IsMap()) yaml.fail(root, "is not a mapping", "poses: or scenes:");
     const std::string key = root["scenes"].IsDefined() ? "scenes" : "poses";
     for (const YAML::Node& item : yaml.items(yaml.at(root, key), key)) {
       table.rows.push_back(yaml.row(yaml.at(item, "joint_values"), "joint_values", 0));

@@ -11,7 +11,7 @@ namespace posewright::formats {
 /// Joint values as a controller counts them. Refers to what it is made from.
 class Axes {
  public:
-  /// Throws InputError where a setting is missing or of another number than the joints, CannotDo where the plan's
+  /// Throws InputError if a setting is missing or of another number than the joints, CannotDo if the plan's
   /// joints are not the controller's.
   Axes(const PoseSequence& sequence, const ExportOptions& options, const ProgramRules& rules);
 

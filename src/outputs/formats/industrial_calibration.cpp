@@ -32,7 +32,7 @@ Exported write_industrial_calibration(const PoseSequence& all, const ExportOptio
 PoseTable read_industrial_calibration(const std::string& bytes, const std::string& file) {
   return YamlList::read(bytes, file, [](const YamlList& yaml, const YAML::Node& root) {
     PoseTable table;
-    if (!root.IsMap()) yaml.fail(root, "is no mapping of measurements", "id: {camera_joints, pose, target_joints}");
+    if (!root.IsMap()) yaml.fail(root, "is not a mapping of measurements", "id: {camera_joints, pose, target_joints}");
     for (const auto& entry : root) {
       const YAML::Node camera = yaml.at(entry.second, "camera_joints"), target = yaml.at(entry.second, "target_joints");
       const bool has_camera = camera.size() > 0, has_target = target.size() > 0;

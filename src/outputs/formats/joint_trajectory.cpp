@@ -53,7 +53,7 @@ class Writer {
   }
 
   /// The route's seconds are of trapezoidal profiles. A part of the way gets its share by length (then no part is
-  /// faster than the whole), or by the root of it where that is more (then none accelerates harder).
+  /// faster than the whole), or by the root of it if that is more (then none accelerates harder).
   void follow(const SequenceMotion& motion) {
     std::vector<double> ways;
     double sum = 0, roots = 0;

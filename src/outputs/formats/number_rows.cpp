@@ -54,7 +54,7 @@ std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::str
     NumberRow row{number, {}};
     for (const std::string_view cell : cells) {
       if (!parse_number(cell, value))
-        throw InputError({file, number}, in_quotes(cell) + " is no number", "finite numbers with a decimal point");
+        throw InputError({file, number}, in_quotes(cell) + " is not a number", "finite numbers with a decimal point");
       row.values.push_back(value);
     }
     if (row.values.empty() || (!rows.empty() && row.values.size() != rows.front().values.size()))

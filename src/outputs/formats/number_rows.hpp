@@ -15,7 +15,7 @@ struct NumberRow {
 };
 
 /// Lines of numbers between separators; empty lines and comments ('#') are passed over. A first line that holds no
-/// number is a header where that is allowed. All rows are as long.
+/// number is a header if that is allowed. All rows are as long.
 /// @param skip  leading cells of a row that are texts
 /// Throws InputError with file and line.
 std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::string& file, char separator, bool header,

@@ -26,7 +26,7 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   std::string name = given.empty() ? rules.default_name : given;
   if (!is_identifier(name) || name.size() > rules.longest_name)
     throw InputError(
-        {}, fmt::format("{} is no name of a {} program", in_quotes(name), rules.format),
+        {}, fmt::format("{} is not a name of a {} program", in_quotes(name), rules.format),
         fmt::format("a letter, then letters, digits and _, at most {} in all (--name)", rules.longest_name));
   if (rules.capitals)
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });

@@ -56,7 +56,7 @@ struct RobotProgram {
 /// for robots that it cannot have.
 RobotProgram make_program(const PoseSequence& sequence, const ExportOptions& options, const ProgramRules& rules);
 
-/// A number of a digital signal, 1 where none is given.
+/// A number of a digital signal, 1 if none is given.
 int signal_number(const std::string& text, const char* option, int first, int last, int otherwise);
 /// A name of a digital signal.
 std::string signal_name(const std::string& text, const char* option, const char* otherwise);

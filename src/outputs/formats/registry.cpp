@@ -45,9 +45,9 @@ const PoseFormat& find(const std::string& name, bool readable) {
     if (format.name == name) return format;
     names += (names.empty() ? "" : ", ") + format.name;
   }
-  throw InputError({},
-                   fmt::format("{} is no format that is {}", formats::in_quotes(name), readable ? "read" : "written"),
-                   "allowed: " + names);
+  throw InputError(
+      {}, fmt::format("{} is not a format that is {}", formats::in_quotes(name), readable ? "read" : "written"),
+      "allowed: " + names);
 }
 
 }  // namespace

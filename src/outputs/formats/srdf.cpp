@@ -63,7 +63,7 @@ PoseRow read_state(const tinyxml2::XMLElement& state, const std::string& file, P
 PoseTable read_srdf(const std::string& bytes, const std::string& file) {
   tinyxml2::XMLDocument document;
   if (document.Parse(bytes.c_str(), bytes.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError({file, document.ErrorLineNum()}, "is no valid XML", "an SRDF is expected");
+    throw InputError({file, document.ErrorLineNum()}, "is not valid XML", "an SRDF is expected");
   const auto* robot = document.FirstChildElement("robot");
   if (robot == nullptr) throw InputError({file, 0}, "has no <robot>", "an SRDF is expected");
   PoseTable table;

@@ -21,7 +21,7 @@ std::string shortest(double value);
 std::string yaml_number(double value);
 /// [a, b, c]
 std::string yaml_numbers(const std::vector<double>& values);
-/// A name as YAML: quoted where a reader could take it for something else.
+/// A name as YAML: quoted if a reader could take it for something else.
 std::string yaml_text(const std::string& text);
 std::string yaml_texts(const std::vector<std::string>& texts);
 

@@ -17,7 +17,7 @@ PoseTable YamlList::read(const std::string& bytes, const std::string& file,
     if (table.rows.empty()) throw InputError({file, 0}, "has no poses", "at least one is needed");
     return table;
   } catch (const YAML::Exception& error) {
-    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is no valid YAML: " + ascii(error.msg), "");
+    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is not valid YAML: " + ascii(error.msg), "");
   }
 }
 

@@ -20,7 +20,7 @@ class YamlList : public yaml::Document {
                         const std::function<PoseTable(const YamlList&, const YAML::Node&)>& body);
 
   using Document::Document;
-  /// A row of as many numbers as there are names, where there are names.
+  /// A row of as many numbers as there are names, if there are names.
   PoseRow row(const YAML::Node& node, const std::string& what, std::size_t names) const;
 };
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/model/calibrated_values.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Bytes of the largest plan or route that is read.
+inline constexpr std::size_t plan_size_limit = 200'000'000;
+
+/// What a plan states of the parameters that a problem was read with.
+ParametersFile parameters_of(const Problem& problem);
+
+/// What a plan, route or evaluation states of the parameters it was made at, the file as it is found from here or from
+/// the plan's folder. Empty if it states none or is no such file.
+/// Throws InputError if the file is not there.
+ParametersFile parameters_of_plan(const std::filesystem::path& plan);
+
+/// What the user must know where the plan `name` was made at other parameters than the problem has now; else empty.
+std::string parameters_note(const std::string& name, const ParametersFile& made_at, const Problem& problem);
+/// The same for a list, added to `notes`; a list that names no problem says nothing.
+void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes);
+
+/// A calibrated parameter and its 1σ, SI, where it was estimated.
+struct EstimatedValue {
+  CalibratedValue value;
+  std::optional<double> sigma;
+};
+
+/// Text of a parameters file (docs/parameters-file.md): all that were estimated or are not nominal, values to the last
+/// digit. Equal input gives equal bytes.
+std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
+                            const std::vector<EstimatedValue>& values);
+
+}  // namespace posewright

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/outputs/plan.hpp"
+
+namespace posewright {
+
+/// Configurations as a user lists them, with a weight if the list has one.
+struct PoseList {
+  std::vector<std::vector<double>>
+      configurations;                  ///< in the order of the problem's coordinates, SI; a choice as 0, 1, …
+  std::vector<double> weights;         ///< as many, or none
+  std::vector<bool> measured{};        ///< of a plan: which poses were there before it; else empty
+  std::vector<int> ids{};              ///< of a plan or route; else 1, 2, …
+  std::vector<int> lines{};            ///< of the file, 0: not known; empty for configurations in memory
+  std::vector<int> own_ids{};          ///< of a column `id` or `pose`, 0: it is not a number; empty: there is none
+  std::vector<std::string> columns{};  ///< names of all columns of the list
+  std::vector<std::string> notes{};    ///< what the user must know of how the list was read
+  std::string name{};                  ///< of the list, for messages: its file
+  std::string problem_sha256{};        ///< of the problem it was made for; empty: not known
+  ParametersFile parameters_file{};    ///< that it was made at
+};
+
+/// A list that is read once the coordinates of the problem are known, and judged by them: InputError for values that do
+/// not fit. Empty: there is no list.
+using PoseSource = std::function<PoseList(const std::vector<Coordinate>&)>;
+
+/// poses.csv, any CSV with the coordinates' names, plan.json, route.json, or a list in the named `format`
+/// (outputs/pose_formats.hpp).
+PoseSource poses_in_file(const std::filesystem::path& file, const std::string& format = "");
+/// The poses of a plan in memory.
+PoseSource poses_of(const Plan& plan);
+/// Configurations in memory: one value for each coordinate, in their order; choices that have one label only may be
+/// left out.
+PoseSource poses_given(std::vector<std::vector<double>> configurations);
+
+}  // namespace posewright

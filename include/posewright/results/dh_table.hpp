@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "posewright/model/dh_table.hpp"
+
+namespace posewright {
+
+/// The table as a person reads it, mm and degrees to 1e-6: order of the motions, rows, frames at both ends, what has no
+/// place in it.
+std::string dh_table_text(const DhTable& table);
+
+/// The same in SI to the last digit. Frames as position and quaternion (x, y, z, w); `beta` null if there is none.
+nlohmann::ordered_json dh_table_json(const DhTable& table);
+
+}  // namespace posewright

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "posewright/tasks/observe_problem.hpp"
+
+namespace posewright {
+
+/// What a person reads of one variant: rank, spectrum, dependencies, what is worth identifying.
+std::string observation_text(const Observation& observation);
+
+/// The same for machines, nothing left out.
+nlohmann::ordered_json observation_json(const Observation& observation);
+/// All observed variants of a problem: schema posewright/observation/1.
+nlohmann::ordered_json observations_json(const Problem& problem, const ObserveOptions& options,
+                                         const std::vector<Observation>& observations);
+
+}  // namespace posewright

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "posewright/tasks/place_stations.hpp"
+
+namespace posewright {
+
+/// What a person reads of ranked stations, best first, and the best as a problem file has it.
+/// @param ranks  at least one
+std::string stations_text(const std::vector<StationRank>& ranks);
+
+/// The same for machines: schema posewright/stations/1.
+nlohmann::ordered_json stations_json(const std::vector<StationRank>& ranks);
+
+}  // namespace posewright

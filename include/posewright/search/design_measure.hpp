@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/criterion/criterion.hpp"
+#include "posewright/search/search.hpp"
+
+namespace posewright {
+
+/// What a search counts, for lists of poses that were not in it: Φ by the criterion's own function, in the coordinates
+/// in which the search's bound was computed, so that the two can be held against each other.
+class DesignMeasure {
+ public:
+  /// @param R        J_raw = J R of all parts side by side
+  /// @param prior    information that is there before, in the coordinates of J; empty: none
+  /// @param offset   what is added to Φ of these coordinates
+  DesignMeasure(std::shared_ptr<const Criterion> criterion, Eigen::MatrixXd R, Eigen::MatrixXd prior, double offset)
+      : criterion_(std::move(criterion)), R_(std::move(R)), prior_(std::move(prior)), offset_(offset) {}
+
+  /// Φ of the poses with these raw blocks; −∞ where they do not identify all parameters.
+  double phi(const BlockArray& blocks) const;
+  /// The same for blocks of several parts.
+  double phi(const std::vector<SearchPart>& parts) const;
+
+ private:
+  std::shared_ptr<const Criterion> criterion_;
+  Eigen::MatrixXd R_, prior_;
+  double offset_;
+};
+
+/// The parts' blocks as one array: columns side by side, rows below each other.
+BlockArray side_by_side(const std::vector<SearchPart>& parts);
+
+}  // namespace posewright

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/outputs/plan.hpp"
+#include "posewright/planning/design_task.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/support/repeats.hpp"
+
+namespace posewright {
+
+/// Candidates as one variant sees them.
+struct SearchPart {
+  BlockArray blocks;  ///< raw
+  int nuisance = 0;
+  double weight = 1.0;      ///< for criteria over several variants
+  Eigen::VectorXd scale{};  ///< unit of every column for criteria that depend on it
+  std::vector<TestPoint> test_points{};
+  Eigen::MatrixXd prior{};  ///< information that is there before, raw (m × m); empty: none
+  EffectGroup effects{};    ///< of the trailing columns, for criteria that need a truth
+};
+
+/// The part of planning that is the same for a robot's blocks and for a user's.
+struct SearchRequest {
+  std::string criterion, method;
+  int poses = 0;
+  Repeats repeats;
+  bool reserve = false;
+  PlannerOptions planner;
+  std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
+  const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance
+  /// Configurations behind the blocks, for the whitening R of all columns; empty: there are only blocks.
+  std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> make_space{};
+};
+
+class DesignMeasure;
+
+struct SearchResult {
+  Design design;
+  std::shared_ptr<const DesignMeasure> measure;  ///< Φ of any list, as the search counts it
+  std::vector<BlockArray> chosen;  ///< raw blocks of the design's members that are candidates, for each part
+  Certificate certificate;         ///< efficiencies still to be filled from an evaluation, see certify()
+  double degree = 0.0;             ///< of Φ; 0: no bound
+  /// Bound of the log det of every part, raw units; only if there are several.
+  std::vector<double> references{};
+  std::vector<double> without{};  ///< per member: e^{(Φ(S∖i) − Φ(S))/h}, 0 where it is indispensable
+  std::vector<PlanStage> stages{};
+  bool stopped = false;
+};
+
+/// Throws InputError if no criterion or planner has that name. `place` is where the name was written.
+void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
+                   const SourcePlace& method_place);
+
+/// Whitens, solves for the bounds, searches. One part, unless the criterion is over several variants. Memory: the
+/// blocks and a few vectors of their number.
+SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
+
+/// The bound alone: what no plan of as many of the candidates exceeds.
+struct Bound {
+  Certificate certificate;
+  std::shared_ptr<const DesignMeasure> measure;  ///< Φ of any list, to be held against the bound
+  double degree = 0.0;
+  std::vector<double> references{};
+  std::vector<double> sensitivity{};  ///< of every candidate at the best weights
+  double price = 0.0;                 ///< candidates with a sensitivity well below it are in no good plan
+};
+Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
+
+/// The measure of a list by itself, without candidates: the list's own blocks give the coordinates.
+std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,
+                                                const Monitor& monitor);
+
+/// Efficiencies of a plan whose Φ is `phi`; the last step so that they rest on the evaluation's number.
+void certify(Certificate& certificate, double phi, double degree);
+
+}  // namespace posewright

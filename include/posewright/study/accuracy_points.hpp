@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
+Problem with_pose_seen(Problem problem);
+/// Its model at the nominal values of `model`, which is the problem's own: values of what only the instrument has
+/// (targets, stations, a lens) are none of it.
+std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
+                                                    const IdentificationModel& model);
+
+/// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
+/// does not move the robot are zero. Empty if the problem has none. Throws InputError for configurations that do not
+/// fit the robot, CannotDo for a robot without a tip.
+std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
+                                      const IdentificationModel& model, const VariantColumns& columns,
+                                      std::uint64_t seed);
+
+/// Root of the weighted mean square of the predicted position error (m), and that of each point.
+double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                       std::vector<double>& each);
+/// The same of the orientation (norm of the rotation vector, rad), and 1σ of every point along x, y, z (m) and about
+/// them (rad), in the measurement frame.
+double predicted_turn(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                      std::vector<std::array<double, 6>>& axes);
+
+}  // namespace posewright

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/identifiability.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+
+/// Shares of a column's norm below this are rounding: the dependency is exact.
+inline constexpr double exact_dependency = 1e-9;
+
+/// At most `count` of the configurations, evenly through the list.
+Configurations thinned(const Configurations& configurations, std::size_t count);
+
+/// A variant's columns that can be identified, and what was dropped.
+struct ResolvedColumns {
+  VariantColumns columns;
+  std::vector<Parameter> dropped;
+  std::vector<std::string> reasons;  ///< one equation per dropped parameter
+};
+
+/// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
+/// they are independent, unless a prior tells them apart. Throws CannotDo with the equations if they are not.
+/// @param configurations  to judge by
+ResolvedColumns resolve_columns(const IdentificationModel& model, const Configurations& configurations,
+                                const Problem& problem, const VariantSpec& variant, bool prior, int threads);
+
+/// Smallest number of configurations that determines all columns, by choosing each for what it adds; empty if the
+/// candidates do not suffice.
+std::optional<int> smallest_number_of_poses(const IdentificationModel& model, const Configurations& candidates,
+                                            const VariantColumns& columns, int threads);
+
+/// Throws CannotDo if `poses` well-chosen configurations leave parameters undetermined: names the shortfall, the
+/// parameters and the number of poses that suffices.
+void require_enough_poses(const IdentificationModel& model, const Configurations& candidates,
+                          const VariantColumns& columns, int poses, int threads);
+
+}  // namespace posewright

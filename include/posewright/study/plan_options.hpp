@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/problem/design_specs.hpp"
+
+namespace posewright {
+
+/// What a command line may say over the problem file's design block.
+struct PlanOptions {
+  std::string variant, criterion, method;  ///< empty = as in the file
+  std::string truth;                       ///< the variant that may be the case; empty = as in the file
+  std::optional<int> poses, candidates, restarts;
+  bool smallest = false;  ///< the smallest number of poses that reaches design: require
+  std::optional<Repeats> repeats;
+  std::optional<Scaling> scaling;
+  std::optional<bool> prior;  ///< count tolerances as prior knowledge
+  bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
+  PoseSource measured;        ///< poses that are measured already; empty = as in the file
+  /// Candidates, in place of drawn ones; empty = as in the file, unless `candidates` says how many to draw.
+  PoseSource candidates_from{};
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0 = all
+};
+
+}  // namespace posewright

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/planning/configuration_space.hpp"
+#include "posewright/problem/design_specs.hpp"
+#include "posewright/workspace/candidates.hpp"
+#include "posewright/workspace/workspace.hpp"
+
+namespace posewright {
+
+/// One model's share of a block: its rows and columns follow those of the parts before.
+struct SpacePart {
+  const IdentificationModel* model;
+  const Workspace* workspace;
+  std::vector<int> selected;
+  Eigen::MatrixXd mix;  ///< blocks are J(selected) · mix; empty: J(selected)
+};
+
+/// The problem's workspace as planners see it. Everything referred to must outlive it.
+/// @param measured  poses that are there already: new ones keep the spacing from them
+/// @param R  whitening of all columns: blocks are J_raw R⁻¹
+std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
+                                                             const Configurations& candidates,
+                                                             const Configurations& measured, const Spacing& spacing,
+                                                             Eigen::MatrixXd R);
+
+/// What the design's minimum distance and repeat policy ask of poses that are not candidates (see
+/// ConfigurationSpace::spacing). Where no distance is given but poses may not repeat: one hundredth of a range.
+Spacing spacing_of(const std::vector<Coordinate>& coordinates,
+                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats);
+
+}  // namespace posewright

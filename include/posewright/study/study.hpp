@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/planning/configuration_space.hpp"
+#include "posewright/search/search.hpp"
+#include "posewright/study/columns.hpp"
+#include "posewright/study/plan_options.hpp"
+#include "posewright/study/variant.hpp"
+
+namespace posewright {
+
+/// Command line over the problem file's design block.
+struct Settings {
+  std::string criterion, method;
+  int poses = 0;  ///< 0: the smallest number that suffices
+  int candidates = 0;
+  bool prior = false, reserve = false;
+  Repeats repeats;
+  Scaling scaling = Scaling::tolerance;
+  std::vector<DesignSpec::Weighted> variants;  ///< at least one
+  Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
+  PoseSource measured;                         ///< empty: none
+  PoseSource candidates_from;                  ///< empty: candidates are drawn
+  PlannerOptions planner;
+};
+/// Throws InputError for what contradicts itself, with the line where it was written.
+Settings settings_of(const Problem& problem, const PlanOptions& options);
+
+struct Discrepancy;
+
+/// A problem with all that its names mean, made first and once: variants in their cell, feasible configurations, poses
+/// that are there already.
+struct Study {
+  std::shared_ptr<const Cell> cell;
+  std::vector<Variant> variants;
+  Configurations configurations;
+  std::string list;                ///< that the candidates came from; empty: they were drawn
+  std::vector<std::string> notes;  ///< of how it was read
+  Configurations measured;
+  Spacing spacing;           ///< for configurations that are not candidates
+  Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
+  bool has_minimum_distance = false;
+  std::shared_ptr<const Discrepancy> discrepancy;  ///< of the first variant; null: no truth is named
+
+  Variant& first() { return variants.front(); }
+  const Variant& first() const { return variants.front(); }
+};
+/// What to do with a variant whose parameters cannot be identified: throw CannotDo, or keep it with the reason.
+enum class Unidentifiable { refuse, keep };
+Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
+                 Unidentifiable unidentifiable = Unidentifiable::refuse);
+
+/// What the settings ask of a search for so many poses, among blocks alone.
+SearchRequest search_request(const Settings& settings, int poses);
+/// The same at the minimum distance between candidates; `study` must outlive the request.
+SearchRequest spaced_request(const Study& study, const Settings& settings, int poses);
+
+/// Raw blocks of the configurations for one variant alone, with what a search needs beside them.
+std::vector<SearchPart> search_parts(const Variant& variant, const Configurations& configurations, int threads);
+/// The same for every variant, as the criterion sees them: with the effects of the truth where it asks for one.
+std::vector<SearchPart> search_parts(const Study& study, const std::string& criterion,
+                                     const Configurations& configurations, int threads);
+/// A copy of what search_parts made for every variant: a search takes its parts.
+std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts);
+
+/// The workspace of the problem for searches beyond the candidates; `study` must outlive what it makes.
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
+                                                                                         const std::string& criterion);
+
+/// Takes away candidates that repeat a measured pose or are nearer to one than the minimum distance, where the policy
+/// forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
+void keep_away_from_measured(Study& study, Repeats repeats);
+
+/// One configuration more.
+void append(Configurations& list, std::span<const double> q);
+/// The i-th of `from` with its row.
+void append(Configurations& list, const Configurations& from, std::size_t i);
+
+}  // namespace posewright

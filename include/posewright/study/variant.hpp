@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/cell/cell.hpp"
+#include "posewright/criterion/criterion_data.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/workspace/workspace.hpp"
+
+namespace posewright {
+
+/// One variant of a problem with all that its names mean: the robot, where it may go, the parameters that are
+/// estimated. Every command works with it.
+struct Variant {
+  const VariantSpec* spec = nullptr;  ///< of the problem, which must outlive it
+  std::shared_ptr<const Cell> cell;
+  std::unique_ptr<IdentificationModel> model;
+  std::unique_ptr<Workspace> workspace;
+  VariantColumns columns{};            ///< that are estimated, nuisance first
+  std::vector<Parameter> dropped{};    ///< of an automatic variant: what cannot be identified beside the columns
+  std::vector<std::string> reasons{};  ///< one equation per dropped parameter
+  double weight = 1.0;                 ///< for criteria over several variants
+  Eigen::VectorXd scale{};             ///< unit of every column, by the scaling asked for
+  std::vector<TestPoint> test_points{};
+  Eigen::MatrixXd prior{};  ///< raw information known before (tolerances, poses measured already); empty: none
+  std::string why_not{};    ///< why its parameters cannot be identified; empty: they can
+};
+
+/// Robot and workspace of one variant, as the cell lets it be; no columns yet. Blocks of the model count visible
+/// targets only, if line of sight is asked for.
+Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell);
+
+struct VariantOptions {
+  std::string variant;                  ///< empty = as in the file
+  std::vector<std::string> parameters;  ///< columns to keep, by name; empty = all that can be identified
+  int candidates = 10000;  ///< configurations that tell which columns of an `auto` variant can be identified
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+/// One variant ready to give Jacobian blocks at any configuration. For `auto` variants the columns are those of a plan
+/// from as many candidates and the same seed; others keep all they list. Throws InputError as the stages do, also for
+/// names that are no columns.
+Variant make_variant(const Problem& problem, const VariantOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/calibration/axis_errors.hpp"
+#include "posewright/calibration/compensator_constants.hpp"
+#include "posewright/calibration/curvature.hpp"
+#include "posewright/calibration/in_steps.hpp"
+#include "posewright/calibration/leave_out.hpp"
+#include "posewright/calibration/orientation.hpp"
+#include "posewright/calibration/platform_deformation.hpp"
+#include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+struct CalibrateOptions {
+  std::filesystem::path data;
+  std::string variant;  ///< empty: as in the file
+  Weighting weighting = Weighting::weighted;
+  /// Tolerances of what was manufactured count, and those that were stated; none: plain least squares.
+  Prior prior = Prior::manufactured;
+  std::filesystem::path validate;  ///< more data that are not fitted; empty: none
+  int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
+  bool in_steps = false;           ///< identify base and tool, geometry, stiffness one after the other, too
+};
+
+/// One parameter of a calibrated variant.
+struct CalibratedParameter {
+  Parameter label;  ///< nominal value: before
+  bool estimated = true;
+  bool prior = false;                ///< its tolerance counted
+  double value = 0.0, sigma = 0.0;   ///< SI
+  double lower = 0.0, upper = 0.0;   ///< 95 % interval
+  std::string why_not{};             ///< not estimated: what the data cannot tell it from
+  bool weak = false;                 ///< the data tell less than the tolerance
+  std::optional<double> in_steps{};  ///< identified in steps, where that was asked for
+};
+
+/// Residuals of one set of poses with parameters of one kind.
+struct ResidualSet {
+  std::string poses;       ///< "fitted", "held back"
+  std::string parameters;  ///< "nominal", "base and nuisance only", "calibrated"
+  std::vector<ResidualSummary> kinds;
+};
+
+/// Errors along one axis, before and after.
+struct AxisImprovement {
+  std::string poses;                 ///< "fitted", "held back"
+  AxisErrors before, after;          ///< placed (nominal if nothing is to be placed), calibrated
+  std::optional<double> required{};  ///< the largest that `design: require` allows, SI
+
+  bool met() const { return !required || after.largest <= *required; }
+};
+
+/// Of a pose that was not fitted.
+struct PoseAccuracy {
+  PredictedError predicted;
+  PoseError observed;
+};
+
+/// A pose with what is left of its readings.
+struct PoseResidual {
+  int id = 0;
+  bool held_back = false;
+  std::vector<double> residuals;  ///< SI, NaN if not read
+  double weight = 1.0;            ///< smallest of its targets, robust fits
+  std::optional<PoseAccuracy> accuracy{};
+};
+
+struct Calibration {
+  std::string variant;
+  Weighting weighting = Weighting::weighted;
+  Prior prior = Prior::none;
+  bool automatic = false;  ///< the variant leaves it to the data which parameters are estimated
+  int rows = 0, poses = 0, held_back = 0;
+  double repeats = 1.0;
+  std::vector<Reading> readings;
+  std::vector<double> spread;  ///< of every reading within a pose, 1σ of one row; empty without repeats
+  Fit fit;
+  std::vector<CalibratedParameter> parameters;  ///< interest, nuisance, then those not estimated
+  std::vector<CalibratedOrientation> orientations;
+  LeaveOut left_out;    ///< does the estimate predict poses that it has not seen?
+  std::string weakest;  ///< weakest_combination()
+  ResidualTests tests;
+  TestResult lack_of_fit;  ///< posewright::lack_of_fit()
+  Curvature curvature;
+  std::vector<ResidualSet> residuals;
+  bool placed = false;                ///< there are residuals with base, tool and nuisance alone
+  std::vector<AxisImprovement> axes;  ///< of fitted poses, then of those held back
+  std::vector<PoseResidual> pose_residuals;
+  std::optional<StepwiseFit> in_steps;
+  std::optional<CompensatorConstants> compensator;
+  std::optional<PlatformDeformation> platform;  ///< if the data have the joint centres of a platform
+  std::vector<std::string> columns;             ///< names of what fit.covariance and curvature.parameter count
+  std::vector<std::string> notes;
+  /// Of the model's whole catalogue, for whoever goes on with the robot.
+  std::vector<double> correction;
+  std::vector<EstimatedValue> values;  ///< the same as values, under the model's names, with σ where estimated
+};
+
+/// The frame whose orientation this parameter is an angle of; null: it is none, or is estimated without the others.
+const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter);
+
+/// Estimates the parameters of a variant from measured data. Columns that the data do not determine stay at their
+/// nominal values and are listed. Throws InputError (files) and CannotDo (nothing can be estimated).
+Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/tasks/plan_problem.hpp"
+
+namespace posewright {
+
+/// What a plan from one choice of stations would be worth.
+struct StationRank {
+  std::vector<StationSpec> stations;
+  std::string why_not;           ///< why there is no plan from there; empty: there is one
+  bool in_full = false;          ///< planned as `plan` does it; else with few candidates and one start
+  int parameters = 0;            ///< of interest that it identifies
+  double phi = 0.0;              ///< criterion as it is maximised, larger is better
+  double criterion_value = 0.0;  ///< in its own terms
+  /// Of the best of as many parameters, where the criterion is a determinant: σ is so many times as large, on the
+  /// geometric mean.
+  std::optional<double> sigma_ratio;
+  double feasible_share = 0.0;  ///< of the configurations drawn
+  std::string main_rejection;   ///< why most of the others are not feasible
+  std::optional<double> rho0;   ///< predicted position error at the test poses, m
+};
+
+struct StationOptions {
+  PlanOptions plan;
+  std::optional<int> choose;  ///< how many stations; else what the problem says
+  int full = 3;               ///< how many of the best are planned in full
+};
+
+/// Chooses among the places of workspace.stations: a quick plan from each, full ones from the best. All sets of so many
+/// stations are tried if they are at most 100; else the best one gets the best second, and so on.
+/// Best first. Throws InputError if the problem names no places or its instrument has no stations, CannotDo if
+/// none of them gives a plan, and where the search is stopped.
+std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

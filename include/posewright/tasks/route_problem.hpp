@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/outputs/route.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+struct RouteOptions {
+  bool from_home = false;    ///< begins at home
+  bool closed = false;       ///< ends where it began
+  std::optional<int> start;  ///< pose id to begin with
+  int milestones = 200;      ///< of the roadmap, built where a straight motion is not free
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+/// The problem file that a plan was made for, as the plan names it or beside the plan. Throws InputError if it is
+/// not found or the plan is none.
+std::filesystem::path problem_of_plan(const std::filesystem::path& plan);
+
+/// Order and motions for the poses of a plan (or CSV list) of this problem. Motions are looked for only where they are
+/// needed: a tour of the shortest conceivable motions is found, its motions are made, and so on until all motions of
+/// the tour are real; where the tour is optimal for these times, no other order is shorter. Throws InputError for a
+/// list that does not fit, CannotDo if home is asked for and not free, or no pose can be reached, and where the
+/// search is stopped.
+Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
+                    const Monitor& monitor);
+/// The same for a file.
+Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+                    const Monitor& monitor);
+
+}  // namespace posewright

@@ -1,0 +1,274 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arguments.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/outputs/report.hpp"
+#include "posewright/results/calibration.hpp"
+#include "posewright/results/comparison.hpp"
+#include "posewright/results/simulation.hpp"
+#include "posewright/results/stations.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/tasks/report_problem.hpp"
+
+namespace posewright::python {
+namespace {
+
+using Limit = std::optional<double>;
+using Shared = std::shared_ptr<GivenProblem>;
+
+/// A result with what it was made from: its text and JSON are those of the command line.
+template <class T, class Options>
+struct Made {
+  Shared problem;
+  Options options;
+  T value;
+
+  /// Runs the work under a Watch; what it throws names keys of a problem that was not a file.
+  template <class Work>
+  static Made of(Shared problem, Options options, Limit time_limit, py::object progress, const Work& work) {
+    Made made{std::move(problem), std::move(options), {}};
+    Watch watch(time_limit, std::move(progress));
+    watch.run(
+        [&](const Monitor& monitor) {
+          made.value = with_places(*made.problem, [&] { return work(made.problem->problem, made.options, monitor); });
+        },
+        OnInterrupt::raise);
+    return made;
+  }
+};
+
+using MadeCalibration = Made<Calibration, CalibrateOptions>;
+using MadeComparison = Made<Comparison, CompareOptions>;
+using MadeSimulation = Made<Simulation, SimulateOptions>;
+using MadeStations = Made<std::vector<StationRank>, StationOptions>;
+
+std::string text_of(const MadeCalibration& m) { return calibration_text(m.value); }
+std::string text_of(const MadeComparison& m) { return comparison_text(m.value, !m.options.truth.empty()); }
+std::string text_of(const MadeSimulation& m) { return simulation_text(m.value, m.options); }
+std::string text_of(const MadeStations& m) { return stations_text(m.value); }
+auto json_of(const MadeCalibration& m) { return calibration_json(m.problem->problem, m.options, m.value); }
+auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
+auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
+auto json_of(const MadeStations& m) { return stations_json(m.value); }
+
+/// What all results have.
+template <class M>
+py::class_<M> bind_made(py::module_& m, const char* name, const char* doc) {
+  return py::class_<M>(m, name, doc)
+      .def(
+          "summary", [](const M& made) { return text_of(made); }, "The table that the command line prints.")
+      .def(
+          "to_json", [](const M& made) { return json_text(json_of(made)); }, "What the command prints with --json.")
+      .def("to_dict", [](const M& made) { return parsed(json_text(json_of(made), JsonLayout::one_line)); });
+}
+
+Weighting weighting_named(const py::object& word) {
+  return weighting_of(choice(word, "weights", {"ols", "wls", "robust"}));
+}
+
+MadeCalibration calibrate(const Shared& problem, const std::filesystem::path& data, const std::string& variant,
+                          const py::object& weights, bool prior, const py::object& validate, long long hold_back,
+                          bool in_steps, py::object progress) {
+  CalibrateOptions options;
+  options.data = data;
+  options.variant = variant;
+  options.weighting = weighting_named(weights);
+  options.prior = prior ? Prior::manufactured : Prior::none;
+  if (!validate.is_none()) options.validate = validate.cast<std::filesystem::path>();
+  options.hold_back = hold_back == 0 ? 0 : checked("hold_back", hold_back, 2, most_poses);
+  options.in_steps = in_steps;
+  return MadeCalibration::of(problem, options, {}, std::move(progress), calibrate_problem);
+}
+
+bool is_useful(const Calibration& c) { return c.fit.converged && !c.left_out.refused(); }
+
+std::string parameters_text(const MadeCalibration& made) {
+  const Problem& problem = made.problem->problem;
+  return parameters_yaml(problem, find_variant(problem, made.value.variant), made.value.values);
+}
+
+void save_parameters(const MadeCalibration& made, const py::object& path, bool overwrite, bool force) {
+  if (!made.value.fit.converged || (!is_useful(made.value) && !force))
+    throw CannotDo("nothing is written: these parameters are not good enough to use");
+  save_text(path, parameters_text(made), overwrite);
+}
+
+template <class Value>
+py::dict estimated(const Calibration& c, Value value) {
+  py::dict result;
+  for (const CalibratedParameter& p : c.parameters)
+    if (p.estimated) result[py::str(p.label.name)] = value(p);
+  return result;
+}
+
+MadeSimulation simulate(const Shared& problem, const py::object& poses, const std::string& variant,
+                        const std::string& truth, long long draws, bool exact, double missing, double outliers,
+                        const py::object& weights, bool prior, long long validation, const std::string& format,
+                        const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+  SimulateOptions options;
+  options.variant = variant;
+  options.truth = truth;
+  ExperimentOptions& experiment = options.experiment;
+  experiment.draws = checked("draws", draws, 2, 10'000'000);
+  experiment.exact = exact;
+  if (!(missing >= 0 && missing <= 0.9)) throw InputError({}, "missing is a share", "0 to 0.9 is allowed");
+  if (!(outliers >= 0 && outliers <= 1)) throw InputError({}, "outliers is a share", "0 to 1 is allowed");
+  experiment.missing = missing;
+  experiment.outliers = outliers;
+  experiment.fit.weighting = weighting_named(weights);
+  experiment.fit.prior = prior ? Prior::manufactured : Prior::none;
+  options.validation = checked("validation", validation, 1, most_poses);
+  experiment.seed = seed_of(seed);
+  experiment.threads = checked("threads", threads, 0, most_threads);
+  const PoseSource source = pose_source(poses, format);
+  return MadeSimulation::of(problem, options, time_limit, std::move(progress),
+                            [&](const Problem& p, const SimulateOptions& o, const Monitor& monitor) {
+                              return simulate_problem(p, source, o, monitor);
+                            });
+}
+
+MadeComparison compare(const Shared& problem, const py::dict& plans, const std::vector<std::string>& variants,
+                       const std::string& truth, const py::object& poses, const std::string& method,
+                       const py::object& candidates, const py::object& restarts, const py::int_& seed,
+                       long long threads, py::object progress) {
+  CompareOptions options;
+  options.variants = variants;
+  options.truth = truth;
+  for (const auto& [name, list] : plans)
+    options.plans.push_back({py::cast<std::string>(name), pose_source(py::reinterpret_borrow<py::object>(list))});
+  if (!options.plans.empty() && (!poses.is_none() || !method.empty() || !restarts.is_none()))
+    throw InputError({}, "poses, method and restarts are for plans that are searched", "leave them out, or the plans");
+  options.plan.poses = optional_number(poses, "poses", most_poses);
+  options.plan.method = method;
+  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
+  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
+  options.plan.seed = seed_of(seed);
+  options.plan.threads = checked("threads", threads, 0, most_threads);
+  return MadeComparison::of(problem, options, {}, std::move(progress), compare_problem);
+}
+
+MadeStations stations(const Shared& problem, const py::object& choose, long long full, const py::object& poses,
+                      const std::string& variant, const std::string& criterion, const py::object& candidates,
+                      const py::object& restarts, const py::int_& seed, long long threads, Limit time_limit,
+                      py::object progress) {
+  StationOptions options;
+  options.choose = optional_number(choose, "choose", 100);
+  options.full = checked("full", full, 0, 10000);
+  options.plan.poses = optional_number(poses, "poses", most_poses);
+  options.plan.variant = variant;
+  options.plan.criterion = criterion;
+  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
+  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
+  options.plan.seed = seed_of(seed);
+  options.plan.threads = checked("threads", threads, 0, most_threads);
+  return MadeStations::of(problem, options, time_limit, std::move(progress), place_stations);
+}
+
+Report report(const Shared& problem, const std::filesystem::path& plan, const py::object& route, bool brief,
+              long long threads, Limit time_limit, py::object progress) {
+  ReportOptions options;
+  if (!route.is_none()) options.route = route.cast<std::filesystem::path>();
+  options.sizes = options.candidates = !brief;
+  options.threads = checked("threads", threads, 0, most_threads);
+  Report result;
+  Watch watch(time_limit, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        result = with_places(*problem, [&] { return report_problem(problem->problem, plan, options, monitor); });
+      },
+      OnInterrupt::raise);
+  return result;
+}
+
+void bind_classes(py::module_& m) {
+  using C = MadeCalibration;
+  bind_made<C>(m, "Calibration", "Parameters estimated from measured data; docs/calibrate.md.")
+      .def_property_readonly("variant", [](const C& c) { return c.value.variant; })
+      .def_property_readonly("converged", [](const C& c) { return c.value.fit.converged; })
+      .def_property_readonly(
+          "useful", [](const C& c) { return is_useful(c.value); },
+          "converged, and poses left out are predicted better than without the parameters")
+      .def_property_readonly(
+          "values", [](const C& c) { return estimated(c.value, [](const auto& p) { return p.value; }); },
+          "{parameter: value} of what was estimated, SI")
+      .def_property_readonly(
+          "sigma", [](const C& c) { return estimated(c.value, [](const auto& p) { return p.sigma; }); }, "1σ of them")
+      .def_property_readonly(
+          "columns", [](const C& c) { return c.value.columns; }, "of the covariance")
+      .def_property_readonly("covariance", [](const C& c) { return array_of(Eigen::MatrixXd(c.value.fit.covariance)); })
+      .def_property_readonly(
+          "noise_factor", [](const C& c) { return c.value.fit.noise_factor; }, "noise found over noise stated")
+      .def_property_readonly("notes", [](const C& c) { return c.value.notes; })
+      .def("parameters_file", &parameters_text, "Text of a parameters file, for Problem(..., parameters=) and others.")
+      .def("save", &save_parameters, py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
+           py::arg("force") = false, "Writes the parameters file; CannotDo unless useful, or converged with force.")
+      .def("__repr__", [](const C& c) {
+        return py::str("<Calibration of {}: {} poses, {} parameters>")
+            .format(c.value.variant, c.value.poses, c.value.columns.size());
+      });
+  using S = MadeSimulation;
+  bind_made<S>(m, "Simulation",
+               "Virtual calibrations with the poses, against what the plan predicts; docs/simulate.md.")
+      .def_property_readonly(
+          "confirmed", [](const S& s) { return s.value.confirmed; }, "σ and intervals as predicted")
+      .def_property_readonly("verdict", [](const S& s) { return s.value.verdict; })
+      .def_property_readonly(
+          "first_readings", [](const S& s) { return s.value.first_readings; },
+          "of the first draw, as calibrate reads them")
+      .def_property_readonly("notes", [](const S& s) { return s.value.notes; });
+  using M = MadeComparison;
+  bind_made<M>(m, "Comparison", "Variants against plans; docs/compare.md.")
+      .def_property_readonly("notes", [](const M& c) { return c.value.notes; });
+  bind_made<MadeStations>(m, "Stations", "Places for the instrument, best first.")
+      .def("__len__", [](const MadeStations& s) { return s.value.size(); });
+  py::class_<Report>(m, "Report", "A page to look at; docs/report.md.")
+      .def("to_html", &report_html)
+      .def("to_json", &report_json, "The numbers behind the page.")
+      .def("to_dict", [](const Report& r) { return parsed(report_json(r)); })
+      .def_readonly("notes", &Report::notes)
+      .def(
+          "save",
+          [](const Report& r, const py::object& path, bool overwrite) { save_text(path, report_html(r), overwrite); },
+          py::arg("path"), py::kw_only(), py::arg("overwrite") = false, "Writes the page.");
+}
+
+}  // namespace
+
+void bind_tasks(py::module_& m) {
+  bind_classes(m);
+  const py::none none;
+  m.def("calibrate", &calibrate, py::arg("problem"), py::arg("data"), py::arg("variant") = "", py::kw_only(),
+        py::arg("weights") = none, py::arg("prior") = true, py::arg("validate") = none, py::arg("hold_back") = 0,
+        py::arg("in_steps") = false, py::arg("progress") = none,
+        R"(Estimates a variant's parameters from a file of measured data (docs/calibrate.md).
+
+weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
+that are not fitted; hold_back: every so many-th pose is not fitted; in_steps: also base and tool, geometry, stiffness
+one after the other.)");
+  m.def("simulate", &simulate, py::arg("problem"), py::arg("poses"), py::arg("variant") = "", py::kw_only(),
+        py::arg("truth") = "", py::arg("draws") = 1000, py::arg("exact") = false, py::arg("missing") = 0.0,
+        py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("validation") = 50,
+        py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
+        py::arg("progress") = none,
+        "Measures the poses on robots with drawn parameters, calibrates, and compares with the truth "
+        "(docs/simulate.md).");
+  m.def("compare", &compare, py::arg("problem"), py::arg("plans") = py::dict(), py::kw_only(),
+        py::arg("variants") = std::vector<std::string>(), py::arg("truth") = "", py::arg("poses") = none,
+        py::arg("method") = "", py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0,
+        py::arg("threads") = 0, py::arg("progress") = none,
+        "Variants against plans, {name: Plan, file or array}; without plans the best for each variant is searched.");
+  m.def("stations", &stations, py::arg("problem"), py::kw_only(), py::arg("choose") = none, py::arg("full") = 3,
+        py::arg("poses") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("candidates") = none,
+        py::arg("restarts") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
+        py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
+  m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
+        py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        "The page of a plan.json, with its route.json; brief: without other numbers of poses and candidates.");
+}
+
+}  // namespace posewright::python

@@ -1,0 +1,207 @@
+#include "measured_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "posewright/calibration/rigid_fit.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/model/rotation_vector.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double not_read = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<const char*, 4> quaternion_names = {"pose.qx", "pose.qy", "pose.qz", "pose.qw"};
+constexpr std::array<const char*, 3> point_axes = {".x", ".y", ".z"};
+// Printed quaternions have few digits; anything farther from one is something else.
+constexpr double unit_slack = 1e-3;
+// What bends by more than this share of its size is another body, or its points are mixed up.
+constexpr double largest_deformation = 0.05;
+
+}  // namespace
+
+MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,
+                                 const IdentificationModel& model)
+    : file_(file),
+      model_(model),
+      table_(read_csv_table(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
+  index_columns();
+  if (const auto* pose = std::get_if<PoseMeasurement>(&problem.measurement.instrument)) markers_ = pose->photogrammetry;
+  find_readings();
+  read_configurations(bytes);
+}
+
+void MeasuredColumns::index_columns() {
+  for (std::size_t i = 0; i < table_.names.size(); ++i) {
+    const std::string name = table_.names[i] == "pose" ? "id" : table_.names[i];
+    if (!name.empty() && !column_.emplace(name, i).second)
+      throw InputError(header(), "has column '" + name + "' twice", "each name once");
+  }
+}
+
+void MeasuredColumns::find_readings() {
+  int found = 0;
+  std::string names;
+  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
+  const auto given = [&](const Reading& reading) {
+    return has(reading.name) || (quaternions_ && reading.name.starts_with("pose.r"));
+  };
+  for (const Reading& reading : model_.readings()) {
+    found += given(reading) ? 1 : 0;
+    if (names.size() < 200) names += (names.empty() ? "" : ", ") + reading.name;
+  }
+  if (quaternions_ && has("pose.rx"))
+    throw InputError(header(), "has an orientation twice, pose.rx and pose.qx", "one of them");
+  const bool by_points =
+      !markers_.empty() && found == 0 && std::all_of(markers_.begin(), markers_.end(), [&](const TargetSpec& m) {
+        return has(m.name + ".x") && has(m.name + ".y") && has(m.name + ".z");
+      });
+  if (!by_points) markers_.clear();
+  if (found == 0 && !by_points) throw InputError(header(), "has no column of a reading", "names of readings: " + names);
+  if (found < int(model_.readings().size()) && !by_points) {
+    std::string missing;
+    for (const Reading& reading : model_.readings())
+      if (!given(reading)) missing += (missing.empty() ? "" : ", ") + reading.name;
+    notes_.push_back("no column for " + missing + ": counted as not read");
+  }
+  if (by_points) notes_.push_back("poses are rigid fits to the photogrammetric points");
+}
+
+void MeasuredColumns::read_configurations(const std::string& bytes) {
+  const auto& actuators = model_.actuators();
+  const bool coordinates =
+      std::all_of(model_.coordinates().begin(), model_.coordinates().end(),
+                  [&](const Coordinate& c) { return has(c.name) || (c.choice() && c.labels.size() == 1); });
+  if (!coordinates && !actuators.empty() &&
+      std::all_of(actuators.begin(), actuators.end(), [&](const Coordinate& a) { return has(a.name); })) {
+    from_actuators();
+    return;
+  }
+  configurations_ = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv").configurations;
+  for (int i = 0; i < rows(); ++i)
+    for (std::size_t k = 0; k < model_.coordinates().size(); ++k) {
+      const Coordinate& c = model_.coordinates()[k];
+      const double value = configurations_[std::size_t(i)][k];
+      if (!c.choice() && c.discrete() && !std::binary_search(c.values.begin(), c.values.end(), value))
+        throw InputError({file_, line(i)}, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
+                         fmt::format("at one of the listed positions: {:.6g}", fmt::join(c.values, ", ")));
+    }
+}
+
+/// The nominal robot with these actuators: what the model takes for the configuration.
+void MeasuredColumns::from_actuators() {
+  std::vector<double> start;
+  for (const Coordinate& c : model_.coordinates())
+    start.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
+  std::vector<double> actuators, q(start.size());
+  for (int i = 0; i < rows(); ++i) {
+    actuators.clear();
+    for (const Coordinate& a : model_.actuators()) {
+      actuators.push_back(value(i, a.name, a.unit));
+      if (!std::isfinite(actuators.back()))
+        throw InputError({file_, line(i)}, "'" + a.name + "' is empty", "every actuator of a pose");
+    }
+    if (!model_.configuration_at(actuators, start, q))
+      throw InputError({file_, line(i)}, "no pose of the nominal robot has these actuators", "are their units right?");
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const Coordinate& c = model_.coordinates()[k];
+      if (!c.choice() || c.labels.size() < 2) continue;
+      const auto at = std::find(c.labels.begin(), c.labels.end(), text(i, c.name));
+      if (at == c.labels.end())
+        throw InputError({file_, line(i)}, "'" + text(i, c.name) + "' is not a " + c.name,
+                         fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
+      q[k] = c.values[std::size_t(at - c.labels.begin())];
+    }
+    configurations_.push_back(q);
+  }
+}
+
+std::string MeasuredColumns::text(int row, const std::string& column) const {
+  const auto at = column_.find(column);
+  if (at == column_.end()) return {};
+  return std::get<std::string>(table_.rows[std::size_t(row)].cells[at->second]);
+}
+
+double MeasuredColumns::value(int row, const std::string& column, const std::string& unit) const {
+  std::string cell = text(row, column);
+  // Tables of numbers write nan for what is missing.
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NA") return not_read;
+  const std::string written = table_.units.empty() ? "" : table_.units[column_.at(column)];
+  if (!written.empty() && written != "px") cell += " " + written;
+  const Quantity quantity = unit == "m" ? Quantity::length : unit == "rad" ? Quantity::angle : Quantity::number;
+  try {
+    return parse_value(cell, quantity);
+  } catch (const InputError&) {
+    throw InputError({file_, line(row)}, fmt::format("'{}' of '{}' is not a value", cell.substr(0, 40), column),
+                     unit == "px" ? "a number" : "a number; in the header, a unit: " + allowed_units({quantity}));
+  }
+}
+
+Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
+  Eigen::Vector4d q;
+  for (std::size_t k = 0; k < 4; ++k) q[Eigen::Index(k)] = value(row, quaternion_names[k], "1");
+  if (!q.allFinite()) return Eigen::Vector3d::Constant(not_read);
+  if (std::abs(q.norm() - 1) > unit_slack)
+    throw InputError({file_, line(row)}, fmt::format("the quaternion has length {:.6g}", q.norm()), "1 is expected");
+  return posewright::rotation_vector(Eigen::Quaterniond(q.normalized()).toRotationMatrix());
+}
+
+Eigen::Vector3d MeasuredColumns::point(int row, const std::string& name) const {
+  Eigen::Vector3d p = Eigen::Vector3d::Constant(not_read);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (const std::string column = name + point_axes[std::size_t(k)]; has(column)) p[k] = value(row, column, "m");
+  return p;
+}
+
+Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
+  std::vector<Eigen::Vector3d> body, measured;
+  for (const TargetSpec& marker : markers_) {
+    const Eigen::Vector3d p = point(row, marker.name);
+    if (!p.allFinite()) continue;
+    body.push_back(marker.position);
+    measured.push_back(p);
+  }
+  Eigen::VectorXd pose = Eigen::VectorXd::Constant(6, not_read);
+  // The covariance of a pose is that of all its points; one of fewer would be trusted too much.
+  if (body.size() < markers_.size()) return pose;
+  const RigidFit fit = rigid_fit(body, measured);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : body) centre += p / double(body.size());
+  double size = 0;
+  for (const Eigen::Vector3d& p : body) size += (p - centre).squaredNorm() / double(body.size());
+  if (fit.rms > largest_deformation * std::sqrt(size))
+    throw InputError({file_, line(row)},
+                     fmt::format("the points fit no rigid body: {:.4g} mm are left of one of {:.4g} mm", 1e3 * fit.rms,
+                                 1e3 * std::sqrt(size)),
+                     "points in the order, units and places of measurement: device: points");
+  pose << fit.X.translation(), posewright::rotation_vector(fit.X.linear());
+  return pose;
+}
+
+Eigen::VectorXd MeasuredColumns::readings(int row) const {
+  const auto count = Eigen::Index(model_.readings().size());
+  Eigen::VectorXd all(6);
+  if (!markers_.empty()) all = pose_of_points(row);
+  else if (quaternions_) all << Eigen::Vector3d::Constant(not_read), rotation_vector(row);
+  const bool whole = !markers_.empty();
+  static constexpr std::array<const char*, 6> pose_names = {"pose.x",  "pose.y",  "pose.z",
+                                                            "pose.rx", "pose.ry", "pose.rz"};
+  Eigen::VectorXd y(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Reading& reading = model_.readings()[std::size_t(i)];
+    const auto at = std::find(pose_names.begin(), pose_names.end(), reading.name) - pose_names.begin();
+    if (at < 6 && (whole || (quaternions_ && at > 2))) y[i] = all[at];
+    else y[i] = value(row, reading.name, reading.unit);
+  }
+  // A rotation vector is one reading of three numbers.
+  const bool turns = count >= 3 && model_.readings().back().name == pose_names[5];
+  if (turns && !y.tail<3>().allFinite()) y.tail<3>().setConstant(not_read);
+  return y;
+}
+
+}  // namespace posewright

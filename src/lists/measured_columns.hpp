@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "posewright/model/identification_model.hpp"
+#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// Columns of a file of readings: where coordinates and readings of a model are, and their values in SI.
+class MeasuredColumns {
+ public:
+  /// Throws InputError if a coordinate or all readings are missing, a name stands twice, a cell is not a value.
+  MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,
+                  const IdentificationModel& model);
+
+  int rows() const { return int(table_.rows.size()); }
+  int line(int row) const { return table_.rows[std::size_t(row)].line; }
+  const std::vector<double>& configuration(int row) const { return configurations_[std::size_t(row)]; }
+  Eigen::VectorXd readings(int row) const;
+  /// Columns NAME.x, NAME.y, NAME.z as a point (m); NaN if one is not there or not read.
+  Eigen::Vector3d point(int row, const std::string& name) const;
+  /// The cell of a column, empty if there is none.
+  std::string text(int row, const std::string& column) const;
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  void index_columns();
+  void find_readings();
+  void read_configurations(const std::string& bytes);
+  void from_actuators();
+  bool has(const std::string& name) const { return column_.count(name) > 0; }
+  /// NaN for an empty cell.
+  double value(int row, const std::string& column, const std::string& unit) const;
+  Eigen::Vector3d rotation_vector(int row) const;
+  Eigen::VectorXd pose_of_points(int row) const;
+  SourcePlace header() const { return {file_, table_.header}; }
+
+  std::string file_;
+  const IdentificationModel& model_;
+  PoseTable table_;
+  std::map<std::string, std::size_t> column_;
+  std::vector<std::vector<double>> configurations_;
+  std::vector<TargetSpec> markers_;  ///< of a photogrammetric pose that is given by its points; else empty
+  bool quaternions_ = false;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace posewright

@@ -1,0 +1,227 @@
+#include "posewright/lists/measured_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "measured_columns.hpp"
+#include "posewright/lists/platform_images.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/text_file.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::uintmax_t data_size_limit = 1'000'000'000;
+
+/// One row of the file, in SI.
+struct Row {
+  int id = 0, line = 0;
+  bool held_back = false;
+  std::vector<double> q;
+  Eigen::VectorXd y;
+};
+
+/// Rows of one configuration that follow each other become one pose with their mean.
+class ReadingAverages {
+ public:
+  /// @param repeats  readings that a row is the mean of where no configuration has several rows
+  ReadingAverages(const IdentificationModel& model, int repeats, MeasuredData& data)
+      : model_(model), repeats_(repeats), data_(data) {
+    squares_.setZero(Eigen::Index(model.readings().size()));
+    counts_ = squares_;
+  }
+
+  void add(Row row) {
+    if (!group_.empty() && (group_.front().q != row.q || group_.front().held_back != row.held_back)) close();
+    group_.push_back(std::move(row));
+  }
+
+  void finish() {
+    if (!group_.empty()) close();
+    data_.repeats = double(data_.poses.size()) / inverse_repeats_;
+    if (data_.repeated.empty()) {
+      for (MeasuredPose& pose : data_.poses) pose.reading_share.resize(0, 0);
+      return;
+    }
+    for (Eigen::Index i = 0; i < squares_.size(); ++i)
+      data_.spread.push_back(counts_[i] > 0 ? std::sqrt(squares_[i] / counts_[i])
+                                            : std::numeric_limits<double>::quiet_NaN());
+  }
+
+ private:
+  void close() {
+    inverse_repeats_ += 1.0 / double(group_.size());
+    if (data_.poses.empty()) first_rows_ = group_.size();
+    data_.same_repeats = data_.same_repeats && group_.size() == first_rows_;
+    const int id = group_.front().id > 0 ? group_.front().id : int(data_.poses.size()) + 1;
+    MeasuredPose pose{id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()};
+    share_readings(pose);
+    data_.poses.push_back(std::move(pose));
+    data_.held_back.push_back(group_.front().held_back);
+    group_.clear();
+  }
+
+  /// A row of which all was read, so that orientations have something to be relative to; else the first.
+  const Eigen::VectorXd& reference() const {
+    const auto whole = std::find_if(group_.begin(), group_.end(), [](const Row& row) { return row.y.allFinite(); });
+    return whole == group_.end() ? group_.front().y : whole->y;
+  }
+
+  Eigen::VectorXd mean() {
+    const Eigen::VectorXd& first = reference();
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), number = sum, change, mean;
+    for (const Row& row : group_) {
+      model_.difference(row.y, first, change);
+      for (Eigen::Index i = 0; i < sum.size(); ++i)
+        if (std::isfinite(change[i])) {
+          sum[i] += change[i];
+          number[i] += 1;
+        }
+    }
+    model_.shifted(first, sum.cwiseQuotient(number), mean);
+    for (Eigen::Index i = 0; i < sum.size(); ++i)
+      if (!std::isfinite(mean[i]) && !model_.readings()[std::size_t(i)].name.starts_with("pose.r"))
+        mean[i] = plain_mean(i);
+    add_spread(mean);
+    return mean;
+  }
+
+  void add_spread(const Eigen::VectorXd& mean) {
+    Eigen::VectorXd change, number = Eigen::VectorXd::Zero(mean.size());
+    RepeatedReadings visit{group_.front().q, Eigen::MatrixXd(mean.size(), Eigen::Index(group_.size()))};
+    for (const Row& row : group_) {
+      model_.difference(row.y, mean, change);
+      visit.deviations.col(&row - group_.data()) = change;
+      for (Eigen::Index i = 0; i < mean.size(); ++i)
+        if (std::isfinite(change[i])) {
+          squares_[i] += change[i] * change[i];
+          number[i] += 1;
+        }
+    }
+    counts_ += (number.array() - 1).max(0).matrix();
+    data_.repeated.push_back(std::move(visit));
+  }
+
+  /// How many rows each reading, and each two of them, are the mean of.
+  void share_readings(MeasuredPose& pose) const {
+    const Eigen::Index all = pose.y.size();
+    Eigen::MatrixXd was_read(all, Eigen::Index(group_.size()));
+    for (const Row& row : group_)
+      was_read.col(&row - group_.data()) =
+          row.y.array().isFinite().cast<double>() * pose.y.array().isFinite().cast<double>();
+    const Eigen::MatrixXd together = was_read * was_read.transpose();
+    const Eigen::VectorXd alone = together.diagonal().cwiseMax(1.0);
+    if ((together.array() == double(repeats_)).all()) return;
+    pose.reading_share = repeats_ * together.cwiseQuotient(alone * alone.transpose());
+  }
+
+  double plain_mean(Eigen::Index i) const {
+    double sum = 0;
+    int number = 0;
+    for (const Row& row : group_)
+      if (std::isfinite(row.y[i])) {
+        sum += row.y[i];
+        ++number;
+      }
+    return number > 0 ? sum / number : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  const IdentificationModel& model_;
+  int repeats_;
+  MeasuredData& data_;
+  std::vector<Row> group_;
+  Eigen::VectorXd squares_, counts_;
+  double inverse_repeats_ = 0.0;
+  std::size_t first_rows_ = 0;
+};
+
+const std::string& label_of(const Coordinate& c, double value) {
+  return c.labels[std::size_t(std::find(c.values.begin(), c.values.end(), value) - c.values.begin())];
+}
+
+int id_of(const std::string& cell, const SourcePlace& place) {
+  int id = 0;
+  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), id);
+  if (code != std::errc() || end != cell.data() + cell.size() || id < 1)
+    throw InputError(place, "id '" + cell.substr(0, 40) + "'", "a whole number above 0 is expected");
+  return id;
+}
+
+bool held_back(const std::string& cell, const SourcePlace& place) {
+  if (cell == "validate") return true;
+  if (cell != "fit") throw InputError(place, "use '" + cell.substr(0, 40) + "'", "allowed: fit, validate");
+  return false;
+}
+
+/// The image of one row; nothing if a point is missing or the pose is out of reach.
+std::optional<PlatformImage> image_of(const MeasuredColumns& columns, int row, const Row& read,
+                                      const PlatformPoints& points, const IdentificationModel& model) {
+  PlatformImage image;
+  image.id = read.id > 0 ? read.id : row + 1;
+  for (const TargetSpec& target : points.body) image.body.push_back(columns.point(row, target.name));
+  for (const std::string& joint : points.joints) image.joints.push_back(columns.point(row, joint));
+  for (const auto* list : {&image.body, &image.joints})
+    for (const Eigen::Vector3d& p : *list)
+      if (!p.allFinite()) return std::nullopt;
+  image.actuators = actuator_moves(model, read.q);
+  if (image.actuators.size() == 0) return std::nullopt;
+  return image;
+}
+
+}  // namespace
+
+MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
+                                const IdentificationModel& model) {
+  const MeasuredColumns columns(read_text(file, data_size_limit), file.string(), problem, model);
+  MeasuredData data;
+  data.notes = columns.notes();
+  data.rows = columns.rows();
+  ReadingAverages averaging(model, problem.measurement.repeats, data);
+  const std::optional<PlatformPoints> platform = platform_points(problem, model);
+  for (int i = 0; i < columns.rows(); ++i) {
+    Row row;
+    row.line = columns.line(i);
+    const SourcePlace place{file.string(), row.line};
+    row.id = columns.text(i, "id").empty() ? 0 : id_of(columns.text(i, "id"), place);
+    row.held_back = !columns.text(i, "use").empty() && held_back(columns.text(i, "use"), place);
+    row.q = columns.configuration(i);
+    row.y = columns.readings(i);
+    if (!row.y.array().isFinite().any()) {
+      data.notes.push_back(fmt::format("{}:{}: nothing was read as a whole; left out", file.string(), row.line));
+      --data.rows;
+      continue;
+    }
+    if (platform)
+      if (std::optional<PlatformImage> image = image_of(columns, i, row, *platform, model))
+        data.images.push_back(std::move(*image));
+    averaging.add(std::move(row));
+  }
+  if (data.rows == 0) throw InputError({file.string(), 0}, "has no readings", "at least one line with some");
+  averaging.finish();
+  return data;
+}
+
+std::string measured_data_csv(const IdentificationModel& model, const std::vector<MeasuredPose>& poses) {
+  std::string text = "id";
+  for (const Coordinate& c : model.coordinates())
+    text += c.choice() ? "," + c.name : fmt::format(",{} [{}]", c.name, c.unit);
+  for (const Reading& reading : model.readings())
+    text += reading.unit == "px" ? "," + reading.name : fmt::format(",{} [{}]", reading.name, reading.unit);
+  text += "\n";
+  for (const MeasuredPose& pose : poses) {
+    text += std::to_string(pose.id);
+    for (std::size_t i = 0; i < pose.q.size(); ++i) {
+      const Coordinate& c = model.coordinates()[i];
+      text += c.choice() ? "," + label_of(c, pose.q[i]) : fmt::format(",{}", pose.q[i]);
+    }
+    for (const double value : pose.y) text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace posewright

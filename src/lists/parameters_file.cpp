@@ -1,0 +1,105 @@
+#include "posewright/lists/parameters_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "posewright/model/apply_parameters.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
+
+namespace posewright {
+namespace {
+
+std::filesystem::path find_near(const std::string& name, const std::filesystem::path& plan) {
+  std::error_code code;
+  for (const std::filesystem::path& file : {std::filesystem::path(name), plan.parent_path() / name,
+                                            plan.parent_path() / std::filesystem::path(name).filename()})
+    if (std::filesystem::is_regular_file(file, code)) return file;
+  throw InputError({plan.string(), 0}, "its parameters file '" + name + "' is not there",
+                   "name it with --parameters FILE");
+}
+
+/// A word as it is where YAML takes it for nothing but a text, else in double quotes.
+std::string yaml_text(const std::string& text) {
+  static constexpr std::array<std::string_view, 9> words = {"true", "false", "null", "yes", "no",
+                                                            "on",   "off",   "y",    "n"};
+  std::string lower;
+  for (const char c : text) lower += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
+  const bool plain =
+      !text.empty() && is_letter(lower.front()) && std::find(words.begin(), words.end(), lower) == words.end() &&
+      std::all_of(lower.begin(), lower.end(),
+                  [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '/'; });
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+ParametersFile parameters_of(const Problem& problem) {
+  if (!problem.parameters) return {};
+  return {problem.parameters->file.string(), problem.parameters->sha256, problem.parameters->variant.value};
+}
+
+ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
+  ParametersFile stated;
+  try {
+    const auto json = parse_json(read_text(plan, plan_size_limit));
+    const nlohmann::json::json_pointer key("/problem/parameters");
+    if (!json.is_object() || !json.contains(key)) return {};
+    const auto& parameters = json.at(key);
+    stated = {parameters.at("file").get<std::string>(), parameters.at("sha256").get<std::string>(),
+              parameters.at("variant").get<std::string>()};
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+  stated.file = find_near(stated.file, plan).string();
+  return stated;
+}
+
+std::string parameters_note(const std::string& name, const ParametersFile& made_at, const Problem& problem) {
+  const ParametersFile now = parameters_of(problem);
+  if (made_at.sha256 == now.sha256) return "";
+  if (now.file.empty())
+    return fmt::format("{} was made at the parameters of {}; everything here is at nominal ones (--parameters {})",
+                       name, made_at.file, made_at.file);
+  if (made_at.file.empty())
+    return fmt::format("{} was made at nominal parameters; everything here is at those of {}", name, now.file);
+  return fmt::format(
+      "{} was made at the parameters of {} with sha256 {:.8}…; everything here is at those of {} ({:.8}…)", name,
+      made_at.file, made_at.sha256, now.file, now.sha256);
+}
+
+void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes) {
+  if (list.problem_sha256.empty()) return;
+  if (std::string note = parameters_note(list.name, list.parameters_file, problem); !note.empty())
+    notes.push_back(std::move(note));
+}
+
+std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
+                            const std::vector<EstimatedValue>& values) {
+  std::string text = fmt::format(
+      "posewright_parameters: 1\nvariant: {}\nconvention: {}\nproblem: {{file: {}, sha256: {}}}\n"
+      "# Values in SI.\nparameters:",
+      yaml_text(variant.name), convention_name(variant.convention), yaml_text(problem.file.string()),
+      yaml_text(problem.sha256));
+  bool any = false;
+  for (const EstimatedValue& entry : values) {
+    const CalibratedValue& v = entry.value;
+    if (v.correction() == 0.0 && !entry.sigma) continue;
+    text += fmt::format("\n  {}: {{value: {}, unit: {}, nominal: {}", yaml_text(v.name), v.value, yaml_text(v.unit),
+                        v.nominal);
+    if (entry.sigma) text += fmt::format(", sigma: {}", *entry.sigma);
+    text += "}";
+    any = true;
+  }
+  return text + (any ? "\n" : " {}\n");
+}
+
+}  // namespace posewright

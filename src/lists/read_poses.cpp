@@ -1,0 +1,227 @@
+#include "posewright/lists/read_poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::uintmax_t list_size_limit = 100'000'000;
+
+double in_si(const std::string& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
+  const Quantity own = c.unit == "m" ? Quantity::length : Quantity::angle;
+  try {
+    return parse_value(unit.empty() ? cell : cell + " " + unit, own);
+  } catch (const InputError&) {
+    throw InputError(place, fmt::format("'{}' of '{}' is not a value", cell.substr(0, 40), c.name),
+                     "a number; in the header, a unit: " + allowed_units({own}));
+  }
+}
+
+double of_label(const std::string& label, const Coordinate& c, const SourcePlace& place) {
+  const auto at = std::find(c.labels.begin(), c.labels.end(), label);
+  if (at == c.labels.end())
+    throw InputError(place, fmt::format("'{}' is not a {}", label.substr(0, 40), c.name),
+                     fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
+  return c.values[std::size_t(at - c.labels.begin())];
+}
+
+/// Puts the cells of a list to the coordinates of a problem: the one place where names and units meet them.
+class ColumnMap {
+ public:
+  ColumnMap(const std::string& file, const std::vector<Coordinate>& coordinates, const PoseTable& table)
+      : file_(file), coordinates_(coordinates), table_(table), column_(coordinates.size(), -1) {
+    list_.name = file;
+    list_.problem_sha256 = table.problem_sha256;
+    list_.parameters_file = table.parameters_file;
+    if (table.names.empty()) map_by_order();
+    else map_by_name();
+  }
+
+  PoseList map() {
+    for (const PoseRow& row : table_.rows) add(row);
+    return std::move(list_);
+  }
+
+ private:
+  /// A choice among one thing needs no column.
+  static bool needs_column(const Coordinate& c) { return !c.choice() || c.labels.size() > 1; }
+
+  void map_by_name() {
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      for (std::size_t i = 0; i < table_.names.size(); ++i)
+        if (table_.names[i] == coordinates_[k].name) {
+          if (column_[k] >= 0)
+            throw InputError({file_, table_.header}, "has column '" + coordinates_[k].name + "' twice",
+                             "each name once");
+          column_[k] = int(i);
+        }
+      if (column_[k] < 0 && needs_column(coordinates_[k]))
+        throw InputError({file_, table_.header}, "has no column '" + coordinates_[k].name + "'",
+                         "the names of all coordinates are expected");
+    }
+    for (std::size_t i = 0; i < table_.names.size(); ++i) {
+      if (table_.names[i] == "weight") weight_ = int(i);
+      if (table_.names[i] == "id" || table_.names[i] == "pose") id_ = int(i);
+    }
+    list_.columns = table_.names;
+  }
+
+  void map_by_order() {
+    const std::size_t columns = table_.rows.front().cells.size();
+    std::size_t next = 0;
+    std::string names;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      if (c.choice() && needs_column(c))
+        throw InputError({file_, 0}, "has no place for the " + c.name + " of a pose", "a format with named columns");
+      if (c.choice()) continue;
+      column_[k] = int(next++);
+      names += (names.empty() ? "" : ", ") + c.name;
+    }
+    if (next != columns)
+      throw InputError({file_, table_.rows.front().line}, fmt::format("has {} numbers a pose", columns),
+                       fmt::format("{} in this order: {}", next, names));
+    list_.notes.push_back(file_ + " names no joints: its columns are taken as " + names);
+  }
+
+  void add(const PoseRow& row) {
+    const SourcePlace place{file_, row.line};
+    if (table_.names.empty() && row.cells.size() != table_.rows.front().cells.size())
+      throw InputError(place, fmt::format("has {} numbers", row.cells.size()),
+                       fmt::format("the first pose has {}", table_.rows.front().cells.size()));
+    std::vector<double> q;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      if (column_[k] < 0) q.push_back(c.values.front());
+      else q.push_back(value_of(row.cells[std::size_t(column_[k])], unit_of(column_[k]), c, place));
+      require_inside(q.back(), c, place);
+      q.back() = as_allowed(q.back(), c);
+    }
+    list_.configurations.push_back(std::move(q));
+    list_.measured.push_back(row.measured);
+    list_.ids.push_back(row.id > 0 ? row.id : int(list_.configurations.size()));
+    list_.lines.push_back(row.line);
+    if (id_ >= 0 || row.id > 0) list_.own_ids.push_back(row.id > 0 ? row.id : id_of(row.cells[std::size_t(id_)]));
+    if (weight_ >= 0) list_.weights.push_back(weight_of(row.cells[std::size_t(weight_)], place));
+  }
+
+  std::string unit_of(int column) const {
+    return table_.units.empty() ? std::string() : table_.units[std::size_t(column)];
+  }
+
+  static double value_of(const PoseCell& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
+    if (const auto* text = std::get_if<std::string>(&cell))
+      return c.choice() ? of_label(*text, c, place) : in_si(*text, unit, c, place);
+    const double value = std::get<double>(cell);
+    if (c.choice()) return of_label(fmt::format("{}", value), c, place);
+    if (unit != degrees_or_millimetres) return value;
+    return c.unit == "m" ? value * 1e-3 : value * (std::numbers::pi / 180);
+  }
+
+  static int id_of(const PoseCell& cell) {
+    const auto* text = std::get_if<std::string>(&cell);
+    int id = 0;
+    if (text == nullptr) return 0;
+    const auto [end, code] = std::from_chars(text->data(), text->data() + text->size(), id);
+    return code == std::errc() && end == text->data() + text->size() && id > 0 ? id : 0;
+  }
+
+  static double weight_of(const PoseCell& cell, const SourcePlace& place) {
+    const auto* text = std::get_if<std::string>(&cell);
+    double weight = 0;
+    if (text == nullptr) {
+      weight = std::get<double>(cell);
+    } else {
+      const auto [end, code] = std::from_chars(text->data(), text->data() + text->size(), weight);
+      if (code != std::errc() || end != text->data() + text->size()) weight = 0;
+    }
+    if (!(weight > 0) || !std::isfinite(weight))
+      throw InputError(place, "weight '" + (text == nullptr ? fmt::format("{}", weight) : text->substr(0, 40)) + "'",
+                       "a positive number is expected");
+    return weight;
+  }
+
+  std::string file_;
+  const std::vector<Coordinate>& coordinates_;
+  const PoseTable& table_;
+  std::vector<int> column_;
+  int weight_ = -1, id_ = -1;
+  PoseList list_;
+};
+
+/// plan.json, route.json and the like by their first character, else CSV.
+PoseTable recognised(const std::string& text, const std::string& file) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] == '{') return table_of(parse_sequence(text, file));
+  return read_csv_table(text, file);
+}
+
+}  // namespace
+
+namespace {
+// rad or m, relative above one: what six digits of a list leave open.
+constexpr double rounding_of_lists = 1e-6;
+}  // namespace
+
+bool inside(double value, const Coordinate& c) {
+  // What a controller shows has few digits: a hair beyond a limit is the limit.
+  const double slack = rounding_of_lists * (1 + std::abs(c.upper - c.lower));
+  return c.choice() || c.periodic || (value >= c.lower - slack && value <= c.upper + slack);
+}
+
+std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates) {
+  for (Coordinate& c : coordinates)
+    if (!c.choice()) {
+      c.lower = -std::numeric_limits<double>::max() / 4;
+      c.upper = -c.lower;
+    }
+  return coordinates;
+}
+
+double as_allowed(double value, const Coordinate& c) {
+  if (c.choice()) return value;
+  if (!c.discrete()) return c.periodic ? value : std::clamp(value, c.lower, c.upper);
+  const double nearest = *std::min_element(
+      c.values.begin(), c.values.end(), [&](double a, double b) { return std::abs(a - value) < std::abs(b - value); });
+  return std::abs(nearest - value) <= rounding_of_lists * (1 + std::abs(nearest)) ? nearest : value;
+}
+
+std::string margin_note(const std::string& file, const std::vector<int>& ids) {
+  constexpr std::size_t most = 8;
+  const std::size_t count = std::min(most, ids.size());
+  return fmt::format("{}: {} {} nearer to a limit than the margin that proposed poses keep: {}{}", file, ids.size(),
+                     ids.size() == 1 ? "pose is" : "poses are", fmt::join(ids.begin(), ids.begin() + long(count), ", "),
+                     ids.size() > most ? ", …" : "");
+}
+
+void require_inside(double value, const Coordinate& c, const SourcePlace& place) {
+  if (inside(value, c)) return;
+  throw InputError(place, fmt::format("'{}' is {:.6g} {}", c.name, value, c.unit),
+                   fmt::format("allowed: {:.6g} to {:.6g} {}", c.lower, c.upper, c.unit));
+}
+
+PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates,
+                    const std::string& format) {
+  return read_poses_text(read_file(file, list_size_limit), file.string(), coordinates, format);
+}
+
+PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates,
+                         const std::string& format) {
+  // Spreadsheets write a byte order mark.
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  const PoseTable table = format.empty() ? recognised(text, name) : find_readable_format(format).read(text, name);
+  return ColumnMap(name, coordinates, table).map();
+}
+
+}  // namespace posewright

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration_parts.hpp"
+#include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/support/distributions.hpp"
+
+namespace posewright {
+namespace {
+
+using Align = Table::Align;
+using Json = nlohmann::ordered_json;
+
+// More poses than this are not read one by one; --json has all.
+constexpr std::size_t most_shown = 40;
+
+std::string times(double before, double after) { return after > 0 ? fmt::format("{:.2g}", before / after) : ""; }
+
+std::string error_or_blank(double value, const std::string& unit) {
+  return std::isfinite(value) ? shown_value(value, unit) : "";
+}
+
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+Json axis_json(const AxisErrors& e) {
+  return {{"mean", e.mean},
+          {"deviation", e.deviation},
+          {"rms", e.rms},
+          {"largest", e.largest},
+          {"largest_at_pose", e.pose}};
+}
+
+Json pose_error_json(const PoseError& e) {
+  return {{"position", finite_or_null(e.position)}, {"rotation", finite_or_null(e.rotation)}};
+}
+
+}  // namespace
+
+std::vector<std::string> improvement_columns() {
+  return {"RMS before", "after", "better by", "largest before", "after", "better by"};
+}
+
+std::vector<std::string> improvement_cells(const AxisImprovement& a) {
+  const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
+  return {shown(a.before.rms),     shown(a.after.rms),     times(a.before.rms, a.after.rms),
+          shown(a.before.largest), shown(a.after.largest), times(a.before.largest, a.after.largest)};
+}
+
+std::string axes_text(const Calibration& c) {
+  if (c.axes.empty()) return "";
+  const bool required =
+      std::any_of(c.axes.begin(), c.axes.end(), [](const AxisImprovement& a) { return a.required.has_value(); });
+  std::vector<std::string> header = joined({"error", "poses"}, improvement_columns());
+  header.insert(header.end(), {"σ after", "mean after"});
+  std::vector<Align> align(header.size(), Align::right);
+  align[0] = align[1] = Align::left;
+  if (required) {
+    header.insert(header.end(), {"required", ""});
+    align.insert(align.end(), {Align::right, Align::left});
+  }
+  Table table(header, align);
+  for (const AxisImprovement& a : c.axes) {
+    const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
+    std::vector<std::string> row = joined({a.after.axis, a.poses}, improvement_cells(a));
+    row.insert(row.end(), {shown(a.after.deviation), shown_to(a.after.mean, a.after.rms, a.after.unit)});
+    if (required)
+      row.insert(row.end(), {a.required ? shown(*a.required) : "", a.required ? (a.met() ? "met" : "NOT MET") : ""});
+    table.row(std::move(row));
+  }
+  std::string text = fmt::format("\nErrors by axis, {} (before) and calibrated (after)\n",
+                                 c.placed ? "with base, tool, targets and nuisance alone" : "nominal");
+  text += table.text();
+  if (required) text += "  required: of the largest error, the instrument's noise included\n";
+  return text;
+}
+
+std::string predicted_poses_text(const Calibration& c) {
+  std::vector<const PoseResidual*> poses;
+  for (const PoseResidual& pose : c.pose_residuals)
+    if (pose.accuracy) poses.push_back(&pose);
+  if (poses.empty()) return "";
+  const bool turns = std::any_of(poses.begin(), poses.end(),
+                                 [](const PoseResidual* p) { return std::isfinite(p->accuracy->observed.rotation); });
+  std::vector<std::string> header = {"pose", "by the estimate", "with noise", "observed"};
+  if (turns) header.insert(header.end(), {"turned: by the estimate", "with noise", "observed"});
+  Table table(header, std::vector<Align>(header.size(), Align::right));
+  for (std::size_t k = 0; k < std::min(poses.size(), most_shown); ++k) {
+    const PoseAccuracy& a = *poses[k]->accuracy;
+    std::vector<std::string> row = {std::to_string(poses[k]->id), error_or_blank(a.predicted.by_estimate.position, "m"),
+                                    error_or_blank(a.predicted.with_noise.position, "m"),
+                                    error_or_blank(a.observed.position, "m")};
+    if (turns)
+      row.insert(row.end(),
+                 {error_or_blank(a.predicted.by_estimate.rotation, "rad"),
+                  error_or_blank(a.predicted.with_noise.rotation, "rad"), error_or_blank(a.observed.rotation, "rad")});
+    table.row(std::move(row));
+  }
+  std::string text = "\nPoses that were not fitted: error predicted by the covariance of the estimate, and observed\n";
+  text += table.text();
+  if (poses.size() > most_shown) text += fmt::format("  {} more: --json\n", poses.size() - most_shown);
+  return text;
+}
+
+std::string steps_text(const Calibration& c) {
+  if (!c.in_steps) return "";
+  std::string text = fmt::format("\nIdentified in steps ({} rounds{})\n", c.in_steps->rounds,
+                                 c.in_steps->settled ? "" : ": NOT SETTLED, the steps pull against each other");
+  for (const IdentificationStep& step : c.in_steps->steps)
+    text += fmt::format("  {}: {} parameters; residuals {:.3g} times the stated noise after the first round\n",
+                        step.name, step.columns, step.scale);
+  Table table({"parameter", "jointly", "in steps", "apart by σ"},
+              {Align::left, Align::right, Align::right, Align::right});
+  for (const CalibratedParameter& p : c.parameters) {
+    if (!p.in_steps) continue;
+    table.row({p.label.name, shown_to(p.value, p.sigma, p.label.unit), shown_to(*p.in_steps, p.sigma, p.label.unit),
+               fmt::format("{:+.2f}", (*p.in_steps - p.value) / p.sigma)});
+  }
+  return text + table.text();
+}
+
+std::string compensator_text(const CompensatorConstants& k) {
+  const auto sigma = [&](int i) { return std::sqrt(k.covariance(i, i)); };
+  Table table({"compensator", "value", "σ", "its inverse", "σ"},
+              {Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.row({"K2⁰, joint", fmt::format("{:.4g} N·m/rad", k.joint_stiffness), fmt::format("{:.2g}", sigma(0)),
+             fmt::format("{:.4f} µrad/(N·m)", 1e6 / k.joint_stiffness),
+             fmt::format("{:.2g}", 1e6 * sigma(0) / (k.joint_stiffness * k.joint_stiffness))});
+  table.row({"Kc, spring", fmt::format("{:.4g} N/m", k.stiffness), fmt::format("{:.2g}", sigma(1)),
+             fmt::format("{:.4f} µm/N", 1e6 / k.stiffness),
+             fmt::format("{:.2g}", 1e6 * sigma(1) / (k.stiffness * k.stiffness))});
+  table.row({"s0·Kc, preload", fmt::format("{:.4g} N", k.preload), fmt::format("{:.2g}", sigma(2)), "", ""});
+  table.row({"s0, free length", fmt::format("{:.1f} mm", 1e3 * k.free_length),
+             fmt::format("{:.2g} mm", 1e3 * k.free_length_sigma), "", ""});
+  std::string text = "\nGravity compensator from the listed compliances, weighted by their covariance\n" + table.text();
+  if (k.freedom > 0)
+    text += fmt::format("Chi-square of what the compliances leave: {:.4g} for {} degrees of freedom{}.\n", k.chi_square,
+                        k.freedom,
+                        chi_square_exceeded(k.chi_square, k.freedom) < seldom
+                            ? ": no spring fits them within their σ, and the σ above are too small"
+                            : "");
+  return text;
+}
+
+Json compensator_json(const CompensatorConstants& k) {
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({k.covariance(i, 0), k.covariance(i, 1), k.covariance(i, 2)});
+  return {{"joint_stiffness", k.joint_stiffness},
+          {"stiffness", k.stiffness},
+          {"preload", k.preload},
+          {"free_length", k.free_length},
+          {"free_length_sigma", k.free_length_sigma},
+          {"covariance", rows},
+          {"chi_square", k.chi_square},
+          {"freedom", k.freedom}};
+}
+
+Json axes_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const AxisImprovement& a : c.axes)
+    list.push_back({{"poses", a.poses},
+                    {"axis", a.after.axis},
+                    {"unit", a.after.unit},
+                    {"count", a.after.count},
+                    {"before", axis_json(a.before)},
+                    {"after", axis_json(a.after)},
+                    {"required", a.required ? Json(*a.required) : Json(nullptr)},
+                    {"met", a.required ? Json(a.met()) : Json(nullptr)}});
+  return list;
+}
+
+Json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy) {
+  if (!accuracy) return nullptr;
+  return {{"by_estimate", pose_error_json(accuracy->predicted.by_estimate)},
+          {"with_noise", pose_error_json(accuracy->predicted.with_noise)},
+          {"observed", pose_error_json(accuracy->observed)}};
+}
+
+Json steps_json(const Calibration& c) {
+  if (!c.in_steps) return nullptr;
+  Json steps = Json::array(), values = Json::array();
+  for (const IdentificationStep& step : c.in_steps->steps)
+    steps.push_back({{"name", step.name}, {"parameters", step.columns}, {"noise_scale", step.scale}});
+  for (const CalibratedParameter& p : c.parameters)
+    if (p.in_steps) values.push_back({{"name", p.label.name}, {"value", *p.in_steps}});
+  return {{"rounds", c.in_steps->rounds}, {"settled", c.in_steps->settled}, {"steps", steps}, {"values", values}};
+}
+
+}  // namespace posewright

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calibration_parts.hpp"
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+using Align = Table::Align;
+
+std::string verdict_of(const Calibration& c) {
+  if (!c.fit.converged) return "not converged";
+  if (c.left_out.refused()) return "no better than base and tool";
+  for (const AxisImprovement& a : c.axes)
+    if (!a.met()) return "a requirement is not met";
+  return "";
+}
+
+std::string shown_share(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "none"; }
+
+}  // namespace
+
+std::string models_text(const std::vector<Calibration>& models) {
+  const bool validated = models.front().held_back > 0;
+  std::string text = fmt::format("{} models fitted to the same {} poses", models.size(), models.front().poses);
+  if (validated) text += fmt::format(" and judged at {} that were not fitted", models.front().held_back);
+  Table fits({"model", "parameters", "residuals / noise", "left out / noise", "with base and tool alone", ""},
+             {Align::left, Align::right, Align::right, Align::right, Align::right, Align::left});
+  for (const Calibration& c : models)
+    fits.row({c.variant, std::to_string(c.columns.size()), fmt::format("{:.3g}", c.fit.scale),
+              c.left_out.groups > 0 ? shown_share(c.left_out.estimated) : "",
+              c.left_out.groups > 0 ? shown_share(c.left_out.placed) : "", verdict_of(c)});
+  text += "\n\n" + fits.text();
+  std::vector<std::string> header = improvement_columns();
+  header.insert(header.begin(), {"error", "model"});
+  std::vector<Align> align(header.size(), Align::right);
+  align[0] = align[1] = Align::left;
+  Table errors(header, align);
+  // Axis by axis, so that the models stand under each other.
+  for (std::size_t i = 0; i < models.front().axes.size(); ++i)
+    for (const Calibration& c : models) {
+      if (i >= c.axes.size()) continue;
+      const AxisImprovement& a = c.axes[i];
+      if (a.poses != (validated ? "held back" : "fitted")) continue;
+      std::vector<std::string> row = improvement_cells(a);
+      row.insert(row.begin(), {a.after.axis, c.variant});
+      errors.row(std::move(row));
+    }
+  return text + fmt::format("\nErrors of the poses {}, before and after\n", validated ? "not fitted" : "fitted") +
+         errors.text();
+}
+
+}  // namespace posewright

@@ -1,0 +1,173 @@
+#include <cmath>
+
+#include "calibration_parts.hpp"
+#include "document.hpp"
+#include "posewright/outputs/json_values.hpp"
+#include "posewright/results/dh_table.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(finite_or_null(value));
+  return list;
+}
+
+Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
+  const auto estimate = [&](double value) { return p.estimated ? Json(value) : Json(nullptr); };
+  const bool interval = p.estimated && turned_frame(c, p) == nullptr;
+  return {{"name", p.label.name},
+          {"unit", p.label.unit},
+          {"role", p.label.role == Role::nuisance ? "nuisance" : "interest"},
+          {"estimated", p.estimated},
+          {"nominal", p.label.nominal},
+          {"tolerance", p.label.tolerance},
+          {"prior", !p.estimated || !p.prior   ? "none"
+                    : p.label.tolerance_stated ? "stated"
+                                               : "assumed"},
+          {"value", p.value},
+          {"sigma", estimate(p.sigma)},
+          {"interval", interval ? Json({p.lower, p.upper}) : Json(nullptr)},
+          {"tells_less_than_tolerance", p.weak},
+          {"why_not", text_or_null(p.why_not)}};
+}
+
+Json test_json(const TestResult& test) {
+  if (!test.possible) return nullptr;
+  return {{"statistic", test.statistic}, {"probability", test.probability}};
+}
+
+Json residuals_json(const Calibration& c) {
+  Json sets = Json::array();
+  for (const ResidualSet& set : c.residuals)
+    for (const ResidualSummary& k : set.kinds)
+      sets.push_back({{"poses", set.poses},
+                      {"parameters", set.parameters},
+                      {"kind", k.kind},
+                      {"count", k.count},
+                      {"rms", k.rms},
+                      {"mean", k.mean},
+                      {"largest", k.largest},
+                      {"largest_at_pose", k.pose}});
+  return sets;
+}
+
+Json orientations_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const CalibratedOrientation& o : c.orientations) {
+    Json rows = Json::array();
+    for (int i = 0; i < 3; ++i) rows.push_back({o.covariance(i, 0), o.covariance(i, 1), o.covariance(i, 2)});
+    list.push_back({{"frame", o.frame},
+                    {"rx_ry_rz", {o.angles[0], o.angles[1], o.angles[2]}},
+                    {"covariance", rows},
+                    {"half_width", {o.half_width[0], o.half_width[1], o.half_width[2]}}});
+  }
+  return list;
+}
+
+Json left_out_json(const LeaveOut& left_out) {
+  const auto judged = [&](double value) { return left_out.groups > 0 ? finite_or_null(value) : Json(nullptr); };
+  return {{"groups", left_out.groups},         {"estimated", judged(left_out.estimated)},
+          {"placed", judged(left_out.placed)}, {"gain", judged(left_out.gain)},
+          {"refused", left_out.refused()},     {"why_not", text_or_null(left_out.why_not)}};
+}
+
+Json covariance_json(const Calibration& c) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < c.fit.covariance.rows(); ++i) {
+    const Eigen::VectorXd row = c.fit.covariance.row(i).transpose();
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+/// How every result of the command begins.
+Json begin_calibration(const char* schema, const Problem& problem, const CalibrateOptions& options) {
+  Json json = begin_document(schema, problem);
+  json["data"] = options.data.string();
+  return json;
+}
+
+Json figures_json(const Calibration& c) {
+  Json parameters = Json::array(), readings = Json::array(), poses = Json::array();
+  for (const CalibratedParameter& p : c.parameters) parameters.push_back(parameter_json(c, p));
+  for (const Reading& reading : c.readings) readings.push_back({{"name", reading.name}, {"unit", reading.unit}});
+  for (const PoseResidual& pose : c.pose_residuals)
+    poses.push_back({{"id", pose.id},
+                     {"held_back", pose.held_back},
+                     {"weight", pose.weight},
+                     {"residuals", numbers(pose.residuals)},
+                     {"accuracy", pose_accuracy_json(pose.accuracy)}});
+  return {{"variant", c.variant},
+          {"weights", weighting_word(c.weighting)},
+          {"prior", c.prior == Prior::none ? "none" : "manufactured"},
+          {"rows", c.rows},
+          {"poses_fitted", c.poses},
+          {"poses_held_back", c.held_back},
+          {"repeats", c.repeats},
+          {"converged", c.fit.converged},
+          {"parameters", parameters},
+          {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
+          {"orientations", orientations_json(c)},
+          {"noise_factor", c.fit.noise_factor},
+          {"noise_scale", c.fit.scale},
+          {"chi_square", c.fit.chi_square},
+          {"freedom", c.fit.freedom},
+          {"tests",
+           {{"chi_square", test_json(c.tests.chi_square)},
+            {"lack_of_fit", test_json(c.lack_of_fit)},
+            {"serial_correlation", test_json(c.tests.serial)},
+            {"within_pose_correlation", test_json(c.tests.within)},
+            {"normality", test_json(c.tests.normality)}}},
+          {"left_out", left_out_json(c.left_out)},
+          {"weakest_combination", text_or_null(c.weakest)},
+          {"curvature", finite_or_null(c.curvature.largest)},
+          {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
+          {"residuals", residuals_json(c)},
+          {"axes", axes_json(c)},
+          {"in_steps", steps_json(c)},
+          {"compensator", c.compensator ? compensator_json(*c.compensator) : Json(nullptr)},
+          {"platform", c.platform ? platform_json(*c.platform) : Json(nullptr)},
+          {"readings", readings},
+          {"spread_within_pose", c.spread.empty() ? Json(nullptr) : numbers(c.spread)},
+          {"poses", poses},
+          {"notes", c.notes}};
+}
+
+}  // namespace
+
+std::string weighting_word(Weighting weighting) {
+  return weighting == Weighting::ordinary ? "ols" : weighting == Weighting::weighted ? "wls" : "robust";
+}
+
+Weighting weighting_of(std::string_view word) {
+  for (const Weighting weighting : {Weighting::ordinary, Weighting::robust})
+    if (word == weighting_word(weighting)) return weighting;
+  return Weighting::weighted;
+}
+
+Json calibration_json(const Problem& problem, const CalibrateOptions& options, const Calibration& calibration,
+                      const std::optional<DhTable>& table) {
+  Json json = begin_calibration("posewright/calibration/1", problem, options);
+  json.update(figures_json(calibration));
+  json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
+  return json;
+}
+
+Json models_json(const Problem& problem, const CalibrateOptions& options, const std::vector<Calibration>& models) {
+  Json json = begin_calibration("posewright/calibrations/1", problem, options);
+  json["models"] = Json::array();
+  for (const Calibration& model : models) json["models"].push_back(calibration_json(problem, options, model));
+  return json;
+}
+
+Json compensator_json(const Problem& problem, const CalibrateOptions& options, const CompensatorConstants& constants) {
+  Json json = begin_calibration("posewright/compensator/1", problem, options);
+  json["compensator"] = compensator_json(constants);
+  return json;
+}
+
+}  // namespace posewright

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "posewright/results/calibration.hpp"
+
+namespace posewright {
+
+/// A test that chance fails this seldom is worth a sentence.
+inline constexpr double seldom = 0.01;
+/// "= 0.12", "below 1e-6": after a p.
+std::string chance_text(double probability);
+
+/// Parts of text and JSON: errors by axis before and after, poses that were not fitted, the identification in steps,
+/// constants of a compensator. Text is empty if there is nothing of the kind.
+std::string axes_text(const Calibration& calibration);
+/// RMS and largest error before and after and by how much they are better: names and cells of these columns.
+std::vector<std::string> improvement_columns();
+std::vector<std::string> improvement_cells(const AxisImprovement& improvement);
+std::string predicted_poses_text(const Calibration& calibration);
+std::string steps_text(const Calibration& calibration);
+nlohmann::ordered_json axes_json(const Calibration& calibration);
+nlohmann::ordered_json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy);
+nlohmann::ordered_json steps_json(const Calibration& calibration);
+nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);
+std::string platform_text(const PlatformDeformation& platform);
+nlohmann::ordered_json platform_json(const PlatformDeformation& platform);
+
+}  // namespace posewright

@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration_parts.hpp"
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+using Align = Table::Align;
+
+constexpr int bar_width = 40;
+
+const char* weighting_name(Weighting weighting) {
+  switch (weighting) {
+    case Weighting::ordinary:
+      return "ordinary least squares";
+    case Weighting::weighted:
+      return "least squares weighted by the instrument's noise";
+    default:
+      return "robust least squares";
+  }
+}
+
+std::string headline(const Calibration& c) {
+  std::string text = fmt::format("{}: {} poses fitted", c.variant, c.poses);
+  if (c.rows > c.poses + c.held_back) text += fmt::format(" (means of {:.3g} readings)", c.repeats);
+  if (c.held_back > 0) text += fmt::format(", {} held back", c.held_back);
+  const auto estimated =
+      std::count_if(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.estimated; });
+  text += fmt::format("; {} readings for {} parameters\n{}{}, {} evaluations{}\n", c.fit.readings, estimated,
+                      weighting_name(c.weighting),
+                      c.prior != Prior::none ? ", tolerances of what was manufactured as prior knowledge" : "",
+                      c.fit.evaluations, c.fit.converged ? "" : ": NOT CONVERGED");
+  return text;
+}
+
+bool assumed(const CalibratedParameter& p) { return p.estimated && p.prior && !p.label.tolerance_stated; }
+
+std::string tolerance_text(const CalibratedParameter& p) {
+  if (!p.prior) return "free";
+  return shown_value(p.label.tolerance, p.label.unit) + (assumed(p) ? " assumed" : "");
+}
+
+std::string orientations_text(const Calibration& c) {
+  if (c.orientations.empty()) return "";
+  Table table({"turned about its parent's", "x by", "y by", "z by"},
+              {Align::left, Align::right, Align::right, Align::right});
+  for (const CalibratedOrientation& o : c.orientations) {
+    const auto shown = [&](int k) { return "± " + shown_value(o.half_width[k], "rad"); };
+    table.row({o.frame, shown(0), shown(1), shown(2)});
+  }
+  return "\n95 % intervals of orientations, as a rotation of the estimate\n" + table.text();
+}
+
+std::string parameters_text(const Calibration& c) {
+  Table table({"parameter", "tolerance", "nominal", "calibrated", "change", "σ", "95 % from", "to", ""},
+              {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,
+               Align::right, Align::left});
+  for (const CalibratedParameter& p : c.parameters) {
+    if (!p.estimated) continue;
+    const std::string& unit = p.label.unit;
+    const auto shown = [&](double value) { return shown_to(value, p.sigma, unit); };
+    const bool turns = turned_frame(c, p) != nullptr;
+    table.row({p.label.name, tolerance_text(p), shown(p.label.nominal), shown(p.value),
+               shown(p.value - p.label.nominal), turns ? "below" : shown(p.sigma), turns ? "" : shown(p.lower),
+               turns ? "" : shown(p.upper),
+               p.weak                           ? "the data add less than its tolerance"
+               : p.label.role == Role::nuisance ? "nuisance"
+                                                : ""});
+  }
+  std::string text = table.text() + orientations_text(c);
+  if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
+    text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
+  const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
+                                      [](const CalibratedParameter& p) { return !p.estimated; });
+  if (c.automatic && left_out > 0)
+    return text + fmt::format(
+                      "\n{} more parameters of the robot are combinations of these for these data and stay at nominal "
+                      "(--json lists them)\n",
+                      left_out);
+  bool first = true;
+  for (const CalibratedParameter& p : c.parameters) {
+    if (p.estimated) continue;
+    if (first) text += "\nNot estimated, left at nominal: these data cannot identify them separately\n";
+    first = false;
+    text += "  " + p.why_not + "\n";
+  }
+  return text;
+}
+
+std::string kind_name(const std::string& kind) {
+  if (kind == "distance") return "distance of a target";
+  return kind == "m" ? "lengths" : kind == "rad" ? "angles" : kind == "px" ? "pixels" : kind;
+}
+
+std::string residuals_text(const Calibration& c) {
+  Table table({"residuals", "poses", "parameters", "RMS", "largest", "at pose", "mean"},
+              {Align::left, Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
+  for (const ResidualSet& set : c.residuals)
+    for (const ResidualSummary& k : set.kinds) {
+      const std::string unit = k.kind == "distance" ? "m" : k.kind;
+      table.row({kind_name(k.kind), set.poses, set.parameters, shown_value(k.rms, unit), shown_value(k.largest, unit),
+                 std::to_string(k.pose), shown_to(k.mean, k.rms, unit)});
+    }
+  std::string text = "\nResiduals, measured less predicted\n" + table.text();
+  if (std::any_of(c.residuals.begin(), c.residuals.end(),
+                  [](const ResidualSet& s) { return s.parameters == "placed"; }))
+    text += "  placed: only what says where things stand is estimated (base, tool, targets, nuisance)\n";
+  return text;
+}
+
+std::string histogram_text(const std::vector<int>& counts) {
+  const int most = std::max(1, *std::max_element(counts.begin(), counts.end()));
+  std::string text = "\nResiduals in units of their own size\n";
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double from = -4.5 + 0.5 * double(i);
+    const std::string label = i == 0                   ? fmt::format("   below {:+.1f}", from + 0.5)
+                              : i + 1 == counts.size() ? fmt::format("   above {:+.1f}", from)
+                                                       : fmt::format("{:+.1f} to {:+.1f}", from, from + 0.5);
+    std::string bar;
+    for (int k = 0; k < (counts[i] * bar_width + most - 1) / most; ++k) bar += "█";
+    text += fmt::format("  {:>13}  {:>6}  {}", label, counts[i], bar);
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string noise_text(const Calibration& c) {
+  std::string text = "\n";
+  if (c.tests.chi_square.possible) {
+    text += fmt::format(
+        "Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
+        c.tests.chi_square.statistic, c.fit.freedom, chance_text(c.tests.chi_square.probability), c.fit.scale);
+    if (c.fit.noise_factor > 1)
+      text += fmt::format(
+          ".\n  The model or the stated noise is refused; σ and intervals above count {:.3g} times the noise, which is "
+          "what the residuals show.\n",
+          c.fit.noise_factor);
+    else if (c.tests.chi_square.probability < seldom)
+      text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
+    else text += ": as they should be.\n";
+  } else if (c.fit.scale_known) {
+    text += "No degrees of freedom are left: σ rest on the stated noise, and nothing tests it.\n";
+  } else {
+    text += fmt::format("Noise estimated from the residuals: {:.3g} times the stated one ({} degrees of freedom).\n",
+                        c.fit.scale, c.fit.freedom);
+  }
+  if (c.lack_of_fit.possible)
+    text += fmt::format(
+        "Lack of fit: F = {:.3g} (p {}) of residuals against the scatter of readings within a pose and what is stated "
+        "to stay at one{}.\n",
+        c.lack_of_fit.statistic, chance_text(c.lack_of_fit.probability),
+        c.lack_of_fit.probability < seldom
+            ? ": more stays at a pose than is stated (repeatability of the robot, a missing effect)"
+            : ": they explain the residuals");
+  return text;
+}
+
+std::string whiteness_text(const Calibration& c) {
+  std::string text;
+  if (c.tests.serial.possible)
+    text += fmt::format("Correlation from pose to pose {:+.2f} (p {}){}.\n", c.tests.serial.statistic,
+                        chance_text(c.tests.serial.probability),
+                        c.tests.serial.probability < seldom
+                            ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
+                            : "");
+  if (c.tests.within.possible)
+    text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
+                        chance_text(c.tests.within.probability),
+                        c.tests.within.probability < seldom
+                            ? ": readings of a pose err together: the robot stood farther off than stated? State more "
+                              "repeatability, of its orientation too; σ and intervals are too small without it"
+                            : "");
+  if (c.tests.normality.possible)
+    text +=
+        fmt::format("Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic,
+                    chance_text(c.tests.normality.probability),
+                    c.tests.normality.probability < seldom ? ": not normal: gross errors? try --weights robust" : "");
+  if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
+    const auto at = std::size_t(c.curvature.parameter);
+    text += fmt::format(
+        "Not linear within its own uncertainty (curvature {:.2g} at one σ, most in {}): intervals are rough.\n",
+        c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
+  }
+  return text;
+}
+
+std::string left_out_text(const Calibration& c) {
+  if (c.left_out.groups == 0) return "";
+  if (!std::isfinite(c.left_out.estimated)) return "Poses left out cannot be predicted: " + c.left_out.why_not + "\n";
+  return fmt::format(
+      "Poses left out ({} times) are predicted to {:.3g} times the stated noise, with base and tool alone to "
+      "{:.3g}{}.\n",
+      c.left_out.groups, c.left_out.estimated, c.left_out.placed,
+      c.left_out.refused() ? ": NO GAIN that is more than chance" : "");
+}
+
+std::string outliers_text(const Calibration& c) {
+  std::string text;
+  if (c.weighting != Weighting::robust) return text;
+  for (const PoseResidual& pose : c.pose_residuals)
+    if (!pose.held_back && pose.weight < 0.5)
+      text += fmt::format("{}{} ({:.2f})", text.empty() ? "Poses with readings that lost weight: " : ", ", pose.id,
+                          pose.weight);
+  return text.empty() ? text : text + "\n";
+}
+
+}  // namespace
+
+std::string chance_text(double probability) {
+  return probability < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", probability);
+}
+
+std::string calibration_text(const Calibration& c) {
+  return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
+         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
+         predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) +
+         left_out_text(c) + outliers_text(c);
+}
+
+}  // namespace posewright

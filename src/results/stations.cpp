@@ -1,0 +1,80 @@
+#include "posewright/results/stations.hpp"
+
+#include <fmt/format.h>
+
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string names_of(const StationRank& rank) {
+  std::string names;
+  for (const StationSpec& station : rank.stations) names += (names.empty() ? "" : ", ") + station.name;
+  return names;
+}
+
+std::string places_of(const StationRank& rank) {
+  std::string places;
+  for (const StationSpec& station : rank.stations) {
+    const Eigen::Vector3d& p = station.placement.position;
+    places += fmt::format("{}({:.3f}, {:.3f}, {:.3f})", places.empty() ? "" : "; ", p.x(), p.y(), p.z());
+  }
+  return places;
+}
+
+}  // namespace
+
+std::string stations_text(const std::vector<StationRank>& ranks) {
+  using A = Table::Align;
+  Table table({"", "station", "place [m]", "planned", "parameters", "criterion", "σ", "feasible", "predicted error",
+               "most rejected by"},
+              {A::right, A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::left});
+  int place = 0;
+  for (const StationRank& rank : ranks) {
+    if (!rank.why_not.empty()) continue;
+    table.row({std::to_string(++place), names_of(rank), places_of(rank), rank.in_full ? "in full" : "quickly",
+               std::to_string(rank.parameters), fmt::format("{:.4f}", rank.phi),
+               rank.sigma_ratio ? fmt::format("{:.2f} ×", *rank.sigma_ratio) : "",
+               fmt::format("{:.1f} %", 100 * rank.feasible_share), rank.rho0 ? shown_value(*rank.rho0, "m") : "",
+               rank.main_rejection});
+  }
+  std::string text = table.text();
+  for (const StationRank& rank : ranks)
+    if (!rank.why_not.empty()) text += fmt::format("{}: no plan: {}\n", names_of(rank), rank.why_not);
+  text += "\nFor measurement: device:\n  stations:\n";
+  for (const StationSpec& station : ranks.front().stations) {
+    const Eigen::Vector3d &p = station.placement.position, &r = station.placement.rpy;
+    text += fmt::format("    {}: {{position: [{}, {}, {}], rpy: [{}, {}, {}]}}\n", station.name, p.x(), p.y(), p.z(),
+                        r.x(), r.y(), r.z());
+  }
+  return text;
+}
+
+Json stations_json(const std::vector<StationRank>& ranks) {
+  Json list = Json::array();
+  for (const StationRank& rank : ranks) {
+    Json stations = Json::object();
+    for (const StationSpec& s : rank.stations)
+      stations[s.name] = {{"position", {s.placement.position.x(), s.placement.position.y(), s.placement.position.z()}},
+                          {"rpy", {s.placement.rpy.x(), s.placement.rpy.y(), s.placement.rpy.z()}}};
+    Json json = {{"stations", stations}};
+    if (!rank.why_not.empty()) {
+      json["why_not"] = rank.why_not;
+    } else {
+      json["in_full"] = rank.in_full;
+      json["parameters"] = rank.parameters;
+      json["phi"] = rank.phi;
+      json["criterion_value"] = rank.criterion_value;
+      json["sigma_ratio"] = rank.sigma_ratio ? Json(*rank.sigma_ratio) : Json(nullptr);
+      json["feasible_share"] = rank.feasible_share;
+      json["main_rejection"] = rank.main_rejection;
+      json["rho0"] = rank.rho0 ? Json(*rank.rho0) : Json(nullptr);
+    }
+    list.push_back(json);
+  }
+  return {{"schema", "posewright/stations/1"}, {"ranking", list}};
+}
+
+}  // namespace posewright

@@ -1,0 +1,283 @@
+#include "posewright/search/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planners/registry.hpp"
+#include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/criterion/reserve.hpp"
+#include "posewright/planning/extended_bound.hpp"
+#include "posewright/planning/whiten.hpp"
+#include "posewright/search/design_measure.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/repeats.hpp"
+
+namespace posewright {
+namespace {
+
+/// All parts as one problem: whitened blocks, columns side by side, rows below each other.
+struct Joined {
+  BlockArray blocks;
+  Eigen::MatrixXd R, prior;  // prior in whitened coordinates; empty: none
+  int nuisance = 0;
+  CriterionData data;
+  std::vector<double> offsets;  // log det raw − whitened, of each part
+  std::vector<double> references;
+};
+
+ApproximateDesignOptions bound_options(const SearchRequest& request, const Eigen::MatrixXd& prior) {
+  ApproximateDesignOptions options;
+  options.cap = std::min(1.0, double(request.repeats.most) / request.poses);
+  if (prior.size() > 0) options.prior = prior / double(request.poses);
+  options.threads = request.planner.threads;
+  return options;
+}
+
+/// What the best plan for this part alone could reach: the measure of its efficiency.
+double reference_of(const SearchPart& part, const Eigen::MatrixXd& prior, const SearchRequest& request,
+                    const Monitor& monitor) {
+  return solve_approximate_design(part.blocks, LogDetFunction(part.nuisance, part.blocks.columns()),
+                                  bound_options(request, prior), monitor)
+      .bound_for(request.poses);
+}
+
+Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool several, const Monitor& monitor) {
+  Joined joined;
+  Eigen::Index m = 0;
+  for (const SearchPart& part : parts) m += part.blocks.columns();
+  joined.R = Eigen::MatrixXd::Zero(m, m);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(m, m);
+  joined.data.scale.resize(m);
+  Eigen::Index first = 0;
+  for (SearchPart& part : parts) {
+    const Eigen::Index c = part.blocks.columns();
+    const Eigen::MatrixXd per_pose =
+        part.prior.size() > 0 ? Eigen::MatrixXd(part.prior / double(request.poses)) : Eigen::MatrixXd();
+    const Whitening whitening = whiten(part.blocks, per_pose);
+    joined.R.block(first, first, c, c) = whitening.R;
+    joined.offsets.push_back(whitening.log_det_offset(part.nuisance));
+    Eigen::MatrixXd own;
+    if (part.prior.size() > 0) own = whitening.prior * double(request.poses);
+    if (own.size() > 0) prior.block(first, first, c, c) = own;
+    joined.data.scale.segment(first, c) = part.scale;
+    if (several) {
+      const std::size_t v = joined.references.size();
+      const double reference = request.references.empty() ? reference_of(part, own, request, monitor)
+                                                          : request.references[v] - joined.offsets.back();
+      joined.references.push_back(reference + joined.offsets.back());
+      joined.data.variants.push_back({int(first), int(c), part.nuisance, part.weight, reference});
+    }
+    first += c;
+  }
+  if (parts.front().prior.size() > 0) joined.prior = prior;
+  joined.data.R = joined.R;
+  joined.data.test_points = parts.front().test_points;
+  joined.data.effects = parts.front().effects;
+  if (!several) joined.nuisance = joined.data.nuisance = parts.front().nuisance;
+  joined.blocks = parts.size() == 1 ? std::move(parts.front().blocks) : side_by_side(parts);
+  return joined;
+}
+
+void require_choice(const SearchRequest& request, std::size_t candidates) {
+  if (double(request.poses) <= double(candidates) * request.repeats.most) return;
+  throw CannotDo(fmt::format(
+      "{} poses cannot be chosen from {} candidates{}", request.poses, candidates,
+      request.repeats.most == 1 ? " without repeats" : fmt::format(", each at most {} times", request.repeats.most)));
+}
+
+/// Whitened blocks of configurations that are no candidates.
+BlockArray blocks_at(const std::vector<std::vector<double>>& configurations, const ConfigurationSpace& space,
+                     const Joined& joined) {
+  BlockArray blocks(configurations.size(), joined.blocks.rows(), joined.blocks.columns());
+  const auto probe = space.probe();
+  for (std::size_t i = 0; i < blocks.count(); ++i) probe->block(configurations[i], blocks.row(i, 0), blocks.stride());
+  return blocks;
+}
+
+std::vector<double> without_each(const Joined& joined, const Design& design, const BlockArray& added,
+                                 const InformationFunction& function) {
+  const auto n = joined.blocks.count();
+  BlockArray chosen(design.members.size(), joined.blocks.rows(), joined.blocks.columns());
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    const auto member = std::size_t(design.members[i]);
+    chosen.block(i) = member < n ? joined.blocks.block(member) : added.block(member - n);
+  }
+  Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
+  if (joined.prior.size() > 0) M += joined.prior;
+  const double whole = function.value(M), degree = function.degree() > 0 ? function.degree() : 1.0;
+  std::vector<double> result;
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    const auto block = chosen.block(i);
+    result.push_back(std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / degree)));
+  }
+  return result;
+}
+
+/// Raw blocks of the chosen candidates, each part's own.
+std::vector<BlockArray> raw_blocks(const Joined& joined, const std::vector<std::pair<int, int>>& shapes,
+                                   const Design& design) {
+  std::vector<int> members;
+  for (const int i : design.members)
+    if (std::size_t(i) < joined.blocks.count()) members.push_back(i);
+  const BlockArray white = joined.blocks.subset(members);
+  std::vector<BlockArray> result;
+  Eigen::Index row = 0, column = 0;
+  for (const auto& [r, m] : shapes) {
+    BlockArray raw(members.size(), r, m);
+    for (std::size_t i = 0; i < raw.count(); ++i)
+      raw.block(i) = white.block(i).block(row, column, r, m) * joined.R.block(column, column, m, m);
+    row += r;
+    column += m;
+    result.push_back(std::move(raw));
+  }
+  return result;
+}
+
+void fill(Certificate& certificate, const ApproximateDesign& approximate, const Joined& joined,
+          const SearchRequest& request, double offset) {
+  certificate.bound = approximate.bound_for(request.poses) + offset;
+  certificate.max_sensitivity_ratio = approximate.max_sensitivity_ratio;
+  certificate.count = joined.blocks.count();
+  certificate.repeats = repeats_text(request.repeats);
+}
+
+/// Φ of determinant criteria is that of raw coordinates, as people know it.
+double offset_of(const Joined& joined, const CriterionEntry& entry) {
+  return entry.determinant ? joined.offsets.front() : 0.0;
+}
+
+std::shared_ptr<const DesignMeasure> measure(const Joined& joined, const CriterionEntry& entry,
+                                             std::shared_ptr<const Criterion> criterion) {
+  return std::make_shared<DesignMeasure>(std::move(criterion), joined.R, joined.prior, offset_of(joined, entry));
+}
+
+}  // namespace
+
+void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
+                   const SourcePlace& method_place) {
+  if (find_criterion(criterion) == nullptr)
+    throw InputError(criterion_place, "unknown criterion '" + criterion + "'", "available: " + criterion_names());
+  if (make_planner(method) == nullptr)
+    throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
+}
+
+std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,
+                                                const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  return measure(joined, entry, entry.make(joined.data));
+}
+
+Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  require_choice(request, parts.front().blocks.count());
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
+  Bound result;
+  result.measure = measure(joined, entry, criterion);
+  result.degree = criterion->function().degree();
+  result.references = joined.references;
+  result.certificate.proved = result.degree > 0;
+  if (!result.certificate.proved) return result;
+  const ApproximateDesign approximate =
+      solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
+  fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
+  result.sensitivity = approximate.sensitivity;
+  result.price = approximate.price;
+  return result;
+}
+
+SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  const CriterionEntry& entry = *find_criterion(request.criterion);
+  require_choice(request, parts.front().blocks.count());
+  std::vector<std::pair<int, int>> shapes;
+  for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
+  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+  const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
+  const InformationFunction& function = criterion->function();
+  const double degree = function.degree();
+  // Criteria without a bound take their starts from the determinant's weights.
+  const LogDetFunction log_det(joined.nuisance, joined.blocks.columns());
+  ApproximateDesign approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
+                                                           bound_options(request, joined.prior), monitor);
+  if (degree == 0) approximate.sensitivity.clear();
+  const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
+  std::optional<WorkspaceBound> workspace;
+  if (space != nullptr && degree > 0 && !monitor.should_stop()) {
+    WorkspaceBoundOptions options;
+    options.prior = bound_options(request, joined.prior).prior;
+    options.seed = request.planner.seed;
+    options.threads = request.planner.threads;
+    workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
+  }
+
+  DesignTask task;
+  const int repeats = std::min(request.repeats.most, request.poses);
+  task.candidates = {&joined.blocks, joined.nuisance, repeats, joined.prior.size() > 0 ? &joined.prior : nullptr,
+                     request.spacing};
+  const ReserveCriterion reserve(*criterion);
+  task.criterion = request.reserve ? &reserve : criterion.get();
+  task.poses = request.poses;
+  task.approximate = &approximate;
+  if (degree > 0) task.bound = approximate.bound_for(request.poses);
+  task.space = space.get();
+  task.workspace = workspace ? &*workspace : nullptr;
+
+  SearchResult result;
+  result.measure = measure(joined, entry, criterion);
+  result.degree = degree;
+  Monitor shifted;
+  shifted.interrupted = monitor.interrupted;
+  shifted.deadline = monitor.deadline;
+  // People see the log det that will be in the plan, not that of whitened coordinates.
+  const double offset = offset_of(joined, entry);
+  shifted.on_progress = [&](Progress progress) {
+    if (progress.best) *progress.best += offset;
+    if (progress.bound) *progress.bound += offset;
+    monitor.report(progress);
+  };
+  result.design = make_planner(request.method)->plan(task, request.planner, shifted);
+  result.stopped = approximate.stopped || result.design.stopped;
+  result.references = joined.references;
+  result.certificate.proved = degree > 0;
+  BlockArray added;
+  if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
+  if (degree > 0) fill(result.certificate, approximate, joined, request, offset);
+  if (degree > 0 && !result.design.added.empty()) {
+    // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
+    // that optimal weights over the workspace use.
+    std::vector<std::vector<double>> found = result.design.added;
+    if (workspace) found.insert(found.end(), workspace->support.begin(), workspace->support.end());
+    const BlockArray more = blocks_at(found, *space, joined);
+    const ApproximateDesign extended =
+        extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
+    fill(result.certificate, extended, joined, request, offset);
+    result.certificate.count += more.count();
+    result.certificate.found = more.count();
+  }
+  if (workspace)
+    result.certificate.workspace = {0.0, workspace->bound_for(request.poses) + offset, workspace->max_ratio,
+                                    fmt::format("largest d(q) of {} local searches ({}); not a proof",
+                                                workspace->searches, space->is_box() ? "SLSQP" : "SBPLX")};
+  for (const SearchStage& stage : result.design.stages)
+    result.stages.push_back({stage.name, stage.value + offset,
+                             degree > 0
+                                 ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / degree))
+                                 : std::nullopt,
+                             stage.seconds});
+  result.without = without_each(joined, result.design, added, function);
+  result.chosen = raw_blocks(joined, shapes, result.design);
+  return result;
+}
+
+void certify(Certificate& certificate, double phi, double degree) {
+  if (!certificate.proved) return;
+  certificate.efficiency = std::min(1.0, std::exp((phi - certificate.bound) / degree));
+  if (certificate.workspace)
+    certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
+}
+
+}  // namespace posewright

@@ -1,0 +1,76 @@
+#include "posewright/criterion/registry.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, const PlanOptions& options, bool several) {
+  const DesignSpec& design = problem.design;
+  if (!several) return {{{find_variant(problem, options.variant).name, 0}, 1.0}};
+  if (!options.variant.empty())
+    throw InputError({}, "--variant names one variant", "the criterion is over several: design: variants");
+  if (!design.variants.empty()) return design.variants;
+  std::vector<DesignSpec::Weighted> all;
+  for (const VariantSpec& variant : problem.variants) all.push_back({{variant.name, variant.line}, 1.0});
+  return all;
+}
+
+Located<std::string> truth_of(const Problem& problem, const PlanOptions& options, const std::string& criterion) {
+  const DesignSpec& design = problem.design;
+  const Located<std::string> truth =
+      options.truth.empty() ? design.truth.value_or(Located<std::string>{}) : Located<std::string>{options.truth, 0};
+  const CriterionEntry& entry = *find_criterion(criterion);
+  const SourcePlace asked = options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{};
+  if (entry.needs_truth && truth.value.empty())
+    throw InputError(asked, "criterion '" + criterion + "' needs an alternative model to test",
+                     "set design: truth or --truth");
+  if (!truth.value.empty()) find_variant(problem, truth.value);
+  if (entry.several_variants && !truth.value.empty())
+    throw InputError(truth.line > 0 ? problem.at(truth.line) : asked,
+                     "--truth needs a single fitted variant; criterion '" + criterion + "' is over several",
+                     "leave out the truth, or another criterion");
+  return truth;
+}
+
+}  // namespace
+
+Settings settings_of(const Problem& problem, const PlanOptions& options) {
+  const DesignSpec& design = problem.design;
+  Settings s;
+  s.criterion = options.criterion.empty() ? design.criterion.value : options.criterion;
+  s.method = options.method.empty() ? design.method.value : options.method;
+  require_known(s.criterion, s.method, options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{},
+                options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
+  const bool smallest = options.poses ? false : options.smallest || design.smallest;
+  if (!options.poses && !design.poses && !smallest)
+    throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
+  if (!smallest) s.poses = options.poses ? *options.poses : design.poses->value;
+  const bool of_poses = design.require.accuracy || design.require.of_axes();
+  if (smallest && !of_poses && design.require.sigma.empty())
+    throw InputError(problem.at(design.line), "poses: auto does not know what must be reached",
+                     "set design: require: accuracy, position, rotation or sigma");
+  if (smallest && of_poses && !design.test_poses)
+    throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
+                     "set design: test_poses");
+  s.candidates = options.candidates.value_or(design.candidates.value);
+  s.candidates_from = options.candidates_from;
+  if (!s.candidates_from && !options.candidates && design.candidates_from)
+    s.candidates_from = poses_in_file(*design.candidates_from);
+  s.prior = options.prior.value_or(design.prior);
+  s.reserve = options.reserve || design.reserve;
+  s.repeats = options.repeats.value_or(design.repeats);
+  s.scaling = options.scaling.value_or(design.scaling);
+  s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
+  s.truth = truth_of(problem, options, s.criterion);
+  if (find_criterion(s.criterion)->needs_test_poses && !design.test_poses)
+    throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
+  s.measured = options.measured;
+  if (!s.measured && design.measured) s.measured = poses_in_file(*design.measured);
+  s.planner.restarts = options.restarts.value_or(design.restarts.value);
+  s.planner.seed = options.seed;
+  s.planner.threads = options.threads;
+  return s;
+}
+
+}  // namespace posewright

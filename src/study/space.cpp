@@ -1,0 +1,130 @@
+#include "posewright/study/space.hpp"
+
+#include <limits>
+#include <numbers>
+
+#include "posewright/model/whitening.hpp"
+#include "posewright/support/dense.hpp"
+
+namespace posewright {
+namespace {
+
+// Two poses that differ by less than this share of every range count as one.
+constexpr double same_pose = 0.01;
+
+class StudyProbe : public ConfigurationSpace::Probe {
+ public:
+  StudyProbe(const std::vector<SpacePart>& parts, const Configurations& measured, const Spacing& spacing,
+             const Eigen::MatrixXd& R)
+      : parts_(parts), measured_(measured), spacing_(spacing), R_(R), scratch_(parts.size()) {
+    int rows = 0;
+    for (const SpacePart& part : parts) {
+      first_row_.push_back(rows);
+      rows += part.model->block_rows(part.selected);
+    }
+    raw_ = BlockArray::RowMatrix::Zero(rows, R.cols());
+    for (const SpacePart& part : parts)
+      own_.emplace_back(part.model->block_rows(part.selected), part.mix.size() > 0 ? part.mix.rows() : 0);
+  }
+
+  bool feasible(std::span<const double> q) override {
+    for (const SpacePart& part : parts_)
+      if (part.workspace->violation(q) >= 0) return false;
+    for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
+      if (spacing_.too_near(measured_[i], q)) return false;
+    return true;
+  }
+
+  bool block(std::span<const double> q, double* rows, int stride) override {
+    Eigen::Index column = 0;
+    for (std::size_t v = 0; v < parts_.size(); ++v) {
+      const SpacePart& part = parts_[v];
+      const bool mixed = part.mix.size() > 0;
+      double* out = mixed ? own_[v].data() : &raw_(first_row_[v], column);
+      if (!whitened_block(*part.model, q, {}, part.selected, scratch_[v], out,
+                          int(mixed ? own_[v].cols() : raw_.cols())))
+        return false;
+      if (mixed) raw_.block(first_row_[v], column, own_[v].rows(), part.mix.cols()).noalias() = own_[v] * part.mix;
+      column += mixed ? part.mix.cols() : Eigen::Index(part.selected.size());
+    }
+    white_ = raw_;
+    R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(white_);
+    if (!white_.allFinite()) return false;
+    BlockArray::Map(rows, white_.rows(), white_.cols(), Eigen::OuterStride<>(stride)) = white_;
+    return true;
+  }
+
+ private:
+  const std::vector<SpacePart>& parts_;
+  const Configurations& measured_;
+  const Spacing& spacing_;
+  const Eigen::MatrixXd& R_;
+  std::vector<Linearisation> scratch_;
+  std::vector<int> first_row_;
+  std::vector<BlockArray::RowMatrix> own_;  // of parts that are mixed
+  BlockArray::RowMatrix raw_, white_;
+};
+
+class StudySpace : public ConfigurationSpace {
+ public:
+  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
+             const Spacing& spacing, Eigen::MatrixXd R)
+      : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
+    for (const Coordinate& c : parts_.front().workspace->proposed()) axes_.push_back({c.lower, c.upper, !c.discrete()});
+    // Poses that are there already are holes in the box.
+    box_ = measured.count() == 0 || spacing.unit.size() == 0;
+    for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
+  }
+
+  const std::vector<Axis>& axes() const override { return axes_; }
+  bool is_box() const override { return box_; }
+  const Spacing& spacing() const override { return spacing_; }
+  std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
+  std::unique_ptr<Probe> probe() const override {
+    return std::make_unique<StudyProbe>(parts_, measured_, spacing_, R_);
+  }
+
+ private:
+  std::vector<SpacePart> parts_;
+  const Configurations& candidates_;
+  const Configurations& measured_;
+  Spacing spacing_;
+  Eigen::MatrixXd R_;
+  std::vector<Axis> axes_;
+  bool box_ = true;  // limits are the only check
+};
+
+}  // namespace
+
+std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
+                                                             const Configurations& candidates,
+                                                             const Configurations& measured, const Spacing& spacing,
+                                                             Eigen::MatrixXd R) {
+  return std::make_unique<StudySpace>(std::move(parts), candidates, measured, spacing, std::move(R));
+}
+
+Spacing spacing_of(const std::vector<Coordinate>& coordinates,
+                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats) {
+  Spacing spacing;
+  // A limited number of repeats is kept for candidates; poses between them are then not repeated at all.
+  if (!distance && repeats.most == Repeats::any_number) return spacing;
+  const auto d = Eigen::Index(coordinates.size());
+  spacing.unit.resize(d);
+  spacing.period = Eigen::VectorXd::Zero(d);
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const Coordinate& c = coordinates[std::size_t(k)];
+    if (c.periodic) spacing.period[k] = 2 * std::numbers::pi;
+    if (c.discrete()) {
+      // Another load case or station is another pose, however small the step between the numbers.
+      spacing.unit[k] = 1e-12;
+    } else if (distance) {
+      const double asked = c.unit == "m" ? distance->length : distance->angle;
+      spacing.unit[k] = asked > 0 ? asked : std::numeric_limits<double>::infinity();
+    } else {
+      spacing.unit[k] = c.upper > c.lower ? same_pose * (c.upper - c.lower) : std::numeric_limits<double>::infinity();
+    }
+  }
+  return spacing;
+}
+
+}  // namespace posewright

@@ -1,0 +1,247 @@
+#include "posewright/study/study.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "listed_candidates.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/model/elastic_chain.hpp"
+#include "posewright/study/accuracy_points.hpp"
+#include "posewright/study/discrepancy.hpp"
+#include "posewright/study/space.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+void require_same_coordinates(const Variant& a, const Variant& b) {
+  const auto& x = a.workspace->coordinates();
+  const auto& y = b.workspace->coordinates();
+  const auto same = [](const Coordinate& c, const Coordinate& d) { return c.name == d.name && c.labels == d.labels; };
+  if (x.size() != y.size() || !std::equal(x.begin(), x.end(), y.begin(), same))
+    throw CannotDo("variants '" + a.spec->name + "' and '" + b.spec->name +
+                   "' have different coordinates: no pose can serve both");
+}
+
+Configurations drawn(const Study& study, const Settings& settings, const Monitor& monitor) {
+  SamplingOptions sampling;
+  sampling.count = std::size_t(settings.candidates);
+  sampling.seed = settings.planner.seed;
+  sampling.threads = settings.planner.threads;
+  return sample_configurations(*study.first().workspace, sampling, monitor);
+}
+
+/// Candidates of the first variant that all others can take.
+Configurations common(const std::vector<Variant>& variants, Configurations all) {
+  if (variants.size() == 1) return all;
+  Configurations kept;
+  kept.dimension = all.dimension;
+  kept.drawn = all.drawn;
+  kept.rejected = all.rejected;
+  long lost = 0;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const bool good = std::all_of(variants.begin() + 1, variants.end(),
+                                  [&](const Variant& v) { return v.workspace->violation(all[i]) < 0; });
+    if (good) append(kept, all, i);
+    else ++lost;
+  }
+  if (lost > 0) kept.rejected.emplace_back("another variant's limits", lost);
+  if (kept.count() == 0) throw CannotDo("no configuration is feasible for all variants");
+  return kept;
+}
+
+Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
+  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    tolerance[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  return tolerance;
+}
+
+constexpr std::size_t norm_sample = 2000;
+
+/// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings (where it has none and only
+/// its tolerance is known: that), or 1.
+Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configurations, Scaling scaling, int threads) {
+  const VariantColumns& columns = variant.columns;
+  if (scaling == Scaling::tolerance) return tolerances_of(columns);
+  const auto m = Eigen::Index(columns.selected.size());
+  if (scaling == Scaling::none) return Eigen::VectorXd::Ones(m);
+  const BlockArray sample =
+      build_blocks(*variant.model, columns.selected, thinned(configurations, norm_sample), threads);
+  const Eigen::VectorXd effect = (sample.all().colwise().squaredNorm() / double(sample.count())).cwiseSqrt();
+  return (effect.array() > 0).select(effect.cwiseInverse(), tolerances_of(columns));
+}
+
+void resolve(Study& study, Variant& variant, const Problem& problem, const Settings& settings) {
+  const bool known_before = settings.prior || study.measured.count() > 0;
+  ResolvedColumns resolved = resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known_before,
+                                             settings.planner.threads);
+  variant.columns = std::move(resolved.columns);
+  variant.dropped = std::move(resolved.dropped);
+  variant.reasons = std::move(resolved.reasons);
+  const VariantColumns& columns = variant.columns;
+  variant.scale = scale_of(variant, study.configurations, settings.scaling, settings.planner.threads);
+  variant.test_points = test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed);
+  if (!known_before) {
+    if (settings.poses > 0)
+      require_enough_poses(*variant.model, study.configurations, columns, settings.poses, settings.planner.threads);
+    return;
+  }
+  const auto m = Eigen::Index(columns.selected.size());
+  variant.prior = Eigen::MatrixXd::Zero(m, m);
+  if (settings.prior) variant.prior.diagonal() = tolerances_of(columns).cwiseAbs2().cwiseInverse();
+  if (study.measured.count() == 0) return;
+  const BlockArray blocks = build_blocks(*variant.model, columns.selected, study.measured, settings.planner.threads);
+  variant.prior += blocks.all().transpose() * blocks.all();
+}
+
+}  // namespace
+
+void append(Configurations& list, std::span<const double> q) {
+  list.values.insert(list.values.end(), q.begin(), q.end());
+}
+
+void append(Configurations& list, const Configurations& from, std::size_t i) {
+  append(list, from[i]);
+  if (!from.rows.empty()) list.rows.push_back(from.rows[i]);
+}
+
+Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
+                 Unidentifiable unidentifiable) {
+  Study study;
+  study.cell = make_cell(problem);
+  for (const DesignSpec::Weighted& wanted : settings.variants) {
+    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell);
+    variant.weight = wanted.weight;
+    study.variants.push_back(std::move(variant));
+    require_same_coordinates(study.first(), study.variants.back());
+  }
+  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
+  // Bad lists are told before the long work.
+  study.measured.dimension = int(coordinates.size());
+  if (settings.measured)
+    for (const auto& q : settings.measured(coordinates).configurations) append(study.measured, q);
+  if (settings.candidates_from)
+    take_listed_candidates(study, problem, settings.candidates_from(without_limits(coordinates)));
+  else study.configurations = common(study.variants, drawn(study, settings, monitor));
+  for (Variant& variant : study.variants) {
+    try {
+      resolve(study, variant, problem, settings);
+    } catch (const CannotDo& error) {
+      if (unidentifiable == Unidentifiable::refuse) throw;
+      variant.why_not = error.what();
+    }
+  }
+
+  if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
+    study.notes.push_back(std::move(warning));
+  study.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
+  study.has_minimum_distance = problem.design.minimum_distance.has_value();
+  keep_away_from_measured(study, settings.repeats);
+  if (!settings.truth.value.empty()) study.discrepancy = make_discrepancy(problem, study, settings);
+  return study;
+}
+
+void keep_away_from_measured(Study& study, Repeats repeats) {
+  const Configurations all = study.configurations;
+  const auto taken = [&](std::span<const double> q) {
+    for (std::size_t i = 0; i < study.measured.count(); ++i) {
+      const auto other = study.measured[i];
+      const bool same = std::equal(q.begin(), q.end(), other.begin());
+      if (study.has_minimum_distance ? study.spacing.too_near(other, q) : repeats.most == 1 && same) return true;
+    }
+    return false;
+  };
+  study.configurations.values.clear();
+  study.configurations.rows.clear();
+  for (std::size_t i = 0; i < all.count(); ++i)
+    if (!taken(all[i])) append(study.configurations, all, i);
+  if (const long lost = long(all.count() - study.configurations.count()); lost > 0)
+    study.configurations.rejected.emplace_back("measured already", lost);
+  if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a pose that is there already");
+  if (!study.has_minimum_distance) return;
+  study.minimum_distance = study.spacing;
+  study.minimum_distance.points = Eigen::Map<const BlockArray::RowMatrix>(
+      study.configurations.values.data(), Eigen::Index(study.configurations.count()), study.configurations.dimension);
+}
+
+SearchRequest search_request(const Settings& settings, int poses) {
+  SearchRequest request;
+  request.criterion = settings.criterion;
+  request.method = settings.method;
+  request.poses = poses;
+  request.repeats = settings.repeats;
+  request.reserve = settings.reserve;
+  request.planner = settings.planner;
+  return request;
+}
+
+SearchRequest spaced_request(const Study& study, const Settings& settings, int poses) {
+  SearchRequest request = search_request(settings, poses);
+  if (study.has_minimum_distance) request.spacing = &study.minimum_distance;
+  return request;
+}
+
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
+                                                                                         const std::string& criterion) {
+  if (!study.list.empty()) return {};
+  return [&study, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
+    std::vector<SpacePart> parts;
+    for (const Variant& v : study.variants) parts.push_back({v.model.get(), v.workspace.get(), v.columns.selected, {}});
+    if (with_effects) {
+      parts.front().selected = study.discrepancy->effects.columns.selected;
+      parts.front().mix = study.discrepancy->mix;
+    }
+    return make_configuration_space(std::move(parts), study.configurations, study.measured, study.spacing, R);
+  };
+}
+
+namespace {
+
+BlockArray blocks_of(const Variant& variant, const Configurations& configurations, int threads) {
+  return build_blocks(*variant.model, variant.columns.selected, configurations, threads);
+}
+
+SearchPart search_part(const Variant& variant, BlockArray blocks) {
+  return {std::move(blocks),
+          variant.columns.nuisance,
+          variant.weight,
+          variant.scale,
+          variant.test_points,
+          variant.prior,
+          {}};
+}
+
+}  // namespace
+
+std::vector<SearchPart> search_parts(const Variant& variant, const Configurations& configurations, int threads) {
+  std::vector<SearchPart> parts;
+  parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
+  return parts;
+}
+
+std::vector<SearchPart> search_parts(const Study& study, const std::string& criterion,
+                                     const Configurations& configurations, int threads) {
+  std::vector<SearchPart> parts;
+  if (find_criterion(criterion)->needs_truth) {
+    parts.push_back(part_with_effects(study, configurations, threads));
+    return parts;
+  }
+  for (const Variant& variant : study.variants)
+    parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
+  return parts;
+}
+
+std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts) {
+  std::vector<SearchPart> copies;
+  for (const SearchPart& part : parts) {
+    std::vector<int> all(part.blocks.count());
+    std::iota(all.begin(), all.end(), 0);
+    copies.push_back(
+        {part.blocks.subset(all), part.nuisance, part.weight, part.scale, part.test_points, part.prior, part.effects});
+  }
+  return copies;
+}
+
+}  // namespace posewright

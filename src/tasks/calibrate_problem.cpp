@@ -1,0 +1,298 @@
+#include "posewright/tasks/calibrate_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calibration_accuracy.hpp"
+#include "posewright/blocks/identifiability.hpp"
+#include "posewright/calibration/placement.hpp"
+#include "posewright/lists/measured_data.hpp"
+#include "posewright/lists/platform_images.hpp"
+#include "posewright/model/elastic_chain.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/study/columns.hpp"
+#include "posewright/support/distributions.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+
+namespace posewright {
+namespace {
+
+// Residuals so many times the noise are no robot's.
+constexpr double absurd = 1000.0;
+constexpr int random_configurations = 300;
+constexpr std::uint64_t everywhere_stream = 0xe3e7;
+// With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
+constexpr double prior_share = 1 / std::numbers::sqrt2;
+
+class CalibrationRun {
+ public:
+  CalibrationRun(Problem problem, const CalibrateOptions& options, const Monitor& monitor)
+      : problem_(std::move(problem)),
+        options_(options),
+        monitor_(monitor),
+        spec_(find_variant(problem_, options.variant)),
+        model_(make_model(problem_, spec_)) {
+    result_.variant = spec_.name;
+    result_.weighting = options.weighting;
+    result_.prior = options.prior;
+    read();
+    if (std::string warning = compensator_warning(problem_, model_->coordinates()); !warning.empty())
+      result_.notes.push_back(std::move(warning));
+  }
+
+  Calibration run() {
+    report(0);
+    FitOptions fit_options;
+    fit_options.weighting = options_.weighting;
+    fit_options.prior = result_.prior;
+    const VariantColumns all = select_columns(*model_, problem_, spec_);
+    place(all, fit_options);
+    choose_columns(all);
+    leave_at_nominal_values(all, fit_options.start);
+    place_again(fit_options);
+    result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    report(1);
+    result_.correction = result_.fit.correction;
+    result_.weakest = weakest_combination(result_.fit, columns_);
+    if (result_.fit.converged)
+      result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
+    note_end();
+    result_.tests = test_residuals(result_.fit);
+    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
+    judge_noise();
+    result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
+    fill_parameters();
+    result_.orientations =
+        orientations(*model_, columns_, result_.fit,
+                     interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom));
+    fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
+    if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic)
+      fill_compensator(*arm->elastostatic, result_);
+    if (options_.in_steps) identify_in_steps(fit_options);
+    report(2);
+    return std::move(result_);
+  }
+
+ private:
+  void read() {
+    MeasuredData data = read_measured_data(options_.data, problem_, *model_);
+    result_.notes = data.notes;
+    result_.rows = data.rows;
+    result_.repeats = data.repeats;
+    result_.spread = data.spread;
+    result_.readings = model_->readings();
+    repeated_ = std::move(data.repeated);
+    if (!data.images.empty()) judge_platform(data.images);
+    note_repeats(data);
+    for (std::size_t k = 0; k < data.poses.size(); ++k) {
+      const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
+      (back ? held_back_ : fitted_).push_back(std::move(data.poses[k]));
+    }
+    if (!options_.validate.empty()) {
+      MeasuredData more = read_measured_data(options_.validate, problem_, *model_);
+      for (const std::string& note : more.notes) result_.notes.push_back(options_.validate.string() + ": " + note);
+      for (MeasuredPose& pose : more.poses) held_back_.push_back(std::move(pose));
+    }
+    if (fitted_.empty()) throw InputError({options_.data.string(), 0}, "has no pose to fit", "use: fit");
+    result_.poses = int(fitted_.size());
+    result_.held_back = int(held_back_.size());
+  }
+
+  /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there; how little
+  /// that moves it is found by place_again().
+  void place(const VariantColumns& all, FitOptions& fit_options) {
+    placed_ = fit_options.start = placed(*model_, all, fitted_, fit_options);
+    model_->take_loads_at(placed_);
+  }
+
+  /// What the estimate is judged against has its columns of where things stand and no others.
+  void place_again(const FitOptions& fit_options) {
+    const VariantColumns place = placing_columns(columns_);
+    placed_ = fit_options.start;
+    if (!place.selected.empty()) placed_ = fit(*model_, place, fitted_, fit_options).correction;
+  }
+
+  void judge_platform(const std::vector<PlatformImage>& images) {
+    const PlatformPoints points = *platform_points(problem_, *model_);
+    std::vector<Eigen::Vector3d> places;
+    for (const TargetSpec& target : points.body) places.push_back(target.position);
+    try {
+      result_.platform = platform_deformation(places, images, points.noise);
+    } catch (const CannotDo& error) {
+      result_.notes.push_back(std::string("how the platform deforms is not judged: ") + error.what());
+    }
+  }
+
+  /// Rows that were averaged are the repeats, whatever the problem planned.
+  void note_repeats(const MeasuredData& data) {
+    if (data.repeated.empty()) return;
+    if (!data.same_repeats)
+      result_.notes.push_back(fmt::format(
+          "poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own",
+          data.repeats));
+    else if (data.repeats != problem_.measurement.repeats)
+      result_.notes.push_back(fmt::format("{:.0f} readings a pose are averaged, not {} as the problem says",
+                                          data.repeats, problem_.measurement.repeats));
+  }
+
+  void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }
+
+  /// Columns that these poses determine, judged where things stand: at the origin of the flange a target would say
+  /// nothing of the wrist.
+  void choose_columns(const VariantColumns& all) {
+    result_.automatic = all.automatic;
+    std::vector<Dependency> dependent;
+    if (result_.prior == Prior::none) {
+      columns_ =
+          determined(*model_, all, fitted_, placed_, Prior::none, &dependent, all.automatic ? 0.0 : exact_dependency);
+      leave_at_nominal(dependent, all);
+    } else {
+      VariantColumns wanted = all;
+      if (all.automatic) {
+        // What tells nothing new wherever the robot stands; what these poses alone do not tell, a tolerance does.
+        wanted = determined(*model_, all, everywhere(), placed_, Prior::none, &dependent);
+        leave_at_nominal(dependent, all);
+      }
+      columns_ = determined(*model_, wanted, fitted_, placed_, result_.prior, &dependent, exact_dependency);
+      leave_at_nominal(dependent, wanted);
+    }
+    if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
+  }
+
+  /// What is not estimated has its nominal value, wherever the placing fit had put it.
+  void leave_at_nominal_values(const VariantColumns& all, std::vector<double>& start) const {
+    for (const int i : all.selected)
+      if (std::find(columns_.selected.begin(), columns_.selected.end(), i) == columns_.selected.end())
+        start[std::size_t(i)] = 0.0;
+  }
+
+  void leave_at_nominal(const std::vector<Dependency>& dependent, const VariantColumns& among) {
+    for (const Dependency& d : dependent) {
+      CalibratedParameter left;
+      left.label = among.parameters[std::size_t(d.dropped)];
+      left.estimated = false;
+      left.value = left.lower = left.upper = left.label.nominal;
+      left.why_not = describe(d, among.parameters);
+      left_out_.push_back(std::move(left));
+    }
+  }
+
+  /// The poses and random configurations within the limits.
+  std::vector<MeasuredPose> everywhere() const {
+    std::vector<MeasuredPose> poses = fitted_;
+    Random random(0, everywhere_stream);
+    for (int i = 0; i < random_configurations; ++i) {
+      MeasuredPose pose;
+      for (const Coordinate& c : model_->coordinates())
+        pose.q.push_back(c.discrete() ? c.values[std::size_t(random.uniform() * double(c.values.size()))]
+                                      : random.uniform(c.lower, c.upper));
+      // Without noise and limits of a cell: all that is asked is what tells one column from the others.
+      if (model_->measurable(pose.q) && model_->predict(pose.q, placed_, pose.y)) poses.push_back(std::move(pose));
+    }
+    return poses;
+  }
+
+  /// Why an estimate is not to be used.
+  void note_end() {
+    const std::string why = result_.weakest.empty() ? "" : ". Near dependence: " + result_.weakest;
+    const char* const remedy =
+        "; measure more or other poses (plan), estimate fewer parameters (observe), or state tolerances";
+    if (!result_.fit.converged)
+      result_.notes.push_back(result_.weakest.empty()
+                                  ? "the estimate did not converge: are nominal base, tool and units right?"
+                                  : "the estimate did not converge" + why + remedy);
+    else if (result_.left_out.refused())
+      result_.notes.push_back(fmt::format(
+          "poses that are left out are predicted no better by the estimate ({}) than with base and tool alone ({:.3g} "
+          "times the stated noise), or better by chance only: nothing shows that these parameters are better than the "
+          "nominal ones{}{}",
+          std::isfinite(result_.left_out.estimated) ? fmt::format("{:.3g}", result_.left_out.estimated)
+                                                    : result_.left_out.why_not,
+          result_.left_out.placed, why, remedy));
+  }
+
+  /// Whether residuals are larger than the noise allows; then σ follow the residuals.
+  void judge_noise() {
+    const Fit& fit = result_.fit;
+    if (!repeated_.empty()) {
+      result_.lack_of_fit = lack_of_fit(*model_, *make_model(without_pose_errors(problem_), spec_),
+                                        problem_.measurement.repeats, fitted_, repeated_, fit);
+    }
+    if (fit.scale > absurd)
+      result_.notes.push_back(fmt::format(
+          "residuals are {:.3g} times the stated noise: no robot's errors explain that. Are units, signs of the "
+          "joints and the order of the targets right?",
+          fit.scale));
+  }
+
+  void fill_parameters() {
+    const double stretch = interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom);
+    std::vector<CalibratedParameter> nuisance;
+    for (std::size_t j = 0; j < columns_.parameters.size(); ++j) {
+      const auto k = Eigen::Index(j);
+      CalibratedParameter p;
+      p.label = columns_.parameters[j];
+      p.value = p.label.nominal + result_.fit.change[k];
+      p.prior = counts(p.label, result_.prior);
+      p.sigma = std::sqrt(result_.fit.covariance(k, k));
+      p.lower = p.value - stretch * p.sigma;
+      p.upper = p.value + stretch * p.sigma;
+      p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share : 1.0);
+      (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
+    }
+    for (CalibratedValue& value : calibrated_values(problem_, spec_, *model_, result_.correction))
+      result_.values.push_back({std::move(value), {}});
+    for (std::size_t j = 0; j < columns_.selected.size(); ++j)
+      result_.values[std::size_t(columns_.selected[j])].sigma =
+          std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
+    for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
+    for (auto* more : {&nuisance, &left_out_})
+      result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
+  }
+
+  /// Base and tool, geometry, stiffness one after the other, beside the joint estimate.
+  void identify_in_steps(FitOptions options) {
+    options.start = placed_;
+    try {
+      result_.in_steps = fit_in_steps(*model_, columns_, fitted_, options, result_.fit);
+      for (std::size_t j = 0; j < columns_.parameters.size(); ++j)
+        for (CalibratedParameter& p : result_.parameters)
+          if (p.estimated && p.label.name == columns_.parameters[j].name)
+            p.in_steps = p.label.nominal + result_.in_steps->correction[std::size_t(columns_.selected[j])];
+    } catch (const CannotDo& error) {
+      result_.notes.push_back(std::string("no identification in steps: ") + error.what());
+    }
+  }
+
+  Problem problem_;
+  const CalibrateOptions& options_;
+  const Monitor& monitor_;
+  const VariantSpec& spec_;
+  std::unique_ptr<IdentificationModel> model_;
+  VariantColumns columns_;
+  std::vector<MeasuredPose> fitted_, held_back_;
+  std::vector<CalibratedParameter> left_out_;
+  std::vector<double> placed_;
+  std::vector<RepeatedReadings> repeated_;
+  Calibration result_;
+};
+
+}  // namespace
+
+const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter) {
+  const std::string& name = parameter.label.name;
+  for (const CalibratedOrientation& o : calibration.orientations)
+    for (const char* angle : {".rx", ".ry", ".rz"})
+      if (name == o.frame + angle) return &o;
+  return nullptr;
+}
+
+Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& options, const Monitor& monitor) {
+  return CalibrationRun(problem, options, monitor).run();
+}
+
+}  // namespace posewright

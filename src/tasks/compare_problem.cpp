@@ -1,0 +1,174 @@
+#include "posewright/tasks/compare_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "compared_plans.hpp"
+#include "extra_worth.hpp"
+#include "posewright/study/accuracy_points.hpp"
+#include "posewright/support/error.hpp"
+#include "variant_alias.hpp"
+
+namespace posewright {
+namespace {
+
+class ComparisonRun {
+ public:
+  ComparisonRun(const Problem& problem, const CompareOptions& options, const Monitor& monitor)
+      : problem_(problem),
+        options_(options),
+        monitor_(monitor),
+        settings_(comparison_settings(problem, options)),
+        study_(make_study(problem, settings_, monitor, Unidentifiable::keep)),
+        pool_(study_.configurations) {}
+
+  Comparison compare() {
+    describe_variants();
+    take(options_.plans.empty() ? searched_plans(study_, settings_, monitor_)
+                                : given_plans(problem_, study_, options_.plans));
+    for (const Configurations& poses : poses_)
+      for (std::size_t i = 0; i < poses.count(); ++i)
+        if (!holds(pool_, poses[i])) append(pool_, poses[i]);
+    judged_.resize(poses_.size());
+    for (std::size_t p = 0; p < poses_.size(); ++p)
+      for (const Variant& variant : study_.variants) result_.scores.push_back(score(p, variant));
+    for (std::size_t p = 0; p < poses_.size(); ++p) alias(p);
+    if (monitor_.was_interrupted()) throw CannotDo("the comparison was interrupted");
+    return std::move(result_);
+  }
+
+ private:
+  static bool holds(const Configurations& list, std::span<const double> q) {
+    for (std::size_t i = 0; i < list.count(); ++i)
+      if (std::equal(q.begin(), q.end(), list[i].begin())) return true;
+    return false;
+  }
+
+  void take(PlansToCompare plans) {
+    result_.criterion = options_.plans.empty() ? settings_.criterion : "";
+    result_.method = options_.plans.empty() ? settings_.method : "";
+    result_.plans = std::move(plans.plans);
+    result_.notes = std::move(plans.notes);
+    poses_ = std::move(plans.poses);
+  }
+
+  void describe_variants() {
+    result_.candidates = study_.configurations.count();
+    for (const Variant& v : study_.variants) {
+      const int all = int(v.columns.selected.size()), nuisance = v.columns.nuisance;
+      result_.variants.push_back({v.spec->name, all - nuisance, nuisance, v.reasons, v.why_not});
+    }
+  }
+
+  Configurations with_measured(const Configurations& poses) const {
+    Configurations all = study_.measured;
+    all.dimension = poses.dimension;
+    all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
+    return all;
+  }
+
+  PlanScore score(std::size_t plan, const Variant& variant) {
+    PlanScore score;
+    score.variant = variant.spec->name;
+    score.plan = result_.plans[plan].name;
+    score.why_not = variant.why_not;
+    if (!score.why_not.empty()) return score;
+    for (std::size_t i = 0; i < poses_[plan].count(); ++i)
+      if (const int reason = variant.workspace->violation(poses_[plan][i]); reason >= 0 && ++score.infeasible == 1)
+        score.infeasible_because = variant.workspace->reasons()[std::size_t(reason)];
+    try {
+      const VariantColumns& columns = variant.columns;
+      const Evaluation& e = judged_[plan][&variant] = evaluate(
+          build_blocks(*variant.model, columns.selected, with_measured(poses_[plan]), settings_.planner.threads),
+          columns.parameters, settings_.prior ? Prior::every : Prior::none, variant.scale);
+      score.log_det = e.log_det;
+      score.condition = e.condition;
+      fill_sigma(score, columns, e);
+      std::vector<double> each;
+      if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, e.covariance, each);
+      if (const auto bound = bound_of(variant, int(poses_[plan].count())))
+        score.efficiency = std::min(
+            1.0, std::exp((e.log_det - *bound) / double(columns.selected.size() - std::size_t(columns.nuisance))));
+    } catch (const CannotDo& error) {
+      score.why_not = error.what();
+    }
+    return score;
+  }
+
+  static void fill_sigma(PlanScore& score, const VariantColumns& columns, const Evaluation& e) {
+    double sum = 0;
+    for (std::size_t j = std::size_t(columns.nuisance); j < columns.parameters.size(); ++j) {
+      const double ratio = e.sigma[Eigen::Index(j)] / columns.parameters[j].tolerance;
+      sum += std::log(ratio);
+      if (ratio > score.worst) {
+        score.worst = ratio;
+        score.worst_parameter = columns.parameters[j].name;
+      }
+    }
+    score.mean = std::exp(sum / double(columns.parameters.size() - std::size_t(columns.nuisance)));
+  }
+
+  /// log det that no plan of so many of the common candidates and of the poses compared exceeds; none if so many
+  /// cannot be chosen.
+  std::optional<double> bound_of(const Variant& variant, int poses) {
+    const auto key = std::pair(&variant, poses);
+    if (const auto known = bounds_.find(key); known != bounds_.end()) return known->second;
+    SearchRequest wanted = request_for(study_, variant, settings_, poses);
+    wanted.criterion = "o1";
+    std::optional<double> bound;
+    if (double(poses) <= double(pool_.count()) * wanted.repeats.most)
+      bound = bound_only(search_parts(variant, pool_, settings_.planner.threads), wanted,
+                         NamedMonitor(monitor_, variant.spec->name))
+                  .certificate.bound;
+    return bounds_[key] = bound;
+  }
+
+  /// A plan that was searched tells of its own variant, one that was given of all.
+  void alias(std::size_t plan) {
+    for (const auto& fitted : study_.variants) {
+      const std::string& own = result_.plans[plan].own_of;
+      const auto evaluation = judged_[plan].find(&fitted);
+      if (evaluation == judged_[plan].end() || (!own.empty() && own != fitted.spec->name)) continue;
+      for (const auto& truth : study_.variants) {
+        if (&truth == &fitted || !truth.why_not.empty()) continue;
+        if (!options_.truth.empty() && options_.truth != truth.spec->name) continue;
+        VariantAlias found =
+            variant_alias(problem_, fitted, truth, with_measured(poses_[plan]), evaluation->second, settings_);
+        found.plan = result_.plans[plan].name;
+        add_worth(truth, {&fitted, &evaluation->second, found.plan}, found, plan);
+        result_.aliases.push_back(std::move(found));
+      }
+    }
+  }
+
+  void add_worth(const Variant& with, const JudgedVariant& without, const VariantAlias& alias, std::size_t plan) {
+    // Each with its own best plan, or both with the one that was given.
+    for (std::size_t p = 0; p < poses_.size(); ++p) {
+      if (result_.plans[p].own_of.empty() ? p != plan : result_.plans[p].own_of != with.spec->name) continue;
+      const auto evaluation = judged_[p].find(&with);
+      if (evaluation == judged_[p].end()) continue;
+      ExtraWorth worth = extra_worth({&with, &evaluation->second, result_.plans[p].name}, without, alias);
+      if (!worth.extra.empty() || !worth.why_not.empty()) result_.worths.push_back(std::move(worth));
+    }
+  }
+
+  const Problem& problem_;
+  const CompareOptions& options_;
+  const Monitor& monitor_;
+  Settings settings_;
+  Study study_;
+  Configurations pool_;
+  std::vector<Configurations> poses_;                         ///< of each plan
+  std::vector<std::map<const Variant*, Evaluation>> judged_;  ///< of each plan
+  std::map<std::pair<const Variant*, int>, std::optional<double>> bounds_;
+  Comparison result_;
+};
+
+}  // namespace
+
+Comparison compare_problem(const Problem& problem, const CompareOptions& options, const Monitor& monitor) {
+  return ComparisonRun(problem, options, monitor).compare();
+}
+
+}  // namespace posewright

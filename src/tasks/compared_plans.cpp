@@ -1,0 +1,92 @@
+#include "compared_plans.hpp"
+
+#include <algorithm>
+
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/study/space.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+
+Settings comparison_settings(const Problem& problem, const CompareOptions& options) {
+  PlanOptions plan = options.plan;
+  if (plan.method.empty()) plan.method = "exchange";
+  // Each variant is planned for alone.
+  if (const CriterionEntry* entry = find_criterion(problem.design.criterion.value);
+      plan.criterion.empty() && entry != nullptr && (entry->several_variants || entry->needs_truth))
+    plan.criterion = "o1";
+  const bool given = !options.plans.empty();
+  if (given) plan.poses = 1;  // lists bring their own numbers
+  else if (!plan.poses && problem.design.smallest)
+    throw InputError(problem.at(problem.design.line), "poses: auto says not how many poses to compare with",
+                     "--poses N, or plans");
+  Settings settings = settings_of(problem, plan);
+  if (given) settings.poses = 0;
+  settings.truth = {};
+  std::vector<std::string> names = options.variants;
+  if (names.empty())
+    for (const VariantSpec& variant : problem.variants) names.push_back(variant.name);
+  if (!options.truth.empty() && std::find(names.begin(), names.end(), options.truth) == names.end())
+    names.push_back(options.truth);
+  settings.variants.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + long(i), names[i]) != names.begin() + long(i))
+      throw InputError({}, "variant '" + names[i] + "' is named twice", "each once");
+    settings.variants.push_back({{find_variant(problem, names[i]).name, 0}, 1.0});
+  }
+  return settings;
+}
+
+SearchRequest request_for(const Study& study, const Variant& variant, const Settings& settings, int poses) {
+  SearchRequest request = spaced_request(study, settings, poses);
+  if (!study.list.empty()) return request;
+  request.make_space = [&study, &variant](const Eigen::MatrixXd& R) {
+    return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns.selected, {}}},
+                                    study.configurations, study.measured, study.spacing, R);
+  };
+  return request;
+}
+
+PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor) {
+  PlansToCompare result;
+  const Configurations& candidates = study.configurations;
+  for (const Variant& variant : study.variants) {
+    if (!variant.why_not.empty()) continue;
+    const std::string& name = variant.spec->name;
+    const SearchResult found =
+        search(search_parts(variant, candidates, settings.planner.threads),
+               request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, name));
+    Configurations poses;
+    poses.dimension = candidates.dimension;
+    for (const int i : found.design.members)
+      append(poses, std::size_t(i) < candidates.count()
+                        ? candidates[std::size_t(i)]
+                        : std::span<const double>(found.design.added[std::size_t(i) - candidates.count()]));
+    result.plans.push_back({"best for " + name, name, int(poses.count())});
+    result.poses.push_back(std::move(poses));
+  }
+  return result;
+}
+
+PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists) {
+  PlansToCompare result;
+  for (const CompareOptions::List& list : lists) {
+    const PoseList read = list.poses(study.first().workspace->coordinates());
+    Configurations poses;
+    poses.dimension = study.configurations.dimension;
+    for (std::size_t i = 0; i < read.configurations.size(); ++i) {
+      // What the problem names as measured counts once.
+      if (study.measured.count() > 0 && !read.measured.empty() && read.measured[i]) continue;
+      append(poses, read.configurations[i]);
+    }
+    if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
+    result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
+    note_parameters(read, problem, result.notes);
+    result.plans.push_back({list.name, "", int(poses.count())});
+    result.poses.push_back(std::move(poses));
+  }
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posewright/study/study.hpp"
+#include "posewright/tasks/compare_problem.hpp"
+
+namespace posewright {
+
+/// Of all variants to be compared, with the criterion that each is planned by alone. Throws InputError.
+Settings comparison_settings(const Problem& problem, const CompareOptions& options);
+
+struct PlansToCompare {
+  std::vector<ComparedPlan> plans;
+  std::vector<Configurations> poses;  ///< of each, without those that the problem names as measured
+  std::vector<std::string> notes;
+};
+/// The best plan for each variant that can be identified.
+PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor);
+/// Lists as they are. Throws InputError if one cannot be read.
+PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists);
+
+/// What is asked of a search or bound for one variant alone.
+SearchRequest request_for(const Study& study, const Variant& variant, const Settings& settings, int poses);
+
+/// The same progress with a name before it.
+class NamedMonitor {
+ public:
+  NamedMonitor(const Monitor& monitor, const std::string& name) {
+    monitor_.interrupted = monitor.interrupted;
+    monitor_.deadline = monitor.deadline;
+    monitor_.on_progress = [&monitor, name](Progress progress) {
+      progress.stage = name + ": " + progress.stage;
+      monitor.report(progress);
+    };
+  }
+  NamedMonitor(const NamedMonitor&) = delete;
+  NamedMonitor& operator=(const NamedMonitor&) = delete;
+  operator const Monitor&() const { return monitor_; }
+
+ private:
+  Monitor monitor_;
+};
+
+}  // namespace posewright

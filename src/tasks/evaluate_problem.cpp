@@ -1,0 +1,255 @@
+#include "posewright/tasks/evaluate_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "fill_plan.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/study/discrepancy.hpp"
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Sets that branch and bound tries before it would take too long; above, the search is good but not proved.
+constexpr double proved_drop = 5e4;
+
+class ListEvaluation {
+ public:
+  ListEvaluation(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+                 const Monitor& monitor)
+      : options_(options), monitor_(monitor), settings_(settings_of(problem, numbered(options.plan))) {
+    settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
+    study_ = make_study(problem, settings_, monitor);
+    const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
+    const PoseList list = poses(coordinates);
+    notes_ = study_.notes;
+    notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
+    note_parameters(list, problem, notes_);
+    poses_.dimension = int(coordinates.size());
+    std::vector<int> near;  // ids
+    for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+      // What the problem names as measured counts once.
+      if (study_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
+      require_feasible(list.configurations[i], i, list);
+      append(poses_, list.configurations[i]);
+      if (!study_.first().workspace->within_margin(list.configurations[i]).empty())
+        near.push_back(i < list.ids.size() ? list.ids[i] : int(i) + 1);
+    }
+    if (!near.empty()) notes_.push_back(margin_note(list.name, near));
+    settings_.poses = int(poses_.count());
+  }
+
+  PoseListEvaluation evaluate(const Problem& problem) {
+    PoseListEvaluation result;
+    result.notes = notes_;
+    const Judgement judgement = judge(study_, poses_, settings_);
+    Plan& plan = result.plan;
+    plan.seed = settings_.planner.seed;
+    plan.problem_file = problem.file.string();
+    plan.problem_sha256 = problem.sha256;
+    plan.parameters_file = parameters_of(problem);
+    plan.method = "given";
+    fill_judgement(plan, judgement, study_, settings_);
+    const std::vector<double> references = score_all(result, judgement);
+    const double phi = phi_of(*measure_, settings_.criterion, study_, poses_, settings_);
+    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
+    fill_variants(plan, judgement, study_, references);
+    SearchResult shape;
+    for (std::size_t i = 0; i < poses_.count(); ++i)
+      shape.design.members.push_back(int(study_.configurations.count() + i));
+    shape.without = without_each(phi);
+    fill_poses(plan, study_, poses_, shape, judgement);
+    fill_candidates(plan.statistics, study_);
+    if (options_.drop) result.drop = drop(*options_.drop, phi, references);
+    if (options_.add) result.add = add(*options_.add, phi, references);
+    plan.interrupted = monitor_.should_stop();
+    return result;
+  }
+
+ private:
+  /// The list brings the number of poses; until it is read any will do.
+  static PlanOptions numbered(PlanOptions options) {
+    options.poses = 1;
+    return options;
+  }
+
+  void require_feasible(const std::vector<double>& q, std::size_t i, const PoseList& list) const {
+    for (const Variant& variant : study_.variants)
+      if (const int reason = variant.workspace->violation(q); reason >= 0)
+        throw InputError(
+            {list.name, 0},
+            fmt::format("pose {} is not feasible: {}", i + 1, variant.workspace->reasons()[std::size_t(reason)]),
+            notes_.size() > study_.notes.size() + list.notes.size() ? notes_.back()
+                                                                    : "poses within the workspace of the problem");
+  }
+
+  double degree() const { return degree_ > 0 ? degree_ : 1.0; }
+
+  /// Bounds for as many candidates by every criterion; the references of the criterion in use.
+  std::vector<double> score_all(PoseListEvaluation& result, const Judgement& judgement) {
+    std::vector<double> references;
+    for (const CriterionEntry& entry : criterion_registry()) {
+      if (entry.several_variants != (study_.variants.size() > 1) && entry.name != settings_.criterion) continue;
+      if (entry.needs_truth && entry.name != settings_.criterion &&
+          (study_.discrepancy == nullptr || study_.discrepancy->group.columns == 0))
+        continue;
+      if (entry.needs_test_poses && study_.first().test_points.empty()) continue;
+      const bool chosen = entry.name == settings_.criterion;
+      const Bound bound = bound_of(entry.name);
+      const double phi = phi_of(*bound.measure, entry.name, study_, poses_, settings_);
+      CriterionScore score{entry.name, entry.shown(phi, judgement.evaluations.front().indices), std::nullopt};
+      if (bound.certificate.proved) {
+        Certificate certificate = bound.certificate;
+        certify(certificate, phi, bound.degree);
+        score.efficiency = certificate.efficiency;
+        if (chosen) result.plan.certificate = certificate;
+      } else if (chosen) {
+        result.plan.certificate.proved = false;
+      }
+      if (chosen) {
+        references = bound.references;
+        measure_ = bound.measure;
+        degree_ = bound.degree;
+      }
+      result.scores.push_back(score);
+    }
+    return references;
+  }
+
+  /// Over the candidates and the list itself, so that the bound holds for the list too.
+  Bound bound_of(const std::string& criterion) {
+    Configurations pool = study_.configurations;
+    for (std::size_t i = 0; i < poses_.count(); ++i) {
+      const auto q = poses_[i];
+      bool known = false;
+      for (std::size_t j = 0; j < pool.count() && !known; ++j) known = std::equal(q.begin(), q.end(), pool[j].begin());
+      if (!known) append(pool, q);
+    }
+    SearchRequest wanted = search_request(settings_, settings_.poses);
+    wanted.criterion = criterion;
+    return bound_only(search_parts(study_, criterion, pool, settings_.planner.threads), wanted, monitor_);
+  }
+
+  Configurations without(const std::vector<int>& members) const {
+    Configurations left;
+    left.dimension = poses_.dimension;
+    for (std::size_t i = 0; i < poses_.count(); ++i)
+      if (std::find(members.begin(), members.end(), int(i)) == members.end()) append(left, poses_[i]);
+    return left;
+  }
+
+  /// Φ of another list; −∞ where it leaves parameters open.
+  std::optional<std::pair<Judgement, double>> judged(const Configurations& list) const {
+    try {
+      Judgement judgement = judge(study_, list, settings_);
+      return std::pair{std::move(judgement), phi_of(*measure_, settings_.criterion, study_, list, settings_)};
+    } catch (const CannotDo&) {
+      return std::nullopt;
+    }
+  }
+
+  std::vector<double> without_each(double phi) const {
+    std::vector<double> result;
+    for (int i = 0; i < int(poses_.count()); ++i) {
+      const auto left = poses_.count() > 1 ? judged(without({i})) : std::nullopt;
+      result.push_back(left ? std::min(1.0, std::exp((left->second - phi) / degree())) : 0.0);
+    }
+    return result;
+  }
+
+  ListChange changed(const Configurations& list, double phi) const {
+    ListChange change;
+    const auto other = judged(list);
+    if (!other) return change;
+    change.efficiency = std::exp((other->second - phi) / degree());
+    change.log_det = other->first.evaluations.front().log_det;
+    change.rho0 = other->first.rho0;
+    return change;
+  }
+
+  /// The best N − k of the N: a search over the list itself.
+  ListChange drop(int k, double phi, const std::vector<double>& references) {
+    const int n = int(poses_.count());
+    if (k >= n) throw CannotDo(fmt::format("{} of {} poses cannot be dropped: at least one must be left", k, n));
+    SearchRequest wanted = search_request(settings_, n - k);
+    double sets = 1.0;
+    for (int i = 0; i < k; ++i) sets *= double(n - i) / (i + 1);
+    wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
+    wanted.repeats = Repeats{1};
+    wanted.references = references;
+    const SearchResult found =
+        search(search_parts(study_, settings_.criterion, poses_, settings_.planner.threads), wanted, monitor_);
+    std::vector<int> dropped;
+    for (int i = 0; i < n; ++i)
+      if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
+    ListChange change = changed(without(dropped), phi);
+    for (const int i : dropped) change.poses.push_back(i + 1);
+    return change;
+  }
+
+  /// k more with the list as what is known already.
+  ListChange add(int k, double phi, const std::vector<double>& references) {
+    const int threads = settings_.planner.threads;
+    // The list is what is there already; the last thing that is done, so the candidates may change.
+    study_.measured.values.insert(study_.measured.values.end(), poses_.values.begin(), poses_.values.end());
+    keep_away_from_measured(study_, settings_.repeats);
+    std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, study_.configurations, threads);
+    const std::vector<SearchPart> list = search_parts(study_, settings_.criterion, poses_, threads);
+    for (std::size_t v = 0; v < parts.size(); ++v) {
+      const Eigen::MatrixXd known = list[v].blocks.all().transpose() * list[v].blocks.all();
+      parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
+    }
+    SearchRequest wanted = spaced_request(study_, settings_, k);
+    wanted.make_space = space_maker(study_, settings_.criterion);
+    wanted.references = references;
+    const SearchResult found = search(std::move(parts), wanted, monitor_);
+    Configurations longer = poses_, added;
+    added.dimension = poses_.dimension;
+    const std::size_t n = study_.configurations.count();
+    for (const int i : found.design.members)
+      append(added, std::size_t(i) < n ? study_.configurations[std::size_t(i)]
+                                       : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
+    study_.measured.values.resize(study_.measured.values.size() - poses_.values.size());
+    ListChange change = changed(longer, phi);
+    for (std::size_t i = 0; i < added.count(); ++i) {
+      change.added.push_back(pose_of(*study_.first().model, added[i]));
+      change.added.back().id = int(poses_.count() + i) + 1;
+    }
+    return change;
+  }
+
+  const EvaluateOptions& options_;
+  const Monitor& monitor_;
+  Settings settings_;
+  Study study_;
+  Configurations poses_;
+  std::vector<std::string> notes_;
+  std::shared_ptr<const DesignMeasure> measure_;  ///< by the criterion in use
+  double degree_ = 0.0;
+};
+
+}  // namespace
+
+PoseListEvaluation evaluate_problem(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+                                    const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  PoseListEvaluation result = ListEvaluation(problem, poses, options, monitor).evaluate(problem);
+  result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
+                                    const EvaluateOptions& options, const Monitor& monitor) {
+  return evaluate_problem(problem, poses_in_file(poses), options, monitor);
+}
+
+}  // namespace posewright

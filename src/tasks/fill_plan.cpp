@@ -1,0 +1,192 @@
+#include "fill_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/criterion/registry.hpp"
+#include "posewright/problem/design_words.hpp"
+
+namespace posewright {
+namespace {
+
+std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::span<const double> values) {
+  std::vector<NamedValue> result;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (!coordinates[i].choice()) result.push_back({coordinates[i].name, coordinates[i].unit, values[i]});
+  return result;
+}
+
+/// What a choice among named things says at q, e.g. the load case; empty if there is no such coordinate.
+std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Coordinate& c = coordinates[i];
+    if (!c.choice() || c.name != name) continue;
+    const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
+    return c.labels[std::size_t(at)];
+  }
+  return {};
+}
+
+void fill_parameters(Plan& plan, const Variant& variant, const Evaluation& evaluation, const std::string& name) {
+  const VariantColumns& columns = variant.columns;
+  for (const Role role : {Role::interest, Role::nuisance})
+    for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+      if (columns.parameters[j].role == role)
+        plan.parameters.push_back({columns.parameters[j], name, evaluation.sigma[Eigen::Index(j)], ""});
+  for (std::size_t j = 0; j < variant.dropped.size(); ++j)
+    plan.parameters.push_back({variant.dropped[j], name, std::nullopt, variant.reasons[j]});
+}
+
+}  // namespace
+
+void name_criterion(Plan& plan, const std::string& name) {
+  const CriterionEntry& entry = *find_criterion(name);
+  plan.criterion = name;
+  plan.determinant = entry.determinant;
+  plan.by_test_poses = entry.needs_test_poses;
+}
+
+PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q) {
+  PlannedPose pose;
+  pose.configuration = named(model.coordinates(), q);
+  pose.load_case = chosen_label(model.coordinates(), q, "load_case");
+  pose.station = chosen_label(model.coordinates(), q, "station");
+  std::vector<double> actuators(model.actuators().size());
+  if (model.actuator_values(q, actuators)) pose.actuators = named(model.actuators(), actuators);
+  pose.tool_pose = model.tool_pose(q);
+  return pose;
+}
+
+std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q) {
+  std::vector<TargetSight> result;
+  const auto [first, last] = sight.stations_of(q);
+  for (int station = first; station <= last; ++station)
+    for (const Sight& s : sight.sights(q, station)) result.push_back(target_sight(sight, s, station));
+  return result;
+}
+
+TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) {
+  TargetSight result;
+  result.target = s.target;
+  result.station = sight.stations()[std::size_t(station)];
+  result.position = s.p_StationTarget;
+  result.distance = s.distance;
+  result.azimuth = s.azimuth;
+  result.elevation = s.elevation;
+  result.incidence = s.incidence;
+  result.judged = sight.judges();
+  if (s.hidden_by >= 0) result.hidden_by = sight.reasons()[std::size_t(s.hidden_by)];
+  return result;
+}
+
+std::optional<BodyDistance> body_distance(const std::optional<Separation>& found) {
+  if (!found) return std::nullopt;
+  return BodyDistance{found->distance, found->first, found->second};
+}
+
+std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q) {
+  return cell.collision == nullptr ? std::nullopt : body_distance(cell.collision->nearest(q));
+}
+
+std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem) {
+  std::vector<LimitMargin> margins;
+  for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
+    const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
+    const double margin = std::min(inner.lower - all.lower, all.upper - inner.upper);
+    const auto& asked = all.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
+    if (margin > 0) margins.push_back({all.name, all.unit, margin, !asked});
+  }
+  return margins;
+}
+
+CellNotes cell_notes(const Cell& cell) {
+  CellNotes notes;
+  if (cell.collision != nullptr) {
+    notes.always_touching = cell.collision->always_touching();
+    for (const ReducedClearance& pair : cell.collision->reduced())
+      notes.reduced.push_back({pair.clearance, pair.first, pair.second});
+    notes.margin = cell.collision->margin();
+  }
+  for (const Coordinate& c : cell.model->coordinates())
+    if (const auto margin = cell.joint_margin.find(c.name); margin != cell.joint_margin.end())
+      notes.joint_margins.push_back({c.name, c.unit, margin->second});
+  return notes;
+}
+
+void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, const Settings& settings) {
+  const Evaluation& first = judgement.evaluations.front();
+  for (const Variant& variant : study.variants)
+    plan.variant += (plan.variant.empty() ? "" : " + ") + variant.spec->name;
+  name_criterion(plan, settings.criterion);
+  plan.scaling = scaling_text(settings.scaling);
+  plan.prior = settings.prior;
+  plan.reserve = settings.reserve;
+  plan.rho0 = judgement.rho0;
+  plan.test_errors = judgement.test_errors;
+  plan.turn = judgement.turn;
+  plan.test_axes = judgement.test_axes;
+  plan.discrimination = judgement.discrimination;
+  plan.log_det = first.log_det;
+  plan.log_det_full = first.log_det_full;
+  plan.indices = first.indices;
+  plan.condition = first.condition;
+  for (std::size_t v = 0; v < study.variants.size(); ++v)
+    fill_parameters(plan, study.variants[v], judgement.evaluations[v],
+                    study.variants.size() > 1 ? study.variants[v].spec->name : "");
+}
+
+void fill_candidates(PlanStatistics& statistics, const Study& study) {
+  const Configurations& candidates = study.configurations;
+  statistics.drawn = candidates.drawn;
+  statistics.feasible = long(candidates.count());
+  statistics.rejected = candidates.rejected;
+  statistics.list = study.list;
+  statistics.notes = study.notes;
+}
+
+void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, const std::vector<double>& references) {
+  const std::vector<double> efficiency = log_efficiencies(judgement, study, references);
+  for (std::size_t v = 0; v < references.size(); ++v)
+    plan.variants.push_back({study.variants[v].spec->name, study.variants[v].weight, judgement.evaluations[v].log_det,
+                             references[v], std::min(1.0, std::exp(efficiency[v]))});
+}
+
+void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const SearchResult& found,
+                const Judgement& judgement) {
+  const IdentificationModel& model = *study.first().model;
+  const Workspace& workspace = *study.first().workspace;
+  const Eigen::VectorXd& contribution = judgement.evaluations.front().contribution;
+  const std::size_t before = study.measured.count();
+  for (std::size_t i = 0; i < before + chosen.count(); ++i) {
+    const bool measured = i < before;
+    PlannedPose pose = pose_of(model, measured ? study.measured[i] : chosen[i - before]);
+    pose.id = int(i) + 1;
+    pose.measured = measured;
+    if (study.cell->sight != nullptr)
+      pose.sights = sights_of(*study.cell->sight, measured ? study.measured[i] : chosen[i - before]);
+    pose.nearest = nearest_at(*study.cell, measured ? study.measured[i] : chosen[i - before]);
+    pose.contribution = contribution[Eigen::Index(i)];
+    if (!measured) {
+      const int member = found.design.members[i - before];
+      if (std::size_t(member) < study.configurations.count()) {
+        pose.candidate = member;
+        if (!study.configurations.rows.empty()) {
+          const ListedRow& row = study.configurations.rows[std::size_t(member)];
+          pose.candidate = row.index;
+          pose.listed = PlannedPose::Listed{row.id, row.line};
+        }
+      }
+      pose.without = found.without[i - before];
+    }
+    plan.poses.push_back(std::move(pose));
+  }
+  double on_boundary = 0, on_limits = 0;
+  for (std::size_t i = 0; i < chosen.count(); ++i) {
+    on_boundary += workspace.on_boundary(chosen[i]) ? 1 : 0;
+    on_limits += workspace.share_of_coordinates_on_limits(chosen[i]);
+  }
+  plan.statistics.poses_on_boundary = on_boundary / double(chosen.count());
+  plan.statistics.coordinates_on_limits = on_limits / double(chosen.count());
+}
+
+}  // namespace posewright

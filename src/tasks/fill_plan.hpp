@@ -1,0 +1,41 @@
+#pragma once
+
+#include "posewright/outputs/plan.hpp"
+#include "posewright/search/search.hpp"
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/study.hpp"
+
+namespace posewright {
+
+/// What a judgement says of the whole: log det, indices, accuracy, parameters; names of variant and criterion.
+void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, const Settings& settings);
+
+/// How many candidates there are, where they came from, why others were rejected.
+void fill_candidates(PlanStatistics& statistics, const Study& study);
+
+/// Efficiency of every variant; nothing if the plan serves one.
+void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, const std::vector<double>& references);
+
+/// Poses that are measured already, then the new ones, and how they lie in the workspace.
+void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const SearchResult& found,
+                const Judgement& judgement);
+
+/// The criterion that a plan is for, with what the outputs must know of it.
+void name_criterion(Plan& plan, const std::string& name);
+
+/// Configuration, actuators, labels and tool pose of q.
+PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
+
+/// Every target of q as its station sees it.
+std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q);
+TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
+
+/// As it is written.
+std::optional<BodyDistance> body_distance(const std::optional<Separation>& found);
+/// What is nearest to each other at q; none if nothing is checked for collision.
+std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
+/// What proposed configurations keep from the limits in force.
+std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem);
+CellNotes cell_notes(const Cell& cell);
+
+}  // namespace posewright

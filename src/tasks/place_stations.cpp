@@ -1,0 +1,237 @@
+#include "posewright/tasks/place_stations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "posewright/criterion/registry.hpp"
+#include "posewright/model/placement.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::size_t most_sets = 100;
+// Of the quick plan that decides which places are looked at closely.
+constexpr int quick_candidates = 400, quick_restarts = 1;
+
+using Set = std::vector<std::size_t>;  // indices into the list of places
+
+const PointsMeasurement& instrument_of(const Problem& problem) {
+  const auto* points = std::get_if<PointsMeasurement>(&problem.measurement.instrument);
+  if (points == nullptr)
+    throw InputError(problem.at(problem.workspace.stations->line),
+                     "workspace.stations: this instrument has no stations",
+                     "trackers and cameras that measure points do");
+  return *points;
+}
+
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
+  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+/// The body of the instrument stands where the instrument does. With one place it keeps its name; with several there is
+/// one at each.
+void move_bodies(Problem& problem, const std::vector<StationSpec>& before, const std::vector<StationSpec>& chosen) {
+  if (!problem.workspace.collision || before.empty()) return;
+  CollisionSpec& collision = *problem.workspace.collision;
+  std::vector<BodySpec> bodies;
+  std::map<std::string, std::vector<std::string>> names;  // of bodies of instruments: what they are called now
+  for (const BodySpec& body : collision.obstacles) {
+    if (body.station.empty()) {
+      bodies.push_back(body);
+      continue;
+    }
+    names[body.name] = {};
+    // One instrument that is carried on, or one a station: the first one's body is taken.
+    if (body.station != before.front().name) continue;
+    for (const StationSpec& station : chosen) {
+      const Eigen::Isometry3d X =
+          isometry(station.placement) * isometry(before.front().placement).inverse() * isometry(body.placement);
+      BodySpec moved = body;
+      moved.station = station.name;
+      if (chosen.size() > 1) moved.name += " at " + station.name;
+      moved.placement = {X.translation(), rpy_of(X.linear())};
+      names[body.name].push_back(moved.name);
+      bodies.push_back(moved);
+    }
+  }
+  collision.obstacles = std::move(bodies);
+  for (BodySpec& part : collision.tool)
+    if (!part.station.empty()) part.station = chosen.front().name;
+  const auto ignored = std::exchange(collision.ignore, {});
+  const auto called = [&](const std::string& name) {
+    const auto now = names.find(name);
+    return now == names.end() ? std::vector<std::string>{name} : now->second;
+  };
+  for (const auto& [a, b] : ignored)
+    for (const std::string& first : called(a.value))
+      for (const std::string& second : called(b.value)) collision.ignore.push_back({{first, a.line}, {second, b.line}});
+}
+
+Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
+  auto& points = std::get<PointsMeasurement>(problem.measurement.instrument);
+  move_bodies(problem, points.stations, chosen);
+  points.stations = chosen;
+  return problem;
+}
+
+class Ranking {
+ public:
+  Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
+      : problem_(problem), options_(options), monitor_(monitor), places_(problem.workspace.stations->list) {
+    const std::string criterion =
+        options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
+    const auto* entry = find_criterion(criterion);
+    if (entry != nullptr && entry->several_variants)
+      throw CannotDo("criterion " + criterion +
+                     " compares plans with others of the same stations; choose one of one variant");
+    determinant_ = entry != nullptr && entry->determinant;
+  }
+
+  std::vector<StationRank> rank() {
+    const auto choose = std::size_t(options_.choose.value_or(problem_.workspace.stations->choose));
+    if (choose > places_.size())
+      throw InputError({}, "--choose " + std::to_string(choose),
+                       "there are " + std::to_string(places_.size()) + " places to choose among");
+    std::vector<StationRank> ranks = quick(choose);
+    sort(ranks);
+    PlanOptions full = options_.plan;
+    for (std::size_t i = 0; i < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))); ++i) {
+      if (!ranks[i].why_not.empty() || monitor_.should_stop()) break;
+      monitor_.report({"full plans", double(i), double(options_.full), {}, {}, {}});
+      ranks[i] = judge(ranks[i].stations, full);
+      ranks[i].in_full = true;
+    }
+    sort(ranks);
+    compare(ranks);
+    if (!ranks.front().why_not.empty())
+      throw CannotDo("none of the places gives a plan; the first one: " + ranks.front().why_not);
+    return ranks;
+  }
+
+ private:
+  void compare(std::vector<StationRank>& ranks) const {
+    const StationRank best = ranks.front();
+    if (!determinant_) return;
+    for (StationRank& rank : ranks)
+      if (rank.why_not.empty() && rank.parameters == best.parameters && rank.in_full == best.in_full)
+        rank.sigma_ratio = std::exp((best.phi - rank.phi) / (2.0 * std::max(rank.parameters, 1)));
+  }
+
+  /// Every set if there are few, else one station after the other.
+  std::vector<StationRank> quick(std::size_t choose) {
+    double sets = 1;
+    for (std::size_t i = 0; i < choose; ++i) sets *= double(places_.size() - i) / double(i + 1);
+    if (choose == 1 || sets <= double(most_sets)) return quick_of(all_sets(choose));
+    Set chosen;
+    std::vector<StationRank> ranks;
+    while (chosen.size() < choose) {
+      std::vector<Set> trials;
+      for (std::size_t i = 0; i < places_.size(); ++i)
+        if (std::find(chosen.begin(), chosen.end(), i) == chosen.end()) {
+          trials.push_back(chosen);
+          trials.back().push_back(i);
+        }
+      ranks = quick_of(trials);
+      std::vector<std::size_t> order(ranks.size());
+      std::iota(order.begin(), order.end(), std::size_t(0));
+      chosen = trials[*std::min_element(order.begin(), order.end(),
+                                        [&](auto a, auto b) { return better(ranks[a], ranks[b]); })];
+    }
+    return ranks;
+  }
+
+  std::vector<Set> all_sets(std::size_t choose) const {
+    std::vector<Set> sets;
+    Set set(choose);
+    std::iota(set.begin(), set.end(), std::size_t(0));
+    while (true) {
+      sets.push_back(set);
+      std::size_t k = choose;
+      while (k > 0 && set[k - 1] == places_.size() - choose + k - 1) --k;
+      if (k == 0) return sets;
+      ++set[k - 1];
+      for (std::size_t i = k; i < choose; ++i) set[i] = set[i - 1] + 1;
+    }
+  }
+
+  std::vector<StationRank> quick_of(const std::vector<Set>& sets) {
+    PlanOptions quick = options_.plan;
+    quick.candidates = std::min(quick_candidates, quick.candidates.value_or(problem_.design.candidates.value));
+    quick.restarts = quick_restarts;
+    quick.method = "exchange";
+    std::vector<StationRank> ranks;
+    for (const Set& set : sets) {
+      if (monitor_.should_stop()) throw CannotDo("stopped before every place was looked at");
+      monitor_.report({"places", double(ranks.size()), double(sets.size()), {}, {}, {}});
+      std::vector<StationSpec> stations;
+      for (const std::size_t i : set) stations.push_back(places_[i]);
+      ranks.push_back(judge(stations, quick));
+    }
+    return ranks;
+  }
+
+  StationRank judge(const std::vector<StationSpec>& stations, const PlanOptions& plan_options) const {
+    StationRank rank;
+    rank.stations = stations;
+    Monitor quiet;  // its plan's own stages would hide how many places are done
+    quiet.interrupted = monitor_.interrupted;
+    quiet.deadline = monitor_.deadline;
+    try {
+      const Plan plan = plan_problem(with_stations(problem_, stations), plan_options, quiet);
+      for (const PlannedParameter& p : plan.parameters)
+        rank.parameters += p.sigma.has_value() && p.label.role == Role::interest;
+      rank.criterion_value = plan.criterion_value;
+      rank.phi = determinant_ ? plan.log_det : plan.criterion_value;
+      rank.rho0 = plan.rho0;
+      long most = 0, passed_over = 0;
+      for (const auto& [reason, count] : plan.statistics.rejected)
+        if (reason == passed_over_reason) {
+          passed_over = count;
+        } else if (count > most) {
+          most = count;
+          rank.main_rejection = reason;
+        }
+      // What a sampler passes over is feasible.
+      rank.feasible_share = double(plan.statistics.feasible + passed_over) / double(plan.statistics.drawn);
+    } catch (const CannotDo& error) {
+      rank.why_not = error.what();
+    } catch (const StationInside&) {
+      // A bad place; what is wrong with the rest of the problem is wrong everywhere.
+      rank.why_not = "stands inside a body";
+    }
+    return rank;
+  }
+
+  /// Plans that identify more come first: their determinants are of other sizes.
+  static bool better(const StationRank& a, const StationRank& b) {
+    if (a.why_not.empty() != b.why_not.empty()) return a.why_not.empty();
+    if (a.in_full != b.in_full) return a.in_full;
+    if (a.parameters != b.parameters) return a.parameters > b.parameters;
+    return a.phi > b.phi;
+  }
+  static void sort(std::vector<StationRank>& ranks) { std::stable_sort(ranks.begin(), ranks.end(), better); }
+
+  const Problem& problem_;
+  const StationOptions& options_;
+  const Monitor& monitor_;
+  const std::vector<StationSpec>& places_;
+  bool determinant_ = false;
+};
+
+}  // namespace
+
+std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor) {
+  if (!problem.workspace.stations)
+    throw InputError(problem.at(0), "names no places for stations", "set workspace: stations: among or box");
+  instrument_of(problem);
+  return Ranking(problem, options, monitor).rank();
+}
+
+}  // namespace posewright

@@ -1,0 +1,208 @@
+#include "posewright/tasks/plan_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "fill_plan.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Nobody measures more in one go; a requirement that needs more is out of reach.
+constexpr int most_poses = 2000;
+// Half a 95 % interval of a normal error in σ.
+constexpr double axis_interval = 1.96;
+
+/// A prepared problem and plans of it.
+class PlanSearch {
+ public:
+  PlanSearch(const Problem& problem, const PlanOptions& options, const Monitor& monitor)
+      : problem_(problem),
+        settings_(settings_of(problem, options)),
+        monitor_(monitor),
+        study_(make_study(problem, settings_, monitor)) {}
+
+  const Settings& settings() const { return settings_; }
+
+  Plan plan(int poses) {
+    SearchRequest request = spaced_request(study_, settings_, poses);
+    request.make_space = space_maker(study_, settings_.criterion);
+    const SearchResult found = search(
+        search_parts(study_, settings_.criterion, study_.configurations, settings_.planner.threads), request, monitor_);
+    return assemble(found);
+  }
+
+  /// Doubles the number of poses until everything required is reached, then halves the interval.
+  Plan smallest() {
+    std::vector<CurvePoint> curve;
+    settings_.planner.use_all_time = false;
+    int enough = 0, too_few = fewest() - 1, unfit = limit() + 1;
+    Plan best;
+    for (int poses = std::min(too_few + 1, limit()); enough == 0;) {
+      std::optional<Plan> trial = try_plan(poses, curve.empty() && poses == too_few + 1);
+      if (!trial) {
+        // At the minimum distance so many do not fit.
+        unfit = poses;
+        if (unfit - too_few <= 1) fail(curve, false);
+        poses = (too_few + unfit) / 2;
+        continue;
+      }
+      best = std::move(*trial);
+      curve.push_back(judge_requirement(best));
+      if (curve.back().enough) {
+        enough = poses;
+      } else {
+        too_few = poses;
+        if (poses + 1 >= unfit || best.interrupted) fail(curve, best.interrupted);
+        poses = unfit > limit() ? std::min(2 * poses, limit()) : (poses + unfit) / 2;
+      }
+    }
+    while (enough - too_few > 1 && !monitor_.should_stop()) {
+      const int middle = (enough + too_few) / 2;
+      Plan trial = plan(middle);
+      curve.push_back(judge_requirement(trial));
+      if (curve.back().enough) {
+        enough = middle;
+        best = std::move(trial);
+      } else {
+        too_few = middle;
+      }
+    }
+    std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.poses < b.poses; });
+    best.curve = std::move(curve);
+    best.interrupted = best.interrupted || enough - too_few > 1;
+    return best;
+  }
+
+ private:
+  int limit() const {
+    if (settings_.repeats.most > 1) return most_poses;
+    return std::min<int>(most_poses, int(study_.configurations.count()));
+  }
+
+  int fewest() const {
+    int most = 1;
+    for (const Variant& v : study_.variants) {
+      if (v.prior.size() > 0) continue;
+      const auto number =
+          smallest_number_of_poses(*v.model, study_.configurations, v.columns, settings_.planner.threads);
+      if (!number) throw CannotDo("the candidates do not determine all parameters; more candidates are needed");
+      most = std::max(most, *number);
+    }
+    return most;
+  }
+
+  CurvePoint judge_requirement(const Plan& plan) const {
+    const RequirementSpec& require = problem_.design.require;
+    CurvePoint point{
+        int(std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return !p.measured; })),
+        plan.log_det, plan.rho0, std::nullopt, true};
+    if (require.accuracy) point.enough = *plan.rho0 <= *require.accuracy;
+    for (const std::array<double, 6>& sigma : plan.test_axes)
+      for (std::size_t k = 0; k < sigma.size(); ++k)
+        if (require.axes[k])
+          point.worst_axis = std::max(point.worst_axis.value_or(0), axis_interval * sigma[k] / *require.axes[k]);
+    if (point.worst_axis) point.enough = point.enough && *point.worst_axis <= 1.0;
+    if (require.sigma.empty()) return point;
+    const VariantColumns& columns = study_.first().columns;
+    const auto wanted = values_by_pattern(columns, require.sigma, problem_, "the required σ");
+    point.worst_sigma = 0.0;
+    for (std::size_t j = 0; j < wanted.size(); ++j)
+      for (const PlannedParameter& p : plan.parameters)
+        if (wanted[j] && p.sigma && p.label.name == columns.parameters[j].name)
+          point.worst_sigma = std::max(*point.worst_sigma, *p.sigma / *wanted[j]);
+    point.enough = point.enough && *point.worst_sigma <= 1.0;
+    return point;
+  }
+
+  /// None if so many poses do not fit, unless that is to be told.
+  std::optional<Plan> try_plan(int poses, bool tell) {
+    try {
+      return plan(poses);
+    } catch (const CannotDo&) {
+      if (tell) throw;
+      return std::nullopt;
+    }
+  }
+
+  [[noreturn]] void fail(const std::vector<CurvePoint>& curve, bool interrupted) const {
+    const CurvePoint& last = curve.back();
+    std::string text = fmt::format("what design: require asks for is not reached with {} poses", last.poses);
+    if (last.rho0 && problem_.design.require.accuracy)
+      text += fmt::format("; accuracy {:.4g} mm, required {:.4g} mm", 1e3 * *last.rho0,
+                          1e3 * *problem_.design.require.accuracy);
+    if (last.worst_axis)
+      text += fmt::format("; 95 % of the error along or about an axis {:.3g} times the required one", *last.worst_axis);
+    if (last.worst_sigma) text += fmt::format("; largest σ {:.3g} times the required one", *last.worst_sigma);
+    if (interrupted) text += "; the search was ended before more poses were tried";
+    throw CannotDo(text);
+  }
+
+  Plan assemble(const SearchResult& found) const {
+    // Judged from the configurations that will be written, not from anything the search kept.
+    Configurations chosen;
+    chosen.dimension = study_.configurations.dimension;
+    const std::size_t n = study_.configurations.count();
+    for (const int i : found.design.members)
+      append(chosen, std::size_t(i) < n ? study_.configurations[std::size_t(i)]
+                                        : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    const Judgement judgement = judge(study_, chosen, settings_);
+    Plan plan;
+    plan.seed = settings_.planner.seed;
+    plan.problem_file = problem_.file.string();
+    plan.problem_sha256 = problem_.sha256;
+    plan.parameters_file = parameters_of(problem_);
+    plan.method = settings_.method;
+    fill_judgement(plan, judgement, study_, settings_);
+    const double phi = phi_of(*found.measure, settings_.criterion, study_, chosen, settings_);
+    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
+    plan.certificate = found.certificate;
+    certify(plan.certificate, phi, found.degree);
+    fill_variants(plan, judgement, study_, found.references);
+    fill_poses(plan, study_, chosen, found, judgement);
+    fill_candidates(plan.statistics, study_);
+    plan.statistics.cell = cell_notes(*study_.cell);
+    plan.statistics.limit_margins = limit_margins(*study_.first().workspace, problem_);
+    plan.statistics.exchanges = found.design.exchanges;
+    plan.statistics.restarts = found.design.restarts;
+    plan.statistics.stages = found.stages;
+    plan.proved_optimal = found.design.optimal;
+    plan.interrupted = found.stopped;
+    return plan;
+  }
+
+  const Problem& problem_;
+  Settings settings_;
+  const Monitor& monitor_;
+  Study study_;
+};
+
+}  // namespace
+
+Plan plan_problem(const Problem& problem, const PlanOptions& options, const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  PlanSearch planning(problem, options, monitor);
+  Plan plan = planning.settings().poses > 0 ? planning.plan(planning.settings().poses) : planning.smallest();
+  plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
+}
+
+Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& plan, int poses, const Monitor& monitor) {
+  const bool told_apart = !options.truth.empty() || problem.design.truth.has_value();
+  options.criterion = told_apart ? "discriminate" : "o1";
+  options.poses = poses;
+  options.smallest = options.reserve = false;
+  options.measured = poses_of(plan);
+  return plan_problem(problem, options, monitor);
+}
+
+}  // namespace posewright

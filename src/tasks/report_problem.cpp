@@ -1,0 +1,238 @@
+#include "posewright/tasks/report_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/study/written_plan.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/text_file.hpp"
+#include "report_scene.hpp"
+
+namespace posewright {
+namespace {
+
+// Other numbers of poses, as shares of the plan's own.
+constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
+// Enough for a curve that shows what a few poses more bring.
+constexpr int curve_restarts = 1;
+// Relative difference of log det that rounding of written configurations cannot make.
+constexpr double same_log_det = 1e-6;
+
+/// As the plan was made, but with short searches that stay among the candidates.
+Settings report_settings(const Problem& problem, const WrittenPlan& plan, int threads) {
+  PlanOptions options = plan.options;
+  options.method = "exchange";
+  options.restarts = curve_restarts;
+  options.threads = threads;
+  return settings_of(problem, options);
+}
+
+class ReportBuilder {
+ public:
+  ReportBuilder(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
+                const Monitor& monitor)
+      : problem_(problem),
+        options_(options),
+        monitor_(monitor),
+        plan_(read_written_plan(file)),
+        settings_(report_settings(problem, plan_, options.threads)) {
+    // The time limit is for other numbers of poses: a shortened set of candidates would be shown as if it were whole.
+    whole_.interrupted = monitor.interrupted;
+    whole_.on_progress = monitor.on_progress;
+    if (!options.route.empty()) report_.route_json = read_text(options.route, plan_size_limit);
+    report_.plan_json = std::move(plan_.text);
+    // What was measured before is in the plan, wherever it came from.
+    settings_.measured = [this](const std::vector<Coordinate>& coordinates) {
+      list_ = read_poses_text(report_.plan_json, plan_.file.string(), coordinates);
+      PoseList before;
+      for (std::size_t i = 0; i < list_.configurations.size(); ++i)
+        if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
+      return before;
+    };
+    study_ = make_study(problem, settings_, whole_);
+    if (whole_.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
+    all_.dimension = new_.dimension = study_.configurations.dimension;
+    for (std::size_t i = 0; i < list_.configurations.size(); ++i) {
+      append(all_, list_.configurations[i]);
+      if (!list_.measured[i]) append(new_, list_.configurations[i]);
+    }
+  }
+
+  Report make() {
+    report_.title = problem_.file.parent_path().filename().string();
+    if (report_.title.empty()) report_.title = problem_.file.stem().string();
+    const Judgement judgement = judge(study_, new_, settings_);
+    note_changes(judgement);
+    fill_information(judgement);
+    std::vector<std::pair<int, std::vector<double>>> poses;
+    for (std::size_t i = 0; i < list_.ids.size(); ++i) poses.emplace_back(list_.ids[i], list_.configurations[i]);
+    const auto& coordinates = study_.first().workspace->coordinates();
+    fill_scene(report_, problem_, *study_.cell, poses, coordinates, options_.route);
+    for (const Coordinate& c : study_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
+    fill_prefix();
+    if (options_.candidates) fill_candidates();
+    if (options_.sizes) fill_curve();
+    return std::move(report_);
+  }
+
+ private:
+  void note_changes(const Judgement& judgement) {
+    const double stated = plan_.log_det;
+    const double found = judgement.evaluations.front().log_det;
+    if (plan_.problem_sha256 != problem_.sha256)
+      report_.notes.push_back(
+          "The problem file has changed since the plan was made: the plan's own figures are those of the old file, "
+          "everything that this page recomputes those of the new one.");
+    else if (std::string note = parameters_note("The plan", plan_.parameters_file, problem_); !note.empty())
+      report_.notes.push_back(note + ".");
+    else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
+      report_.notes.push_back(fmt::format(
+          "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",
+          stated, found));
+    if (study_.variants.size() > 1)
+      report_.notes.push_back("The plan serves several variants; what this page recomputes is of '" +
+                              study_.first().spec->name + "'.");
+  }
+
+  void fill_information(const Judgement& judgement) {
+    const Variant& variant = study_.first();
+    const VariantColumns& columns = variant.columns;
+    ReportInformation& information = report_.information;
+    const auto m = Eigen::Index(columns.selected.size());
+    Eigen::VectorXd tolerance(m);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      information.columns.push_back(
+          {columns.parameters[std::size_t(j)], study_.variants.size() > 1 ? variant.spec->name : "", {}, {}});
+      tolerance[j] = columns.parameters[std::size_t(j)].tolerance;
+    }
+    const BlockArray blocks = build_blocks(*variant.model, columns.selected, all_, options_.threads);
+    for (std::size_t i = 0; i < blocks.count(); ++i) {
+      const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
+      information.poses.emplace_back(list_.ids[i], scaled.transpose() * scaled);
+    }
+    if (settings_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
+    for (const TestPoint& point : variant.test_points) {
+      const Eigen::MatrixXd scaled = point.A * tolerance.asDiagonal();
+      information.test.emplace_back(point.weight, scaled.transpose() * scaled);
+    }
+    information.singular_values = judgement.evaluations.front().singular_values;
+  }
+
+  std::optional<CurvePoint> point_of(const Configurations& list, int poses) const {
+    try {
+      const Judgement judgement = judge(study_, list, settings_);
+      const Evaluation& e = judgement.evaluations.front();
+      CurvePoint point{poses, e.log_det, judgement.rho0, 0.0, false};
+      const VariantColumns& columns = study_.first().columns;
+      for (std::size_t j = std::size_t(columns.nuisance); j < columns.parameters.size(); ++j)
+        point.worst_sigma = std::max(*point.worst_sigma, e.sigma[Eigen::Index(j)] / columns.parameters[j].tolerance);
+      return point;
+    } catch (const CannotDo&) {
+      return std::nullopt;
+    }
+  }
+
+  /// After the first, second, … new pose in measuring order.
+  void fill_prefix() {
+    Configurations list;
+    list.dimension = new_.dimension;
+    // A closed tour shows its first pose twice.
+    std::set<int> seen;
+    for (const ReportKeyframe& keyframe : report_.keyframes) {
+      if (!keyframe.pose || *keyframe.pose < 1 || !seen.insert(*keyframe.pose).second) continue;
+      const auto i = std::size_t(std::find(list_.ids.begin(), list_.ids.end(), *keyframe.pose) - list_.ids.begin());
+      if (list_.measured[i]) continue;
+      append(list, all_[i]);
+      report_.prefix.push_back(point_of(list, int(list.count())));
+    }
+  }
+
+  /// Made once for all searches.
+  std::vector<SearchPart> parts_of_candidates() {
+    if (parts_.empty()) parts_ = search_parts(study_, settings_.criterion, study_.configurations, options_.threads);
+    return copied_parts(parts_);
+  }
+
+  void fill_candidates() {
+    const Configurations& pool = study_.configurations;
+    if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
+    Bound bound = bound_only(parts_of_candidates(), spaced_request(study_, settings_, settings_.poses), whole_);
+    if (whole_.should_stop()) {
+      report_.notes.emplace_back("Stopped early: what each candidate could add is left out.");
+      return;
+    }
+    if (bound.sensitivity.empty() || !(bound.price > 0)) return;
+    ReportCandidates candidates;
+    for (const double d : bound.sensitivity) candidates.sensitivity.push_back(d / bound.price);
+    for (std::size_t i = 0; i < pool.count(); ++i) {
+      candidates.positions.push_back(study_.first().model->tool_pose(pool[i]).translation());
+      for (std::size_t k = 0; k < new_.count(); ++k)
+        if (std::equal(pool[i].begin(), pool[i].end(), new_[k].begin())) {
+          candidates.chosen.push_back(int(i));
+          break;
+        }
+    }
+    report_.candidates = std::move(candidates);
+  }
+
+  void add_to_curve(int poses) {
+    const Configurations& pool = study_.configurations;
+    try {
+      const SearchResult found = search(parts_of_candidates(), spaced_request(study_, settings_, poses), whole_);
+      if (whole_.should_stop()) return;  // not the best plan of so many
+      Configurations list;
+      list.dimension = pool.dimension;
+      for (const int i : found.design.members) append(list, pool[std::size_t(i)]);
+      if (const auto point = point_of(list, poses)) report_.curve.push_back(*point);
+    } catch (const CannotDo&) {
+      return;  // so few poses do not determine the parameters
+    }
+  }
+
+  void fill_curve() {
+    const int own = int(new_.count());
+    const Configurations& pool = study_.configurations;
+    std::set<int> tried = {own};
+    for (const double share : shares) {
+      const int poses = int(std::lround(share * own));
+      whole_.report({"other numbers of poses", double(&share - shares), double(std::size(shares)), {}, {}, {}});
+      if (poses < 1 || double(poses) > double(pool.count()) * settings_.repeats.most || !tried.insert(poses).second)
+        continue;
+      if (!monitor_.should_stop()) add_to_curve(poses);
+      if (!monitor_.should_stop()) continue;
+      report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+      break;
+    }
+    if (const auto point = point_of(new_, own)) report_.curve.push_back(*point);
+    std::sort(report_.curve.begin(), report_.curve.end(),
+              [](const auto& a, const auto& b) { return a.poses < b.poses; });
+  }
+
+  const Problem& problem_;
+  const ReportOptions& options_;
+  const Monitor& monitor_;
+  Monitor whole_;     // without the time limit
+  WrittenPlan plan_;  // its text is in the report
+  Settings settings_;
+  Study study_;
+  PoseList list_;  // the poses of the plan
+  Configurations all_, new_;
+  std::vector<SearchPart> parts_;  // of the candidates
+  Report report_;
+};
+
+}  // namespace
+
+Report report_problem(const Problem& problem, const std::filesystem::path& plan, const ReportOptions& options,
+                      const Monitor& monitor) {
+  return ReportBuilder(problem, plan, options, monitor).make();
+}
+
+}  // namespace posewright

@@ -1,0 +1,324 @@
+#include "posewright/tasks/route_problem.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "fill_plan.hpp"
+#include "motions.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/route/tour.hpp"
+#include "posewright/study/written_plan.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
+
+namespace posewright {
+namespace {
+
+// What a motion that does not exist costs in a tour, s.
+constexpr double no_way = 1e7;
+
+struct Stop {
+  int id = 0;  ///< of the pose; 0: home
+  std::vector<double> configuration;
+  PlannedPose pose;
+};
+
+/// Orders the stops that can be reached, and collects what is written of the way.
+class Router {
+ public:
+  Router(const Problem& problem, const PoseSource& poses, const RouteOptions& options, const Monitor& monitor)
+      : problem_(problem),
+        options_(options),
+        monitor_(monitor),
+        cell_(make_cell(problem)),
+        variant_(place_variant(problem, find_variant(problem, ""), cell_)),
+        space_(problem, cell_) {
+    route_.problem_file = problem.file.string();
+    route_.problem_sha256 = problem.sha256;
+    route_.parameters_file = parameters_of(problem);
+    route_.seed = options.seed;
+    route_.closed = options.closed;
+    route_.from_home = options.from_home;
+    route_.settle = problem.workspace.motion.settle;
+    for (const Coordinate& c : space_.coordinates()) {
+      route_.names.push_back(c.name);
+      route_.units.push_back(c.unit);
+    }
+    route_.home = space_.home();
+    read_stops(poses);
+  }
+
+  Route make() {
+    keep_free();
+    std::vector<int> order = find_order();
+    if (is_broken(order)) {
+      keep_reachable();
+      order = find_order();
+      if (is_broken(order))
+        throw CannotDo("no motion was found between poses that can both be reached; try more --milestones");
+    }
+    write(order);
+    return std::move(route_);
+  }
+
+ private:
+  void read_stops(const PoseSource& poses) {
+    const PoseList list = poses(variant_.workspace->coordinates());
+    route_.plan_file = list.name;
+    route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
+    route_.notes = list.notes;
+    note_parameters(list, problem_, route_.notes);
+    stops_.push_back({0, space_.whole(space_.home()), {}});
+    for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+      if (!list.measured.empty() && list.measured[i]) continue;
+      const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
+      Stop stop{id, list.configurations[i], pose_of(*variant_.model, list.configurations[i])};
+      stop.pose.id = stop.id;
+      if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
+      stop.pose.nearest = nearest_at(*cell_, stop.configuration);
+      stops_.push_back(std::move(stop));
+    }
+    std::vector<int> near;
+    for (const Stop& stop : stops_)
+      if (stop.id > 0 && !variant_.workspace->within_margin(stop.configuration).empty()) near.push_back(stop.id);
+    if (!near.empty()) route_.notes.push_back(margin_note(list.name, near));
+    if (options_.start && find_stop(*options_.start) < 0)
+      throw InputError({}, "--start " + std::to_string(*options_.start) + " is not a pose of " + list.name,
+                       "an id of a pose that is still to be measured");
+    std::vector<std::vector<double>> reduced;
+    for (const Stop& stop : stops_) reduced.push_back(space_.reduced(stop.configuration));
+    motions_ = std::make_unique<Motions>(space_, std::move(reduced), options_.milestones, options_.seed,
+                                         options_.threads, monitor_);
+  }
+
+  int find_stop(int id) const {
+    for (std::size_t i = 0; i < stops_.size(); ++i)
+      if (stops_[i].id == id && id > 0) return int(i);
+    return -1;
+  }
+
+  std::string collision(std::size_t stop) const {
+    const std::string pair =
+        cell_->collision == nullptr ? std::string() : cell_->collision->colliding(stops_[stop].configuration);
+    return pair.empty() ? space_.violation(space_.reduced(stops_[stop].configuration)) : pair + " are too near";
+  }
+
+  /// Leaves out poses that collide where they are.
+  void keep_free() {
+    if (options_.from_home && !space_.is_free(space_.home()))
+      throw CannotDo("home is not free: " + collision(0) + "; set workspace: motion: home to a configuration that is");
+    for (std::size_t i = 1; i < stops_.size(); ++i)
+      if (space_.is_free(space_.reduced(stops_[i].configuration))) open_.push_back(int(i));
+      else route_.unreachable.push_back({stops_[i].id, "not free: " + collision(i)});
+    if (open_.empty()) throw CannotDo("no pose of the plan is free: " + route_.unreachable.front().reason);
+    require_start();
+    motions_->set_hub(space_.is_free(space_.home()) ? 0 : open_.front());
+    if (options_.from_home) open_.insert(open_.begin(), 0);
+  }
+
+  void require_start() const {
+    if (options_.start && std::find(open_.begin(), open_.end(), find_stop(*options_.start)) == open_.end())
+      throw CannotDo("pose " + std::to_string(*options_.start) + " cannot be reached");
+  }
+
+  bool is_broken(const std::vector<int>& order) {
+    const auto pairs = legs(order);
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [&](const auto& p) { return motions_->between(p.first, p.second).points.empty(); });
+  }
+
+  /// Leaves out poses that no motion connects with the hub: home if that is free, else the pose that most others are
+  /// connected with.
+  void keep_reachable() {
+    std::vector<int> hubs, best, poses = open_;
+    int best_hub = 0;
+    std::erase(poses, 0);
+    if (space_.is_free(space_.home())) hubs.push_back(0);
+    if (!options_.from_home) hubs.insert(hubs.end(), poses.begin(), poses.end());
+    for (const int hub : hubs) {
+      motions_->set_hub(hub);
+      std::vector<int> reached;
+      for (const int i : poses) {
+        if (motions_->reachable(i)) reached.push_back(i);
+        monitor_.report({"reachable poses", double(&i - poses.data()) + 1, double(poses.size()), {}, {}, {}});
+      }
+      if (reached.size() > best.size()) {
+        best = reached;
+        best_hub = hub;
+      }
+      if (2 * best.size() > poses.size()) break;
+    }
+    motions_->set_hub(best_hub);
+    if (best.empty()) throw CannotDo("no pose can be reached from home without a collision");
+    for (const int i : poses)
+      if (std::find(best.begin(), best.end(), i) == best.end())
+        route_.unreachable.push_back({stops_[std::size_t(i)].id, options_.from_home
+                                                                     ? "no motion from home was found"
+                                                                     : "no motion from most other poses was found"});
+    open_ = best;
+    require_start();
+    if (options_.from_home) open_.insert(open_.begin(), 0);
+  }
+
+  /// What moving the instrument or changing the load costs between two stops, s.
+  double change(int i, int j) const {
+    if (i == 0 || j == 0) return 0.0;
+    const PlannedPose &a = stops_[std::size_t(i)].pose, &b = stops_[std::size_t(j)].pose;
+    return (a.station != b.station ? problem_.workspace.motion.station_change : 0.0) +
+           (a.load_case != b.load_case ? problem_.workspace.motion.load_change : 0.0);
+  }
+
+  double cost(int i, int j) {
+    if (!motions_->known(i, j)) return change(i, j) + motions_->at_least(i, j);
+    const Motion& motion = motions_->between(i, j);
+    return motion.points.empty() ? no_way : change(i, j) + motion.seconds;
+  }
+
+  std::vector<std::pair<int, int>> legs(const std::vector<int>& order) const {
+    std::vector<std::pair<int, int>> pairs;
+    for (std::size_t k = 1; k < order.size(); ++k) pairs.emplace_back(order[k - 1], order[k]);
+    if (options_.closed && order.size() > 1) pairs.emplace_back(order.back(), order.front());
+    return pairs;
+  }
+
+  /// Makes the motions of an order; their seconds and those of changes.
+  double make_motions(const std::vector<int>& order) {
+    motions_->look_ahead(legs(order));
+    double seconds = 0;
+    for (const auto& [i, j] : legs(order)) {
+      motions_->between(i, j);
+      seconds += cost(i, j);
+    }
+    return seconds;
+  }
+
+  std::vector<int> find_order() {
+    const auto n = Eigen::Index(open_.size());
+    TourOptions tour;
+    tour.closed = options_.closed;
+    tour.seed = options_.seed;
+    if (options_.from_home) tour.start = 0;
+    else if (options_.start)
+      tour.start = int(std::find(open_.begin(), open_.end(), find_stop(*options_.start)) - open_.begin());
+    route_.planned_seconds = 0;
+    for (const auto& [i, j] : legs(planned_order(tour.start)))
+      route_.planned_seconds += change(i, j) + motions_->at_least(i, j);
+    std::vector<int> order, best;
+    double shortest = 0;
+    for (long unknown = 1; unknown > 0;) {
+      Eigen::MatrixXd costs = Eigen::MatrixXd::Zero(n, n);
+      for (Eigen::Index a = 0; a < n; ++a)
+        for (Eigen::Index b = 0; b < n; ++b)
+          if (a != b) costs(a, b) = cost(open_[std::size_t(std::min(a, b))], open_[std::size_t(std::max(a, b))]);
+      order.clear();
+      for (const int k : cheapest_tour(costs, tour)) order.push_back(open_[std::size_t(k)]);
+      const auto pairs = legs(order);
+      unknown =
+          std::count_if(pairs.begin(), pairs.end(), [&](const auto& p) { return !motions_->known(p.first, p.second); });
+      const double seconds = make_motions(order);
+      if (best.empty() || seconds < shortest) {
+        best = order;
+        shortest = seconds;
+      }
+      monitor_.report({"order", double(pairs.size()) - double(unknown), double(pairs.size()), {}, {}, {}});
+    }
+    route_.optimal = n <= exact_nodes;
+    return best;
+  }
+
+  /// The plan's own order, with the first stop that is asked for in front.
+  std::vector<int> planned_order(const std::optional<int>& start) const {
+    std::vector<int> order = open_;
+    if (start) std::rotate(order.begin(), order.begin() + *start, order.begin() + *start + 1);
+    return order;
+  }
+
+  void write(const std::vector<int>& order) {
+    for (const auto& [i, j] : legs(order)) {
+      const Motion& motion = motions_->between(i, j);
+      route_.motions.push_back({stops_[std::size_t(i)].id, stops_[std::size_t(j)].id, motion.points, motion.seconds,
+                                change(i, j), motion.found_by, nearest_on(motion)});
+    }
+    const int every = problem_.workspace.line_of_sight ? problem_.workspace.line_of_sight->every : 0;
+    for (const int i : order) {
+      if (stops_[std::size_t(i)].id == 0) continue;
+      route_.poses.push_back(stops_[std::size_t(i)].pose);
+      const std::size_t done = route_.poses.size();
+      // Before anything else, after every so many poses, and at the end, so that drift is bracketed.
+      if (every > 0 && (done == 1 || done % std::size_t(every) == 0 || i == order.back())) add_references(i);
+    }
+  }
+
+  /// What comes nearest to each other on the way.
+  std::optional<BodyDistance> nearest_on(const Motion& motion) const {
+    std::optional<Separation> nearest;
+    for (std::size_t k = 1; cell_->collision != nullptr && k < motion.points.size(); ++k) {
+      const auto found = cell_->collision->nearest(space_.whole(motion.points[k - 1]), space_.whole(motion.points[k]));
+      if (found && (!nearest || found->distance < nearest->distance)) nearest = found;
+    }
+    return body_distance(nearest);
+  }
+
+  void add_references(int stop) {
+    ReferenceCheck check{stops_[std::size_t(stop)].id, {}};
+    const std::vector<double>& q = stops_[std::size_t(stop)].configuration;
+    const int station = cell_->sight->station_of(q);
+    for (const Sight& s : cell_->sight->reference_sights(q, station))
+      check.sights.push_back(target_sight(*cell_->sight, s, station));
+    route_.references.push_back(std::move(check));
+  }
+
+  const Problem& problem_;
+  const RouteOptions& options_;
+  const Monitor& monitor_;
+  std::shared_ptr<const Cell> cell_;
+  Variant variant_;
+  MotionSpace space_;
+  Route route_;
+  std::vector<Stop> stops_;  // the first is home
+  std::vector<int> open_;    // stops that can be reached, home too where the route begins there
+  std::unique_ptr<Motions> motions_;
+};
+
+nlohmann::json read_plan(const std::filesystem::path& plan) {
+  const std::string text = read_text(plan, plan_size_limit);
+  try {
+    return parse_json(text);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({plan.string(), 0}, "names no problem file", "a plan.json of a problem, or --problem FILE");
+  }
+}
+
+}  // namespace
+
+std::filesystem::path problem_of_plan(const std::filesystem::path& plan) {
+  const nlohmann::json json = read_plan(plan);
+  std::string name;
+  if (json.is_object() && json.contains("problem") && json["problem"].is_object())
+    name = json["problem"].value("file", std::string());
+  if (name.empty())
+    throw InputError({plan.string(), 0}, "names no problem file", "a plan of a problem, or --problem FILE");
+  std::error_code code;
+  for (const std::filesystem::path& file : {std::filesystem::path(name), plan.parent_path() / name,
+                                            plan.parent_path() / std::filesystem::path(name).filename()})
+    if (std::filesystem::is_regular_file(file, code)) return file;
+  throw InputError({plan.string(), 0}, "its problem file '" + name + "' is not there", "name it with --problem FILE");
+}
+
+Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
+                    const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  Route route = Router(problem, poses, options, monitor).make();
+  route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return route;
+}
+
+Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
+                    const Monitor& monitor) {
+  return route_problem(problem, poses_in_file(plan), options, monitor);
+}
+
+}  // namespace posewright

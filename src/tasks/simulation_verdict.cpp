@@ -1,0 +1,185 @@
+#include "simulation_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/calibration/residual_statistics.hpp"
+
+namespace posewright {
+namespace {
+
+// What counts as another σ or coverage, if Monte Carlo error does not explain it.
+constexpr double sigma_margin = 0.05, coverage_margin = 0.01, monte_carlo_errors = 3.0;
+// A bias of this share of σ costs coverage.
+constexpr double bias_margin = 0.1;
+constexpr std::size_t names_shown = 4;
+
+/// Judges one simulation.
+class Verdict {
+ public:
+  Verdict(const Simulation& simulation, const SimulateOptions& options) : s_(simulation), options_(options) {
+    for (const SimulatedParameter& p : s_.parameters) {
+      if (!p.errors) continue;
+      if (differs(p.errors->observed / p.predicted)) wrong_sigma_.push_back(&p);
+      if (beyond(uncovered(p), coverage_margin, s_.summary.coverage_error)) wrong_coverage_.push_back(&p);
+      if (beyond(p.errors->bias, bias_margin * p.predicted, p.errors->bias_error)) biased_.push_back(&p);
+    }
+  }
+
+  bool confirmed() const {
+    return wrong_sigma_.empty() && wrong_coverage_.empty() && biased_.empty() && s_.summary.failed == 0 &&
+           s_.summary.not_converged == 0;
+  }
+
+  std::vector<std::string> words() {
+    if (s_.summary.parameters.empty()) {
+      say("the variants do not share one catalogue of parameters: their errors are not known, only readings and "
+          "places");
+    } else {
+      describe_sigma();
+      describe_coverage();
+      describe_bias();
+    }
+    describe_ends();
+    describe_chi_square();
+    if (!wrong_sigma_.empty() || !wrong_coverage_.empty() || !biased_.empty()) causes();
+    return std::move(words_);
+  }
+
+ private:
+  static bool beyond(double difference, double margin, double error) {
+    return std::abs(difference) > margin && std::abs(difference) > monte_carlo_errors * error;
+  }
+  bool differs(double ratio) const { return beyond(ratio - 1, sigma_margin, s_.summary.sigma_error); }
+  void say(std::string text) { words_.push_back(std::move(text)); }
+
+  template <class Figure>
+  std::string listed(std::vector<const SimulatedParameter*> parameters, const Figure& figure) const {
+    std::stable_sort(parameters.begin(), parameters.end(),
+                     [&](const auto* a, const auto* b) { return std::abs(figure(*a)) > std::abs(figure(*b)); });
+    std::string text;
+    for (std::size_t i = 0; i < std::min(parameters.size(), names_shown); ++i)
+      text += (i == 0 ? "" : ", ") + parameters[i]->label.name;
+    if (parameters.size() > names_shown) text += fmt::format(" and {} more", parameters.size() - names_shown);
+    return text;
+  }
+
+  static double excess(const SimulatedParameter& p) { return p.errors->observed / p.predicted - 1; }
+  static double uncovered(const SimulatedParameter& p) { return p.errors->coverage - interval_probability; }
+  static double bias(const SimulatedParameter& p) { return p.errors->bias / p.predicted; }
+
+  template <class Figure>
+  std::pair<double, double> range(const Figure& figure) const {
+    double least = figure(s_.parameters.front()), most = least;
+    for (const SimulatedParameter& p : s_.parameters) {
+      least = std::min(least, figure(p));
+      most = std::max(most, figure(p));
+    }
+    return {least, most};
+  }
+
+  void describe_sigma() {
+    const auto [least, most] = range(excess);
+    const std::string error = fmt::format("Monte Carlo error {:.1f} %", 100 * s_.summary.sigma_error);
+    if (wrong_sigma_.empty())
+      say(fmt::format("σ within {:.1f} % of the predicted for all {} parameters ({})", 100 * std::max(-least, most),
+                      s_.parameters.size(), error));
+    else
+      say(fmt::format("σ of {} of {} parameters is not the predicted one: {:+.1f} to {:+.1f} % ({}), most of all {}",
+                      wrong_sigma_.size(), s_.parameters.size(), 100 * least, 100 * most, error,
+                      listed(wrong_sigma_, excess)));
+  }
+
+  void describe_coverage() {
+    const auto [least, most] = range([](const SimulatedParameter& p) { return p.errors->coverage; });
+    std::string text = fmt::format("95 % intervals cover {:.1f} to {:.1f} % (Monte Carlo error {:.1f} %)", 100 * least,
+                                   100 * most, 100 * s_.summary.coverage_error);
+    if (!wrong_coverage_.empty()) text += ", not as they should for " + listed(wrong_coverage_, uncovered);
+    say(std::move(text));
+  }
+
+  void describe_bias() {
+    if (biased_.empty()) return;
+    const auto [least, most] = range(bias);
+    say(fmt::format("{} of {} estimates are biased by more than a tenth of their σ, {:.2g} to {:.2g} σ: {}",
+                    biased_.size(), s_.parameters.size(), least, most, listed(biased_, bias)));
+  }
+
+  void describe_ends() {
+    const ExperimentSummary& summary = s_.summary;
+    if (summary.not_converged > 0)
+      say(fmt::format("{} of {} draws did not converge and are in no figure", summary.not_converged, summary.asked));
+    if (summary.failed > 0)
+      say(fmt::format("{} of {} draws could not be calibrated and are in no figure; the first: {}", summary.failed,
+                      summary.asked, summary.first_failure));
+  }
+
+  void describe_chi_square() {
+    if (!s_.summary.rejected) return;
+    const std::string share =
+        fmt::format("{:.1f} ± {:.1f} % of the draws", 100 * *s_.summary.rejected, 100 * s_.summary.rejected_error);
+    if (s_.truth != s_.variant)
+      say(fmt::format("the χ² test at 5 % rejects {} in {}: its power to distinguish it from {}", s_.variant, share,
+                      s_.truth));
+    else say(fmt::format("the χ² test at 5 % rejects the model in {}", share));
+  }
+
+  void causes() {
+    const ExperimentOptions& experiment = options_.experiment;
+    const std::size_t before = words_.size();
+    if (s_.curvature.largest > curvature_limit) curved();
+    if (s_.truth != s_.variant)
+      say("because: the readings come from " + s_.truth + ", whose effects " + s_.variant + " takes up in its own");
+    if (options_.truth_noise.differs()) say("because: the measured robot has other noise than the problem states");
+    if (experiment.outliers > 0)
+      say(fmt::format("because: {:.3g} % of the targets carry gross errors, which no prediction counts",
+                      100 * experiment.outliers));
+    if (experiment.fit.weighting == Weighting::robust)
+      say("because: robust weights cost some of the information, about 5 % in σ² of single readings");
+    if (experiment.fit.weighting == Weighting::ordinary)
+      say("because: equal weights are not those of the noise where readings differ in it");
+    if (experiment.fit.prior != Prior::none && experiment.exact)
+      say("because: tolerances count as knowledge, but no true parameter is off");
+    if (!experiment.exact) other_places();
+    if (words_.size() == before) say("no cause of this shows in the figures");
+  }
+
+  void curved() {
+    const std::string along = s_.curvature.parameter < 0
+                                  ? ""
+                                  : " (mostly " + s_.parameters[std::size_t(s_.curvature.parameter)].label.name + ")";
+    say(
+        fmt::format("because: the problem is not linear within its own uncertainty: one σ along its worst axis{} the "
+                    "linear prediction misses {:.2g} of that step, {:.2g} is the limit",
+                    along, s_.curvature.largest, curvature_limit));
+  }
+
+  /// Whether the σ that calibrations state for themselves explains the difference.
+  void other_places() {
+    const auto explained = std::count_if(wrong_sigma_.begin(), wrong_sigma_.end(), [&](const SimulatedParameter* p) {
+      return !differs(p->errors->observed / p->errors->stated);
+    });
+    if (explained == 0) return;
+    say(fmt::format(
+        "because: true parameters one tolerance off change what the poses determine: for {} of the {} the σ that "
+        "each calibration states for itself is the observed one (--exact leaves the parameters nominal)",
+        explained, wrong_sigma_.size()));
+  }
+
+  const Simulation& s_;
+  const SimulateOptions& options_;
+  std::vector<const SimulatedParameter*> wrong_sigma_, wrong_coverage_, biased_;
+  std::vector<std::string> words_;
+};
+
+}  // namespace
+
+void judge_simulation(Simulation& simulation, const SimulateOptions& options) {
+  Verdict verdict(simulation, options);
+  simulation.confirmed = verdict.confirmed();
+  simulation.verdict = verdict.words();
+}
+
+}  // namespace posewright

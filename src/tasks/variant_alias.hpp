@@ -1,0 +1,19 @@
+#pragma once
+
+#include "posewright/planning/evaluate.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/tasks/compare_problem.hpp"
+
+namespace posewright {
+
+/// Bias of `fitted` at these poses while `truth` is the case, linearised at the nominal values of `fitted`. Says why
+/// not where the two do not share one catalogue of parameters.
+/// @param poses       all that are measured
+/// @param evaluation  of the same poses for `fitted`
+VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const Variant& truth,
+                           const Configurations& poses, const Evaluation& evaluation, const Settings& settings);
+
+/// What `with` estimates and `without` does not, indices into the columns of `with`.
+std::vector<int> extra_columns(const Variant& with, const Variant& without);
+
+}  // namespace posewright

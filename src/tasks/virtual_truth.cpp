@@ -1,0 +1,101 @@
+#include "virtual_truth.hpp"
+
+#include <algorithm>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/study/accuracy_configurations.hpp"
+#include "posewright/study/accuracy_points.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+void require_same_coordinates(const IdentificationModel& a, const IdentificationModel& b) {
+  const auto same = [](const auto& x, const auto& y, const auto& equal) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
+  };
+  const auto coordinate = [](const Coordinate& c, const Coordinate& d) {
+    return c.name == d.name && c.labels == d.labels;
+  };
+  const auto reading = [](const Reading& r, const Reading& s) { return r.name == s.name && r.unit == s.unit; };
+  if (!same(a.coordinates(), b.coordinates(), coordinate) || !same(a.actuators(), b.actuators(), coordinate) ||
+      !same(a.readings(), b.readings(), reading))
+    throw CannotDo(
+        "the two variants differ in their coordinates, actuators or readings: one cannot stand for the other");
+}
+
+/// What only the measurement knows does not move the robot.
+std::vector<int> robot_parameters(const IdentificationModel& seen, const IdentificationModel& measured,
+                                  const VariantColumns& columns) {
+  std::vector<int> from;
+  for (const Parameter& p : seen.parameters()) {
+    const auto& all = measured.parameters();
+    const auto at = std::find_if(all.begin(), all.end(), [&](const Parameter& q) { return q.name == p.name; });
+    int index = at == all.end() ? -1 : int(at - all.begin());
+    const auto nuisance = columns.selected.begin() + columns.nuisance;
+    if (std::find(columns.selected.begin(), nuisance, index) != nuisance) index = -1;
+    from.push_back(index);
+  }
+  return from;
+}
+
+/// Joints of a serial arm may be of either kind.
+void require_unit_of_joints(const Measured& noise, const RobotSpec& robot) {
+  if (std::holds_alternative<SerialArmSpec>(robot) || !(noise.value > 0)) return;
+  const Quantity quantity = std::holds_alternative<SixLegsSpec>(robot) ? Quantity::length : Quantity::angle;
+  if (noise.quantity != quantity)
+    throw InputError({}, "the noise of the true robot's joints has the wrong unit",
+                     "allowed: " + allowed_units({quantity}));
+}
+
+}  // namespace
+
+Problem with_truth_noise(Problem problem, const TruthNoise& noise) {
+  Repeatability& repeatability = problem.measurement.repeatability;
+  // A length that is stated anew says how the tip stands off; what the problem says of its turning stays.
+  repeatability.translation = noise.repeatability.value_or(repeatability.translation);
+  repeatability.independent = noise.independent.value_or(0.0);
+  if (noise.joints) {
+    require_unit_of_joints(*noise.joints, problem.robot);
+    set_joint_noise(problem.robot, noise.joints->value);
+  }
+  return problem;
+}
+
+std::vector<std::vector<double>> same_actuators(const IdentificationModel& from, const IdentificationModel& to,
+                                                const std::vector<std::vector<double>>& configurations) {
+  require_same_coordinates(from, to);
+  std::vector<std::vector<double>> result;
+  std::vector<double> actuators(from.actuators().size());
+  for (const std::vector<double>& q : configurations) {
+    result.push_back(q);
+    if (actuators.empty()) continue;
+    if (!from.actuator_values(q, actuators) || !to.configuration_at(actuators, q, result.back()))
+      throw CannotDo("configuration " + std::to_string(result.size()) +
+                     ": the true robot does not close with the actuators standing there");
+  }
+  return result;
+}
+
+std::unique_ptr<PlacesToCheck> places_to_check(const Problem& problem, const Side& fitted, const Side& truth,
+                                               std::uint64_t seed) {
+  if (!problem.design.test_poses || std::holds_alternative<CompensatorGeometrySpec>(problem.robot)) return nullptr;
+  const Problem seen = with_pose_seen(problem);
+  auto result = std::make_unique<PlacesToCheck>();
+  result->fitted = make_pose_seen(problem, *fitted.spec, *fitted.model);
+  result->truth = make_pose_seen(problem, *truth.spec, *truth.model);
+  result->points = test_points_of(problem, *fitted.spec, *fitted.model, *fitted.columns, seed);
+  CheckPlaces& places = result->places;
+  places.fitted = result->fitted.get();
+  places.truth = result->truth.get();
+  TestConfigurations found = test_configurations(seen, *result->fitted, seed);
+  places.fitted_q = std::move(found.configurations);
+  places.truth_q = same_actuators(*places.fitted, *places.truth, places.fitted_q);
+  places.weights = found.weights.empty() ? std::vector<double>(places.fitted_q.size(), 1.0) : std::move(found.weights);
+  places.fitted_from = robot_parameters(*places.fitted, *fitted.model, *fitted.columns);
+  places.truth_from = robot_parameters(*places.truth, *truth.model, *truth.columns);
+  places.point = problem.design.test_poses->point;
+  return result;
+}
+
+}  // namespace posewright

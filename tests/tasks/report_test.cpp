@@ -1,0 +1,360 @@
+// What a report's page is given: enough to judge any subset of the poses, and pictures that fit the model.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <nlohmann/json.hpp>
+
+#include "posewright/cell/drawing.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/outputs/write_plan.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/tasks/plan_problem.hpp"
+#include "posewright/tasks/report_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::filesystem::path examples = std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples";
+
+Eigen::MatrixXd unpacked(const json& packed, Eigen::Index m) {
+  Eigen::MatrixXd M(m, m);
+  std::size_t k = 0;
+  for (Eigen::Index i = 0; i < m; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) M(i, j) = M(j, i) = packed.at(k++).get<double>();
+  EXPECT_EQ(k, packed.size());
+  return M;
+}
+
+double log_det(const Eigen::MatrixXd& M) { return 2 * M.llt().matrixLLT().diagonal().array().log().sum(); }
+
+/// log det of the interest part, in SI units, of the poses that are not left out.
+double interest_log_det(const json& report, int left_out = 0) {
+  const auto m = Eigen::Index(report["columns"].size());
+  Eigen::Index nuisance = 0;
+  double units = 0;
+  for (const json& column : report["columns"]) {
+    if (column["role"] == "nuisance") ++nuisance;
+    else units += 2 * std::log(column["tolerance"].get<double>());
+  }
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
+  for (const json& pose : report["information"]["poses"])
+    if (pose["id"] != left_out) M += unpacked(pose["packed"], m);
+  if (!report["information"]["prior"].is_null()) M += unpacked(report["information"]["prior"], m);
+  return log_det(M) - (nuisance > 0 ? log_det(M.topLeftCorner(nuisance, nuisance)) : 0.0) - units;
+}
+
+struct Made {
+  Plan plan;
+  json report;
+};
+
+Made make_report(const Problem& problem, const PlanOptions& options, const TemporaryFolder& folder,
+                 const ReportOptions& report_options) {
+  Made made{plan_problem(problem, options, Monitor{}), {}};
+  const auto file = folder.write("plan.json", plan_json(made.plan));
+  made.report = json::parse(report_json(report_problem(problem, file, report_options, Monitor{})));
+  return made;
+}
+
+PlanOptions quick_report(int poses, int candidates) {
+  PlanOptions options;
+  options.poses = poses;
+  options.candidates = candidates;
+  options.restarts = 1;
+  options.method = "exchange";
+  return options;
+}
+
+TEST(Report, MatricesGiveThePlansLogDetAndWhatTheLossOfAPoseCosts) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const auto [plan, report] = make_report(problem, quick_report(18, 100), folder, brief);
+  EXPECT_NEAR(interest_log_det(report), plan.log_det, 1e-9 * std::abs(plan.log_det));
+  double interest = 0;
+  for (const json& column : report["columns"]) interest += column["role"] == "interest";
+  for (const PlannedPose& pose : plan.poses)
+    EXPECT_NEAR(std::exp((interest_log_det(report, pose.id) - plan.log_det) / interest), pose.without, 1e-8) << pose.id;
+  EXPECT_TRUE(report["notes"].empty()) << report["notes"];
+}
+
+TEST(Report, SaysWhatCandidatesAndOtherNumbersOfPosesBring) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "telescope" / "problem.yaml");
+  const auto [plan, report] = make_report(problem, quick_report(20, 300), folder, {});
+  const json& candidates = report["candidates"];
+  ASSERT_EQ(candidates["sensitivity"].size(), 300U);
+  EXPECT_EQ(candidates["positions"].size(), 900U);
+  EXPECT_EQ(candidates["chosen"].size(), 20U);
+  double chosen = 0, all = 0;
+  for (const json& i : candidates["chosen"])
+    chosen += candidates["sensitivity"][i.get<std::size_t>()].get<double>() / 20;
+  for (const json& d : candidates["sensitivity"]) all += d.get<double>() / 300;
+  EXPECT_GT(chosen, all) << "chosen candidates tell more than others";
+  const json& curve = report["curve"];
+  ASSERT_GE(curve.size(), 4U);
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    EXPECT_GT(curve[k]["poses"], curve[k - 1]["poses"]);
+    EXPECT_GT(curve[k]["log_det"], curve[k - 1]["log_det"]) << "more poses tell more";
+  }
+  ASSERT_EQ(report["prefix"].size(), 20U);
+  EXPECT_TRUE(report["prefix"][0].is_null()) << "one pose does not identify everything";
+  EXPECT_NEAR(report["prefix"][19]["log_det"].get<double>(), plan.log_det, 1e-9 * std::abs(plan.log_det));
+}
+
+TEST(Report, AccuracyFollowsFromTheMatricesOfTestPoses) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(examples / "kr270", folder.path(), std::filesystem::copy_options::recursive);
+  const Problem problem = read_problem(
+      folder.write("problem.yaml", read_file(examples / "kr270" / "problem.yaml") + "  test_poses: {random: 12}\n"));
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const auto [plan, report] = make_report(problem, quick_report(18, 100), folder, brief);
+  ASSERT_EQ(report["candidates"], nullptr);
+  EXPECT_TRUE(report["curve"].empty());
+  ASSERT_EQ(report["information"]["test"].size(), 12U);
+  const auto m = Eigen::Index(report["columns"].size());
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
+  for (const json& pose : report["information"]["poses"]) M += unpacked(pose["packed"], m);
+  double sum = 0, weights = 0;
+  for (const json& test : report["information"]["test"]) {
+    sum += test["weight"].get<double>() * M.llt().solve(unpacked(test["packed"], m)).trace();
+    weights += test["weight"].get<double>();
+  }
+  EXPECT_NEAR(std::sqrt(sum / weights), *plan.rho0, 1e-9 * *plan.rho0);
+}
+
+TEST(Report, PlaysTheRouteThroughEveryPose) {
+  const TemporaryFolder folder;
+  Problem problem = read_problem(examples / "cell" / "problem.yaml");
+  problem.workspace.motion.reachable = false;  // the route finds out, and the test is quick_report
+  const Plan plan = plan_problem(problem, quick_report(14, 200), Monitor{});
+  const auto file = folder.write("plan.json", plan_json(plan));
+  RouteOptions route_options;
+  route_options.from_home = route_options.closed = true;
+  const Route route = route_problem(problem, file, route_options, Monitor{});
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  brief.route = folder.write("route.json", route_json(route));
+  const json report = json::parse(report_json(report_problem(problem, file, brief, Monitor{})));
+  std::vector<int> stops, expected = {0};
+  double before = -1;
+  for (const json& keyframe : report["keyframes"]) {
+    EXPECT_GE(keyframe["seconds"].get<double>(), before);
+    before = keyframe["seconds"];
+    EXPECT_EQ(keyframe["frames"].size(), report["frames"].size());
+    if (!keyframe["pose"].is_null()) stops.push_back(keyframe["pose"]);
+  }
+  for (const PlannedPose& pose : route.poses) expected.push_back(pose.id);
+  expected.push_back(0);
+  EXPECT_EQ(stops, expected);
+  EXPECT_FALSE(report["bodies"].empty());
+  EXPECT_EQ(report["stations"].size(), 1U);
+  // At a stop the tip is where the plan says.
+  for (const json& keyframe : report["keyframes"]) {
+    if (keyframe["pose"].is_null() || keyframe["pose"] == 0) continue;
+    const PlannedPose& pose = plan.poses.at(keyframe["pose"].get<std::size_t>() - 1);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(keyframe["tip"][std::size_t(k)].get<double>(), pose.tool_pose->translation()[k], 1e-5);
+  }
+}
+
+TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
+  PlanOptions options = quick_report(12, 100);
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, options, Monitor{})));
+  options.seed = 5;
+  const auto other = folder.write("other.json", plan_json(plan_problem(problem, options, Monitor{})));
+  RouteOptions closed;
+  closed.closed = true;
+  Route route = route_problem(problem, file, closed, Monitor{});
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  brief.route = folder.write("route.json", route_json(route));
+  EXPECT_THROW(report_problem(problem, other, brief, Monitor{}), InputError);
+  EXPECT_EQ(report_problem(problem, file, brief, Monitor{}).prefix.size(), 12U);
+  // Without the last pose the tour closes one motion earlier.
+  route.poses.pop_back();
+  route.motions.erase(route.motions.end() - 2);
+  route.motions.back().from = route.poses.back().id;
+  route.motions.back().points.front() = route.motions[route.motions.size() - 2].points.back();
+  brief.route = folder.write("shorter.json", route_json(route));
+  EXPECT_EQ(report_problem(problem, file, brief, Monitor{}).prefix.size(), 11U);
+}
+
+TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "delta" / "problem.yaml");
+  json plan = json::parse(plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
+  plan["poses"].erase(1);
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const Report report = report_problem(problem, folder.write("plan.json", plan.dump()), brief, Monitor{});
+  std::vector<int> ids;
+  for (const auto& [id, M] : report.information.poses) ids.push_back(id);
+  EXPECT_EQ(ids, (std::vector<int>{1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+  EXPECT_EQ(report.keyframes[1].pose, 3);
+}
+
+TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "delta" / "problem.yaml");
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
+  Monitor late;
+  late.deadline = Monitor::Clock::now();
+  const Report report = report_problem(problem, file, {}, late);
+  EXPECT_EQ(report.candidates->sensitivity.size(), 60U);
+  EXPECT_EQ(report.curve.size(), 1U) << "the plan itself";
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("left out of the curve")));
+}
+
+TEST(Report, PageHoldsItsDataOnceAndNothingInItEndsTheElement) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "five_bar" / "problem.yaml");
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  const auto file = folder.write("plan.json", plan_json(plan));
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  Report report = report_problem(problem, file, brief, Monitor{});
+  report.notes.emplace_back("</script><script>alert(1)</script><!-- @REPORT_DATA@");
+  const std::string page = report_html(report);
+  EXPECT_TRUE(page.starts_with("<!doctype html><!-- posewright report -->"));
+  const std::string open = "<script type=\"application/json\" id=\"report-data\">";
+  const auto begin = page.find(open);
+  ASSERT_NE(begin, std::string::npos);
+  const auto end = page.find("</script>", begin);
+  const json data = json::parse(page.substr(begin + open.size(), end - begin - open.size()));
+  EXPECT_EQ(data["notes"].back(), report.notes.back());
+  EXPECT_EQ(data["plan"]["criterion"]["log_det"], plan.log_det);
+}
+
+TEST(Report, SaysThatTheProblemHasChanged) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "five_bar" / "problem.yaml");
+  Plan plan = plan_problem(problem, {}, Monitor{});
+  plan.problem_sha256 = std::string(64, '0');
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const Report report = report_problem(problem, folder.write("plan.json", plan_json(plan)), brief, Monitor{});
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("The problem file has changed")));
+}
+
+TEST(Report, RefusesWhatIsNoPlanAndRoutesOfOtherPlans) {
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples / "five_bar" / "problem.yaml");
+  const auto refused = [&](const std::filesystem::path& plan, const ReportOptions& options) {
+    try {
+      report_problem(problem, plan, options, Monitor{});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refused(folder.write("a.json", "{"), {}), HasSubstr("is not a plan of a robot"));
+  EXPECT_THAT(refused(folder.write("b.json", "{\"schema\": \"posewright/plan/1\"}"), {}), HasSubstr("is not a plan"));
+  EXPECT_THAT(refused(folder.write("c.json", "[]"), {}), HasSubstr("is not a plan"));
+  const auto plan = folder.write("plan.json", plan_json(plan_problem(problem, {}, Monitor{})));
+  ReportOptions options;
+  options.sizes = options.candidates = false;
+  options.route = folder.write("r.json", "{}");
+  EXPECT_THAT(refused(plan, options), HasSubstr("is not a route"));
+  options.route = folder.write("s.json", R"({"names": ["joint_1"], "poses": [], "seconds": {"settle": 0}})");
+  EXPECT_THAT(refused(plan, options), HasSubstr("does not fit the plan: no coordinate joint_1"));
+}
+
+/// Lengths of the segments of a line.
+std::vector<double> lengths(const Polyline& line) {
+  std::vector<double> result;
+  for (std::size_t i = 1; i < line.size(); ++i) result.push_back((line[i] - line[i - 1]).norm());
+  return result;
+}
+
+DrawnPose drawn(const Problem& problem, std::vector<double> q) {
+  const auto cell = make_cell(problem);
+  q.resize(cell->model->coordinates().size());
+  return Drawing(problem, *cell).at(q);
+}
+
+TEST(Drawing, LegsOfASixPusAreAsLongAsTheModelSays) {
+  const Problem problem = read_problem(examples / "telescope" / "problem.yaml");
+  const DrawnPose pose = drawn(problem, {1e-4, -2e-4, 3e-4, 1e-3, -5e-4, 2e-4});
+  const auto& spec = std::get<SixLegsSpec>(problem.robot);
+  ASSERT_EQ(pose.lines.size(), 8U) << "six legs and two rims";
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(lengths(pose.lines[i])[1], spec.legs[i].l, 1e-12);
+    EXPECT_LT((pose.lines[i].back() - pose.lines[7][i]).norm(), 1e-12) << "ends on the platform's rim";
+  }
+}
+
+TEST(Drawing, ArmsOfADeltaAndAFiveBarAreAsLongAsTheModelSays) {
+  const Problem delta = read_problem(examples / "delta" / "problem.yaml");
+  const auto& spec = std::get<DeltaSpec>(delta.robot);
+  const Eigen::Vector3d centre = (spec.lower + spec.upper) / 2 + Eigen::Vector3d(0.02, -0.03, 0);
+  const DrawnPose pose = drawn(delta, {centre.x(), centre.y(), centre.z()});
+  ASSERT_EQ(pose.lines.size(), 5U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(lengths(pose.lines[i])[0], spec.arm, 1e-12);
+    EXPECT_NEAR(lengths(pose.lines[i])[1], spec.forearm, 1e-12);
+  }
+  const Problem five_bar = read_problem(examples / "five_bar" / "problem.yaml");
+  const auto& legs = std::get<FiveBarSpec>(five_bar.robot);
+  const DrawnPose point = drawn(five_bar, {(legs.x_lower + legs.x_upper) / 2, (legs.y_lower + legs.y_upper) / 2});
+  ASSERT_EQ(point.lines.size(), 3U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(lengths(point.lines[i])[0], legs.legs[i].proximal, 1e-12);
+    EXPECT_NEAR(lengths(point.lines[i])[1], legs.legs[i].distal, 1e-12);
+  }
+}
+
+TEST(Drawing, ArmEndsAtTheToolAndCarriesItsTargets) {
+  const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
+  const auto cell = make_cell(problem);
+  const Drawing drawing(problem, *cell);
+  const std::vector<double> q = {0.3, -1.2, 0.8, 0.4, -0.6, 1.0};
+  const DrawnPose pose = drawing.at(q);
+  const Eigen::Isometry3d tool = cell->model->tool_pose(q);
+  ASSERT_EQ(pose.lines.size(), 1U);
+  EXPECT_LT((pose.lines[0].back() - tool.translation()).norm(), 1e-12);
+  ASSERT_EQ(pose.targets.size(), drawing.targets().size());
+  const auto& targets = std::get<PointsMeasurement>(problem.measurement.instrument).targets;
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    EXPECT_LT((*pose.targets[i] - tool * targets[i].position).norm(), 1e-12);
+}
+
+TEST(Drawing, AThinnedMeshKeepsItsPlace) {
+  TriangleMesh sphere;
+  constexpr int rings = 100, sectors = 200;
+  for (int i = 0; i <= rings; ++i)
+    for (int j = 0; j < sectors; ++j) {
+      const double a = M_PI * i / rings, b = 2 * M_PI * j / sectors;
+      sphere.vertices.emplace_back(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+    }
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sectors; ++j) {
+      const int a = i * sectors + j, b = i * sectors + (j + 1) % sectors;
+      sphere.triangles.push_back({a, b, a + sectors});
+      sphere.triangles.push_back({b, b + sectors, a + sectors});
+    }
+  const TriangleMesh thin = thinned(sphere, 3000);
+  EXPECT_LE(thin.triangles.size(), 3000U);
+  EXPECT_GE(thin.triangles.size(), 500U);
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : thin.vertices) {
+    EXPECT_NEAR(v.norm(), 1.0, 1e-12) << "vertices are the mesh's own";
+    box.extend(v);
+  }
+  EXPECT_NEAR(box.sizes().minCoeff(), 2.0, 0.1);
+}
+
+}  // namespace
+}  // namespace posewright

@@ -1,0 +1,102 @@
+// Virtual experiments through the whole pipeline.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/study/variant.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/tasks/compare_problem.hpp"
+#include "posewright/tasks/simulate_problem.hpp"
+#include "posewright/workspace/candidates.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/pose_lists.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+SimulateOptions quick(const std::string& variant, int draws) {
+  SimulateOptions options;
+  options.variant = variant;
+  options.validation = 10;
+  options.experiment.draws = draws;
+  return options;
+}
+
+TEST(Simulate, ArmIsAsPredictedAtThePlacesToo) {
+  const Problem problem = example("kr270/problem.yaml");
+  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 18)), quick("geometric", 200), Monitor{});
+  EXPECT_EQ(s.summary.fitted, 200);
+  EXPECT_EQ(s.readings, 18 * 9);
+  ASSERT_TRUE(s.accuracy);
+  EXPECT_EQ(s.accuracy->places, 10);
+  EXPECT_FALSE(s.accuracy->test_poses);
+  EXPECT_NEAR(s.accuracy->observed / s.accuracy->predicted, 1, 0.1);
+  EXPECT_LT(s.curvature.largest, curvature_limit);
+  EXPECT_THAT(s.first_readings, HasSubstr("P1.x"));
+}
+
+TEST(Simulate, OtherNominalValuesBiasTheEstimatesAsComparingSays) {
+  const Problem problem = example("telescope/problem.yaml");
+  const auto list = list_of(problem, 20);
+  SimulateOptions options = quick("linear", 60);
+  options.truth = "matrix";
+  options.truth_nominal = true;
+  options.experiment.exact = true;
+  const Simulation s = simulate_problem(problem, poses_given(list), options, Monitor{});
+  EXPECT_FALSE(s.confirmed);
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("readings come from matrix")));
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("power")));
+  CompareOptions compare;
+  compare.variants = {"linear", "matrix"};
+  compare.plan.candidates = 200;
+  compare.plans.push_back({"list", poses_given(list)});
+  const Comparison c = compare_problem(problem, compare, Monitor{});
+  const auto alias =
+      std::find_if(c.aliases.begin(), c.aliases.end(), [](const auto& a) { return a.fitted == "linear"; });
+  ASSERT_NE(alias, c.aliases.end());
+  ASSERT_EQ(alias->parameters.size(), s.parameters.size());
+  for (std::size_t j = 0; j < s.parameters.size(); ++j) {
+    const ParameterErrors& e = *s.parameters[j].errors;
+    EXPECT_NEAR(e.bias, alias->parameters[j].shift, 5 * e.bias_error + 0.1 * std::abs(alias->parameters[j].shift))
+        << s.parameters[j].label.name;
+  }
+}
+
+TEST(Simulate, SaysWhereThePredictionCannotHold) {
+  const Problem problem = example("telescope/problem.yaml");
+  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 20)), quick("rigid", 30), Monitor{});
+  EXPECT_FALSE(s.confirmed);
+  EXPECT_GT(s.curvature.largest, curvature_limit);
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("not linear within its own uncertainty")));
+}
+
+TEST(Simulate, VariantsOfOtherCataloguesAreComparedByReadingsAlone) {
+  const Problem problem = example("kr270/problem.yaml");
+  SimulateOptions options = quick("geometric", 20);
+  options.truth = "denavit_hartenberg";
+  options.candidates = 200;
+  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 18)), options, Monitor{});
+  EXPECT_FALSE(s.parameters.front().errors);
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("do not share one catalogue")));
+  ASSERT_TRUE(s.accuracy);
+  EXPECT_GT(s.accuracy->observed, 0);
+  options.truth_nominal = true;
+  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 18)), options, Monitor{}), CannotDo);
+}
+
+TEST(Simulate, RefusesWhatDoesNotDetermineTheParameters) {
+  const Problem problem = example("kr270/problem.yaml");
+  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 3)), quick("geometric", 5), Monitor{}), CannotDo);
+  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 18)), quick("none", 5), Monitor{}), InputError);
+}
+
+}  // namespace
+}  // namespace posewright

@@ -158,7 +158,7 @@ and has exactly the plan's.)")
       .def("jacobians", &jacobians, py::arg("configurations"),
            "(G, covariance): identification Jacobians n × r × m, not whitened, and the covariance n × r × r of the "
            "residual.")
-      .def("candidates", &candidates, py::arg("count") = 10000, py::kw_only(), py::arg("seed") = 0,
+      .def("candidates", &candidates, py::arg("count") = default_candidates, py::kw_only(), py::arg("seed") = 0,
            py::arg("threads") = 0, py::arg("progress") = py::none(),
            "Feasible configurations, N × n: those that a plan with the same seed chooses from.")
       .def("__repr__", [](const GivenModel& g) {

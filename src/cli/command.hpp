@@ -56,6 +56,11 @@ CommonOptions common_values(const po::variables_map& values);
 /// An option with a value, called `name` in the help.
 inline po::typed_value<std::string>* text(const char* name) { return po::value<std::string>()->value_name(name); }
 
+/// "what it is (default)", for the help.
+inline std::string help_with_default(const std::string& what, int standard) {
+  return what + " (" + std::to_string(standard) + ")";
+}
+
 /// The one positional argument, or an error that names it.
 std::string single(const Words& positional, const std::string& what);
 

@@ -24,9 +24,10 @@ po::options_description evaluate_command_options() {
       ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
       ("criterion", text("NAME"), ("what counts: " + criterion_names() + " (o1)").c_str())            //
       ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())      //
-      ("candidates", text("n"), "feasible configurations to compare with (10000)")                    //
-      ("restarts", text("k"), "starts of a search (10)")                                              //
-      ("time-limit", text("S"), "stop searching after S seconds")                                     //
+      ("candidates", text("n"),
+       help_with_default("feasible configurations to compare with", default_candidates).c_str())  //
+      ("restarts", text("k"), "starts of a search (10)")                                          //
+      ("time-limit", text("S"), "stop searching after S seconds")                                 //
       ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;

@@ -14,13 +14,14 @@ namespace {
 
 po::options_description plan_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                               //
-      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")                   //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                                       //
-      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")                  //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())                       //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                                   //
-      ("candidates", text("n"), "feasible configurations to choose from (10000)")                                     //
+  options.add_options()                                                                               //
+      ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")   //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                       //
+      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
+      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())       //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                   //
+      ("candidates", text("n"),
+       help_with_default("feasible configurations to choose from", default_candidates).c_str())                       //
       ("candidates-from", text("FILE"), "choose among these configurations instead (CSV, plan.json, measured data)")  //
       ("validation", text("k"),
        "k more poses to judge the calibration by: plan-validation.json, poses-validation.csv")  //

@@ -34,9 +34,10 @@ po::options_description simulate_command_options() {
       ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                                      //
       ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                                        //
       ("validation", text("k"), "random places to check where there are no test poses (50)")                          //
-      ("candidates", text("n"), "configurations that choose the parameters of auto (10000)")                          //
-      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                                //
-      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                                  //
+      ("candidates", text("n"),
+       help_with_default("configurations that choose the parameters of auto", default_candidates).c_str())  //
+      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                      //
+      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                        //
       ("force", "replace a file that posewright did not write");
   options.add(problem_options());
   return options;

@@ -20,8 +20,9 @@ po::options_description stations_command_options() {
       ("poses", text("N"), "number of poses (design: poses)")                               //
       ("variant", text("V"), "model variant (design: variant, else the first)")             //
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())(
-          "candidates", text("n"), "feasible configurations of the full plans (10000)")  //
-      ("restarts", text("k"), "starts of the search of the full plans (10)")             //
+          "candidates", text("n"),
+          help_with_default("feasible configurations of the full plans", default_candidates).c_str())  //
+      ("restarts", text("k"), "starts of the search of the full plans (10)")                           //
       ("time-limit", text("S"), "give up after S seconds");
   options.add(problem_options());
   return options;

@@ -101,6 +101,24 @@ struct Arm {
 };
 void PrintTo(const Arm& arm, std::ostream* out) { *out << arm.name; }
 
+struct Routed {
+  Plan plan;
+  Route route;
+  PoseSequence sequence;
+};
+
+/// Planned, routed from home, and asked of the robot, as a program would take it.
+Routed routed(const Problem& problem, const TemporaryFolder& folder) {
+  Routed result;
+  result.plan = plan_problem(problem, {}, Monitor{});
+  RouteOptions options;
+  options.from_home = true;
+  const PoseSource poses = poses_in_file(folder.write("plan.json", plan_json(result.plan)));
+  result.route = route_problem(problem, poses, options, Monitor{});
+  result.sequence = checked_sequence(problem, parse_sequence(route_json(result.route), "route.json"));
+  return result;
+}
+
 /// States that are asked of in each arm's motions; POSEWRIGHT_SCAN sets it.
 long states_asked() {
   const char* const given = std::getenv("POSEWRIGHT_SCAN");
@@ -159,12 +177,7 @@ TEST_P(ProgramsOfRealArms, DoWhatTheRouteDoesAndNothingComesNearOnTheWay) {
   if (!fs::exists(robots_)) GTEST_SKIP() << "the folder of shared robots is absent";
   const TemporaryFolder folder;
   const Problem problem = this->problem(folder);
-  const Plan plan = plan_problem(problem, {}, Monitor{});
-  RouteOptions options;
-  options.from_home = true;
-  const Route route =
-      route_problem(problem, poses_in_file(folder.write("plan.json", plan_json(plan))), options, Monitor{});
-  const PoseSequence sequence = checked_sequence(problem, parse_sequence(route_json(route), "route.json"));
+  const auto [plan, route, sequence] = routed(problem, folder);
   const Moves planned = wanted(route);
   for (const Controller& controller : controllers) {
     ExportOptions words;
@@ -230,12 +243,7 @@ TEST_P(TrajectoriesOfRealArms, OfSevenAxesKeepSoftLimitsSpeedsAndTheCell) {
   if (!fs::exists(robots_)) GTEST_SKIP() << "the folder of shared robots is absent";
   const TemporaryFolder folder;
   const Problem problem = this->problem(folder);
-  const Plan plan = plan_problem(problem, {}, Monitor{});
-  RouteOptions options;
-  options.from_home = true;
-  const Route route =
-      route_problem(problem, poses_in_file(folder.write("plan.json", plan_json(plan))), options, Monitor{});
-  const PoseSequence sequence = checked_sequence(problem, parse_sequence(route_json(route), "route.json"));
+  const auto [plan, route, sequence] = routed(problem, folder);
   const auto [points, times] = points_of(export_poses(find_pose_format("joint-trajectory"), sequence, {}));
   const Moves planned = wanted(route);
   // Between stops a trajectory has points of its own: those of the route come in their order.
@@ -302,12 +310,7 @@ TEST(Programs, OfAParallelogramKeepTheControllersRangesAndTheCellOnEveryWay) {
                             "0.1], at: [0, 0, -0.1]}}]}}}}\n"
                             "design: {{poses: 14, candidates: 100, restarts: 1, method: greedy}}\n",
                             settings.string())));
-  const Plan plan = plan_problem(problem, {}, Monitor{});
-  RouteOptions options;
-  options.from_home = true;
-  const Route route =
-      route_problem(problem, poses_in_file(folder.write("plan.json", plan_json(plan))), options, Monitor{});
-  const PoseSequence sequence = checked_sequence(problem, parse_sequence(route_json(route), "route.json"));
+  const auto [plan, route, sequence] = routed(problem, folder);
   ExportOptions words;
   words.controller = parse_controller_settings(
       "coupling: -1\nrange_deg: [[-180, 180], [-100, 110], [-60, 65], [-200, 200], [-120, 120], [-400, 400]]\n", "c");

@@ -14,6 +14,10 @@
 
 namespace posewright {
 
+/// Feasible configurations that a plan chooses from, and that a variant's columns are judged by, unless something else
+/// is said.
+inline constexpr int default_candidates = 10000;
+
 /// What the columns are divided by where a criterion or an index depends on it.
 enum class Scaling { tolerance, norm, none };
 
@@ -70,7 +74,7 @@ struct DesignSpec {
   std::optional<Located<int>> poses;
   bool smallest = false;  ///< poses: auto
   RequirementSpec require;
-  Located<int> candidates{10000, 0};
+  Located<int> candidates{default_candidates, 0};
   std::optional<std::filesystem::path> candidates_from;  ///< a user's list in place of drawn ones
   Located<int> restarts{10, 0};
   Repeats repeats;

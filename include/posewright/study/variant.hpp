@@ -40,7 +40,7 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
 struct VariantOptions {
   std::string variant;                  ///< empty = as in the file
   std::vector<std::string> parameters;  ///< columns to keep, by name; empty = all that can be identified
-  int candidates = 10000;  ///< configurations that tell which columns of an `auto` variant can be identified
+  int candidates = default_candidates;  ///< that decide which columns of an `auto` variant can be identified
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -38,7 +38,7 @@ struct Configurations {
 };
 
 struct SamplingOptions {
-  std::size_t count = 10000;  ///< wanted
+  std::size_t count = default_candidates;  ///< wanted
   std::uint64_t seed = 0;
   int threads = 0;
   /// Draws given up after, so that a workspace that is (almost) empty ends with a message.

@@ -145,10 +145,7 @@ MadeComparison compare(const Shared& problem, const py::dict& plans, const std::
     throw InputError({}, "poses, method and restarts are for plans that are searched", "leave them out, or the plans");
   options.plan.poses = optional_number(poses, "poses", most_poses);
   options.plan.method = method;
-  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
-  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
-  options.plan.seed = seed_of(seed);
-  options.plan.threads = checked("threads", threads, 0, most_threads);
+  set_search(options.plan, candidates, restarts, seed, threads);
   return MadeComparison::of(problem, options, {}, std::move(progress), compare_problem);
 }
 
@@ -162,10 +159,7 @@ MadeStations stations(const Shared& problem, const py::object& choose, long long
   options.plan.poses = optional_number(poses, "poses", most_poses);
   options.plan.variant = variant;
   options.plan.criterion = criterion;
-  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
-  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
-  options.plan.seed = seed_of(seed);
-  options.plan.threads = checked("threads", threads, 0, most_threads);
+  set_search(options.plan, candidates, restarts, seed, threads);
   return MadeStations::of(problem, options, time_limit, std::move(progress), place_stations);
 }
 

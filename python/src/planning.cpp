@@ -28,8 +28,7 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
   options.criterion = criterion;
   options.method = method;
   options.variant = variant;
-  options.candidates = optional_number(candidates, "candidates", most_candidates);
-  options.restarts = optional_number(restarts, "restarts", most_restarts);
+  set_search(options, candidates, restarts, seed, threads);
   options.repeats = repeats_of(repeats);
   if (const std::string text = choice(scaling, "scaling", {"tolerance", "norm", "none"}); !text.empty())
     options.scaling = scaling_of(text);
@@ -37,8 +36,6 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
     options.prior = text == "tolerance";
   options.reserve = reserve;
   if (!measured.is_none()) options.measured = pose_source(measured);
-  options.seed = seed_of(seed);
-  options.threads = checked("threads", threads, 0, most_threads);
   Plan result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
@@ -60,10 +57,7 @@ PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, 
   options.plan.variant = variant;
   options.plan.criterion = criterion;
   options.plan.method = method;
-  options.plan.candidates = optional_number(candidates, "candidates", most_candidates);
-  options.plan.restarts = optional_number(restarts, "restarts", most_restarts);
-  options.plan.seed = seed_of(seed);
-  options.plan.threads = checked("threads", threads, 0, most_threads);
+  set_search(options.plan, candidates, restarts, seed, threads);
   const PoseSource source = pose_source(poses, format);
   PoseListEvaluation result;
   Watch watch(time_limit, std::move(progress));

@@ -39,15 +39,12 @@ class Solids {
 };
 
 /// A rod or a finger that moves with the arm cannot be checked where it hangs at zero.
-void refuse_moving_branches(const Problem& problem) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  if (arm == nullptr) return;
-  for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line)))
-    if (!link.follower.empty())
-      throw InputError({arm->urdf.string(), link.line},
-                       "link '" + link.name + "' is moved by joint '" + link.follower +
-                           "', which follows the chain from a branch; such shapes are not checked for collision yet",
-                       "remove its <collision>, or choose a tip whose chain has the joint");
+void refuse_moving_branch(const BodyShape& shape) {
+  if (!shape.follower.empty())
+    throw InputError(shape.place,
+                     "link '" + shape.name + "' is moved by joint '" + shape.follower +
+                         "', which follows the chain from a branch; such shapes are not checked for collision yet",
+                     "remove its <collision>, or choose a tip whose chain has the joint");
 }
 
 }  // namespace
@@ -59,7 +56,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
     for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line))) {
       for (const LinkShape& s : link.shapes)
         shapes.push_back({link.name, "", link.parent, BodyShape::Kind::link, link.frame, s.X_FrameShape, s.shape,
-                          SourcePlace{arm->urdf.string(), link.line}});
+                          SourcePlace{arm->urdf.string(), link.line}, link.follower});
       if (link.frame == tip_frame) last_link = link.name;
     }
   if (!problem.workspace.collision) return shapes;
@@ -73,12 +70,13 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
 }
 
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames) {
-  refuse_moving_branches(problem);
   Solids solids(problem, problem.workspace.collision->hulls);
   std::vector<Body> bodies;
-  for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip()))
+  for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip())) {
+    refuse_moving_branch(s);
     bodies.push_back({s.name, s.station, s.parent, s.kind == BodyShape::Kind::obstacle, s.kind == BodyShape::Kind::tool,
                       s.frame, s.X_FrameBody, solids.of(s.shape, s.place)});
+  }
   return bodies;
 }
 

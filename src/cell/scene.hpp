@@ -62,6 +62,7 @@ struct BodyShape {
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   ShapeSpec shape;
   SourcePlace place;
+  std::string follower{};  ///< see LinkGeometry
 };
 /// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);

@@ -31,11 +31,11 @@ po::options_description calibrate_command_options() {
       ("validate", text("FILE"), "more data, not fitted, to judge the result by")            //
       ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")         //
       ("in-steps", "identify base and tool, geometry and stiffness one after the other, too");
-  options.add_options()                                                                                              //
-      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")        //
-      ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, where the data have them")  //
-      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                      //
-      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")                  //
+  options.add_options()                                                                                           //
+      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")     //
+      ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, if the data have them")  //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                   //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")               //
       ("force", "replace files that posewright did not write; write what predicts worse than base and tool alone");
   options.add(problem_options());
   return options;

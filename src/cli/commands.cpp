@@ -22,7 +22,7 @@ po::options_description common_options() {
       ("threads", text("T"), "threads (all); never changes a result")  //
       ("json", "result as JSON on stdout, nothing else there")         //
       ("quiet", "no progress")                                         //
-      ("verbose", "progress also where stderr is not a terminal")      //
+      ("verbose", "progress also if stderr is not a terminal")         //
       ("help", "this text");
   return options;
 }

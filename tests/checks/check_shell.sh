@@ -3,4 +3,4 @@
 set -eu
 cd "$1"
 command -v shellcheck >/dev/null || { echo "Skipped: shellcheck is missing (scripts/setup test installs it)."; exit 77; }
-shellcheck .ci/run scripts/* bench/*.sh tests/checks/*.sh
+grep -l '^#!.*sh$' .ci/run scripts/* bench/*.sh tests/checks/*.sh | xargs shellcheck

@@ -16,7 +16,6 @@ QUICK = "--candidates 100 --method exchange --restarts 1"
 SLOW = {
     "posewright plan examples/kr270/problem.yaml -o": "--time-limit 3",
     "posewright plan examples/kr270/problem.yaml --poses 18": "--time-limit 3",
-    "posewright plan examples/cell/problem.yaml": "--method exchange --candidates 40 --restarts 1",
     "posewright stations examples/cell/problem.yaml": "--candidates 20 --restarts 1 --full 0",
     "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix": QUICK,
     "posewright evaluate examples/": QUICK,
@@ -25,7 +24,6 @@ SLOW = {
     "posewright simulate examples/telescope/problem.yaml rigid.json": "--draws 20",
     "posewright plan problem.yaml --parameters": "--time-limit 3",
     "posewright plan problem.yaml --poses 12 --candidates-from": "--time-limit 3",
-    "posewright select my_jacobians.npy": "--time-limit 3",
     "posewright select blocks.npy": "--time-limit 3",
 }
 
@@ -38,7 +36,6 @@ ROUTED = f"posewright plan examples/cell/problem.yaml {QUICK} -o plan.json\npose
 
 # What the reader of a page has before its first command.
 BEFORE = {
-    "README.md": BLOCKS.format("my_jacobians.npy"),
     "docs/calibrate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + READINGS.format("later.csv --seed 2"),
     "docs/commands.md": OWN + BLOCKS.format("blocks.npy") + KR270 + " --poses 40\n" + READINGS.format("measured.csv")
     + READINGS.format("more.csv --seed 2") + f"posewright plan examples/kr270/problem.yaml {QUICK} --poses 20 -o - --poses-csv data.csv\n",
@@ -55,6 +52,7 @@ BEFORE = {
 FIRST = {"posewright stations examples/cell": "sed -i 's/reachable: true/reachable: false/' examples/cell/problem.yaml\n"}
 # What a page's reader has only by then: in front of the command that begins so.
 BETWEEN = {
+    ("README.md", "posewright calibrate"): READINGS.format("measured.csv"),
     ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
     ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
     ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),

@@ -12,6 +12,7 @@
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/random.hpp"
+#include "tests/kit/residuals.hpp"
 
 namespace posewright {
 namespace {

@@ -2,9 +2,11 @@
 // measured.csv, calibration.json and parameters.yaml.
 #include <iostream>
 #include <posewright/lists/parameters_file.hpp>
+#include <posewright/lists/read_poses.hpp>
 #include <posewright/model/variant.hpp>
 #include <posewright/problem/read_problem.hpp>
 #include <posewright/results/calibration.hpp>
+#include <posewright/study/variant.hpp>
 #include <posewright/support/error.hpp>
 #include <posewright/support/file.hpp>
 #include <posewright/support/json.hpp>
@@ -19,8 +21,9 @@ int main(int count, char** words) {
     const posewright::Problem problem = posewright::read_problem(words[1]);
     posewright::SimulateOptions simulate;
     simulate.experiment.draws = 2;
+    const posewright::PoseList poses = posewright::read_poses(words[2], posewright::pose_coordinates(problem));
     const posewright::Simulation virtual_robot =
-        posewright::simulate_problem(problem, posewright::poses_in_file(words[2]), simulate, posewright::Monitor{});
+        posewright::simulate_problem(problem, poses, simulate, posewright::Monitor{});
     posewright::write_file_atomically("measured.csv", virtual_robot.first_readings);
 
     posewright::CalibrateOptions options;

@@ -48,7 +48,7 @@ Configurations configurations_of(const GivenModel& model, const py::object& pose
   const std::vector<Coordinate>& coordinates = model.variant.workspace->coordinates();
   Configurations result;
   result.dimension = int(coordinates.size());
-  for (const auto& q : pose_source(poses)(coordinates).configurations)
+  for (const auto& q : pose_list(poses, coordinates).configurations)
     result.values.insert(result.values.end(), q.begin(), q.end());
   return result;
 }

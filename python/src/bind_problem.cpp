@@ -3,6 +3,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
@@ -87,11 +88,11 @@ std::optional<fs::path> file_name(const py::object& value) {
   return value.cast<fs::path>();
 }
 
-PoseSource pose_source(const py::object& poses, const std::string& format) {
-  if (const auto file = file_name(poses)) return poses_in_file(*file, format);
+PoseList pose_list(const py::object& poses, const std::vector<Coordinate>& coordinates, const std::string& format) {
+  if (const auto file = file_name(poses)) return read_poses(*file, coordinates, format);
   if (!format.empty()) throw InputError({}, "format is '" + format + "'", "it belongs to the name of a pose list");
-  if (py::isinstance<Plan>(poses)) return poses_of(poses.cast<const Plan&>());
-  return poses_given(rows_of(poses, "configurations"));
+  if (py::isinstance<Plan>(poses)) return poses_of(poses.cast<const Plan&>(), coordinates);
+  return poses_given(rows_of(poses, "configurations"), coordinates);
 }
 
 void bind_problem(py::module_& m) {

@@ -125,10 +125,10 @@ MadeSimulation simulate(const Shared& problem, const py::object& poses, const st
   options.validation = checked("validation", validation, 1, most_poses);
   experiment.seed = seed_of(seed);
   experiment.threads = checked("threads", threads, 0, most_threads);
-  const PoseSource source = pose_source(poses, format);
+  const PoseList list = pose_list(poses, coordinates_of(*problem, variant), format);
   return MadeSimulation::of(problem, options, time_limit, std::move(progress),
                             [&](const Problem& p, const SimulateOptions& o, const Monitor& monitor) {
-                              return simulate_problem(p, source, o, monitor);
+                              return simulate_problem(p, list, o, monitor);
                             });
 }
 
@@ -139,10 +139,12 @@ MadeComparison compare(const Shared& problem, const py::dict& plans, const std::
   CompareOptions options;
   options.variants = variants;
   options.truth = truth;
-  for (const auto& [name, list] : plans)
-    options.plans.push_back({py::cast<std::string>(name), pose_source(py::reinterpret_borrow<py::object>(list))});
-  if (!options.plans.empty() && (!poses.is_none() || !method.empty() || !restarts.is_none()))
+  if (!plans.empty() && (!poses.is_none() || !method.empty() || !restarts.is_none()))
     throw InputError({}, "poses, method and restarts are for plans that are searched", "leave them out, or the plans");
+  const std::vector<Coordinate> coordinates = coordinates_of(*problem, variants.empty() ? "" : variants.front());
+  for (const auto& [name, list] : plans)
+    options.plans.push_back(
+        {py::cast<std::string>(name), pose_list(py::reinterpret_borrow<py::object>(list), coordinates)});
   options.plan.poses = optional_number(poses, "poses", most_poses);
   options.plan.method = method;
   set_search(options.plan, candidates, restarts, seed, threads);

@@ -56,7 +56,11 @@ auto with_places(const GivenProblem& problem, Work&& work) {
 /// None where the value is not text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);
 /// A Plan, a file's name (with the format of a list that another program wrote), or an array of configurations.
-PoseSource pose_source(const py::object& poses, const std::string& format = "");
+/// What lists of this problem are read with.
+inline std::vector<Coordinate> coordinates_of(const GivenProblem& given, const std::string& variant = "") {
+  return with_places(given, [&] { return pose_coordinates(given.problem, variant); });
+}
+PoseList pose_list(const py::object& poses, const std::vector<Coordinate>& coordinates, const std::string& format = "");
 /// The kept columns of a plan's variant.
 std::vector<std::string> kept_parameters(const Plan& plan, const std::string& variant);
 

@@ -2,6 +2,7 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/repeats.hpp"
@@ -22,7 +23,6 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
           long long threads, Limit time_limit, py::object progress) {
   PlanOptions options;
   options.truth = truth;
-  if (!candidates_from.is_none()) options.candidates_from = pose_source(candidates_from);
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
   else options.poses = optional_number(poses, "poses", most_poses);
   options.criterion = criterion;
@@ -35,7 +35,11 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
   if (const std::string text = choice(prior, "prior", {"none", "tolerance"}); !text.empty())
     options.prior = text == "tolerance";
   options.reserve = reserve;
-  if (!measured.is_none()) options.measured = pose_source(measured);
+  if (!measured.is_none() || !candidates_from.is_none()) {
+    const std::vector<Coordinate> coordinates = coordinates_of(given, variant);
+    if (!measured.is_none()) options.measured = pose_list(measured, coordinates);
+    if (!candidates_from.is_none()) options.candidates_from = pose_list(candidates_from, without_limits(coordinates));
+  }
   Plan result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
@@ -58,12 +62,12 @@ PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, 
   options.plan.criterion = criterion;
   options.plan.method = method;
   set_search(options.plan, candidates, restarts, seed, threads);
-  const PoseSource source = pose_source(poses, format);
+  const PoseList list = pose_list(poses, coordinates_of(given, variant), format);
   PoseListEvaluation result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        result = with_places(given, [&] { return evaluate_problem(given.problem, source, options, monitor); });
+        result = with_places(given, [&] { return evaluate_problem(given.problem, list, options, monitor); });
       },
       OnInterrupt::raise);
   return result;
@@ -103,12 +107,12 @@ Route route(const GivenProblem& given, const py::object& poses, const std::strin
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
   if (from_home && options.start) throw InputError({}, "start stands beside from_home", "one of both is allowed");
-  const PoseSource source = pose_source(poses, format);
+  const PoseList list = pose_list(poses, coordinates_of(given), format);
   Route result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        result = with_places(given, [&] { return route_problem(given.problem, source, options, monitor); });
+        result = with_places(given, [&] { return route_problem(given.problem, list, options, monitor); });
       },
       OnInterrupt::raise);
   return result;

@@ -42,14 +42,6 @@ TriangleMesh on_grid(const TriangleMesh& mesh, const Eigen::Vector3d& corner, do
   return result;
 }
 
-/// Targets that the instrument looks at, in the tip's frame.
-std::vector<TargetSpec> targets_of(const MeasurementSpec& measurement) {
-  if (const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument)) return points->targets;
-  if (const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument)) return distance->targets;
-  if (const auto* pose = std::get_if<PoseMeasurement>(&measurement.instrument)) return pose->photogrammetry;
-  return {};
-}
-
 }  // namespace
 
 TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
@@ -95,7 +87,7 @@ void Drawing::add_bodies(const Problem& problem) {
 }
 
 void Drawing::add_instrument(const Problem& problem, const Cell& cell) {
-  for (const TargetSpec& target : targets_of(problem.measurement)) {
+  for (const TargetSpec& target : view_of(problem.measurement).targets) {
     target_names_.push_back(target.name);
     targets_.push_back(target.position);
   }

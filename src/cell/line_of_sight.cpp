@@ -49,51 +49,41 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
       // What nobody asked for is not judged: places only.
       collision_(problem.workspace.line_of_sight ? collision : nullptr),
       judges_(problem.workspace.line_of_sight.has_value()) {
-  const auto& instrument = problem.measurement.instrument;
-  std::vector<StationSpec> stations = spec_.stations;
-  if (const auto* points = std::get_if<PointsMeasurement>(&instrument)) {
-    if (!stations.empty())
-      throw InputError(problem.at(spec_.line), "workspace.line_of_sight.stations stands beside the device's own",
-                       "stations of trackers belong to measurement.device");
-    stations = points->stations;
-    add_points(points->targets);
-  } else if (const auto* pose = std::get_if<PoseMeasurement>(&instrument)) {
-    all_stations_ = true;
-    add_points(pose->photogrammetry);
-  } else if (const auto* camera = std::get_if<CameraMeasurement>(&instrument)) {
-    stations = {{"camera", camera->camera}};
-    station_on_tip_ = camera->on_hand;
-    add_board(*camera);
-  }
-  const bool is_camera = std::holds_alternative<CameraMeasurement>(instrument);
-  if (!spec_.axis) spec_.axis = is_camera ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
-  for (const StationSpec& station : stations) {
-    station_names_.push_back(station.name);
-    // The camera's own parameters are camera.*, those of trackers station.NAME.*.
-    X_CarrierStation_.push_back(nominal_placement(model.parameters(), is_camera ? "camera" : "station." + station.name,
-                                                  isometry(station.placement)));
-  }
+  const InstrumentView view = view_of(problem.measurement);
+  if (view.has_places && !spec_.stations.empty())
+    throw InputError(problem.at(spec_.line), "workspace.line_of_sight.stations stands beside the device's own",
+                     "stations of trackers belong to measurement.device");
+  all_stations_ = view.all_places;
+  station_on_tip_ = view.places_on_tip;
+  if (!spec_.axis) spec_.axis = view.axis;
+  std::vector<InstrumentView::Place> places = view.places;
+  for (const StationSpec& station : spec_.stations)
+    places.push_back({station, "station." + station.name, "station " + station.name});
+  for (const InstrumentView::Place& place : places) add_station(place);
+  add_points(view);
   for (std::size_t i = 0; i < model.coordinates().size(); ++i)
     if (model.coordinates()[i].choice() && model.coordinates()[i].name == "station") station_coordinate_ = int(i);
   for (const TargetSpec& reference : spec_.references)
     references_.push_back({reference.name, reference.position, std::nullopt});
   add_normals(problem);
-  add_reasons();
 }
 
-void LineOfSight::add_points(const std::vector<TargetSpec>& targets) {
-  for (const TargetSpec& target : targets)
-    targets_.push_back(
-        {target.name, nominal_position(model_.parameters(), "target." + target.name, target.position), std::nullopt});
+void LineOfSight::add_station(const InstrumentView::Place& place) {
+  station_names_.push_back(place.station.name);
+  X_CarrierStation_.push_back(
+      nominal_placement(model_.parameters(), place.parameters, isometry(place.station.placement)));
+  for (const char* reason : reason_names) reasons_.push_back(std::string(reason) + " " + place.words);
 }
 
-void LineOfSight::add_board(const CameraMeasurement& camera) {
-  targets_on_tip_ = !camera.on_hand;
-  X_CarrierTarget_ = nominal_placement(model_.parameters(), "board", isometry(camera.board));
-  for (int r = 0; r < camera.rows; ++r)
-    for (int c = 0; c < camera.columns; ++c)
-      targets_.push_back({"point " + std::to_string(r + 1) + "," + std::to_string(c + 1),
-                          X_CarrierTarget_ * Eigen::Vector3d(c * camera.spacing, r * camera.spacing, 0), std::nullopt});
+void LineOfSight::add_points(const InstrumentView& view) {
+  targets_on_tip_ = view.points_on_tip;
+  if (!view.points_parameters.empty())
+    X_CarrierTarget_ = nominal_placement(model_.parameters(), view.points_parameters, isometry(view.points_at));
+  for (const InstrumentView::Point& point : view.points) {
+    Eigen::Vector3d p = point.position;
+    if (!point.parameters.empty()) p = nominal_position(model_.parameters(), point.parameters, p);
+    targets_.push_back({point.name, X_CarrierTarget_ * p, std::nullopt});
+  }
 }
 
 void LineOfSight::add_normals(const Problem& problem) {
@@ -110,12 +100,6 @@ void LineOfSight::add_normals(const Problem& problem) {
       throw InputError(problem.at(name.line), "'" + name.value + "' is not a target", "allowed: *" + names);
     }
   }
-}
-
-void LineOfSight::add_reasons() {
-  for (const std::string& station : station_names_)
-    for (const char* reason : reason_names)
-      reasons_.push_back(std::string(reason) + (station == "camera" ? " the camera" : " station " + station));
 }
 
 int LineOfSight::station_of(std::span<const double> q) const {

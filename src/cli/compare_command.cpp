@@ -2,8 +2,10 @@
 
 #include "command.hpp"
 #include "planners/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/comparison.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
@@ -26,20 +28,19 @@ po::options_description compare_command_options() {
   return options;
 }
 
-CompareOptions options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
+CompareOptions options_of(const Problem& problem, const po::variables_map& values, const Words& positional,
+                          const CommonOptions& common) {
   CompareOptions compare;
   compare.variants = variants_of(values);
   compare.truth = text_of(values, "truth");
-  if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
-  for (std::size_t i = 1; i < positional.size(); ++i)
-    compare.plans.push_back({positional[i], poses_in_file(positional[i], from)});
+  const bool given = positional.size() > 1;
   for (const char* option : {"poses", "method", "restarts"})
-    if (!compare.plans.empty() && values.count(option) > 0)
+    if (given && values.count(option) > 0)
       throw InputError({}, std::string("--") + option + " is for plans that are searched",
                        "leave it out, or the plans");
-  if (compare.plans.empty() && !from.empty())
+  if (!given && !from.empty())
     throw InputError({}, "--from is for plans that are given", "name them after the problem");
   compare.plan.poses = whole_number(values, "poses", 1, 1000000);
   compare.plan.method = text_of(values, "method");
@@ -47,13 +48,19 @@ CompareOptions options_of(const po::variables_map& values, const Words& position
   compare.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   compare.plan.seed = common.seed;
   compare.plan.threads = common.threads;
+  if (!given) return compare;
+  const std::vector<Coordinate> coordinates =
+      pose_coordinates(problem, compare.variants.empty() ? "" : compare.variants.front());
+  for (std::size_t i = 1; i < positional.size(); ++i)
+    compare.plans.push_back({positional[i], read_poses(positional[i], coordinates, from)});
   return compare;
 }
 
 int run_compare(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const CompareOptions compare = options_of(values, positional, common);
+  if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
   const Problem problem = given_problem(positional.front(), values);
+  const CompareOptions compare = options_of(problem, values, positional, common);
   const Comparison result =
       watched(common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }).result;
   print_notes(result.notes);

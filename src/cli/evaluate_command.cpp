@@ -3,8 +3,10 @@
 #include "command.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/evaluation.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "problem_source.hpp"
@@ -51,8 +53,9 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
   const Problem problem = given_problem(positional[0], values);
+  const PoseList poses = read_poses(positional[1], pose_coordinates(problem, evaluate.plan.variant), from);
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
-    return evaluate_problem(problem, poses_in_file(positional[1], from), evaluate, monitor);
+    return evaluate_problem(problem, poses, evaluate, monitor);
   });
   if (was_interrupted) return interrupted;
   print_notes(result.notes);

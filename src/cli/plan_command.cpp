@@ -3,7 +3,9 @@
 #include "command.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/repeats.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "problem_source.hpp"
@@ -56,13 +58,16 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   const std::filesystem::path list = text_of(values, "candidates-from");
   if (!list.empty() && plan_options.candidates)
     throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
-  if (!list.empty()) plan_options.candidates_from = poses_in_file(list);
   const std::filesystem::path augment = text_of(values, "augment");
-  if (!augment.empty()) plan_options.measured = poses_in_file(augment);
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = given_problem(file, values);
+  if (!list.empty() || !augment.empty()) {
+    const std::vector<Coordinate> coordinates = pose_coordinates(problem, plan_options.variant);
+    if (!augment.empty()) plan_options.measured = read_poses(augment, coordinates);
+    if (!list.empty()) plan_options.candidates_from = read_poses(list, without_limits(coordinates));
+  }
   std::vector<std::filesystem::path> inputs = files_of(problem);
   if (!augment.empty()) inputs.push_back(augment);
   if (!list.empty()) inputs.push_back(list);

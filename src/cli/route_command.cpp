@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
@@ -25,7 +27,7 @@ po::options_description route_command_options() {
       ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                  //
       ("force", "replace files that posewright did not write")                               //
       ("time-limit", text("S"), "give up after S seconds")                                   //
-      ("from", text("FORMAT"), ("format of PLAN where it is none: " + readable_format_names()).c_str());
+      ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;
 }
@@ -53,8 +55,9 @@ int run_route(const po::variables_map& values, const Words& positional) {
   std::vector<std::filesystem::path> inputs = files_of(problem);
   inputs.push_back(plan);
   check_output_files(values, {json, csv}, inputs);
+  const PoseList poses = read_poses(plan, pose_coordinates(problem), from);
   const Route route = watched(common, time_limit(values), [&](const Monitor& monitor) {
-                        return route_problem(problem, poses_in_file(plan, from), route_options, monitor);
+                        return route_problem(problem, poses, route_options, monitor);
                       }).result;
   print_notes(route.notes);
   std::vector<FileToWrite> files;

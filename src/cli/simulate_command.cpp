@@ -3,9 +3,11 @@
 #include <charconv>
 
 #include "command.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/results/simulation.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
@@ -33,7 +35,7 @@ po::options_description simulate_command_options() {
       ("missing", text("SHARE"), "share of the targets that are not read (0)")                                        //
       ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                                      //
       ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                                        //
-      ("validation", text("k"), "random places to check where there are no test poses (50)")                          //
+      ("validation", text("k"), "random places to check if there are no test poses (50)")                             //
       ("candidates", text("n"),
        help_with_default("configurations that choose the parameters of auto", default_candidates).c_str())  //
       ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                      //
@@ -113,9 +115,9 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
   std::vector<std::filesystem::path> inputs = files_of(problem);
   inputs.emplace_back(positional[1]);
   check_output_files(values, {data}, inputs);
-  const auto [result, was_interrupted] = watched(common, 0, [&](const Monitor& monitor) {
-    return simulate_problem(problem, poses_in_file(positional[1], from), simulate, monitor);
-  });
+  const PoseList poses = read_poses(positional[1], pose_coordinates(problem, simulate.variant), from);
+  const auto [result, was_interrupted] =
+      watched(common, 0, [&](const Monitor& monitor) { return simulate_problem(problem, poses, simulate, monitor); });
   print_notes(result.notes);
   if (!data.empty()) write_results({{data, result.first_readings}});
   if (common.json) fmt::print("{}", json_text(simulation_json(problem, simulate, result)));

@@ -8,6 +8,7 @@
 
 #include "posewright/calibration/rigid_fit.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
@@ -31,7 +32,7 @@ MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& fi
       model_(model),
       table_(read_csv_table(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
   index_columns();
-  if (const auto* pose = std::get_if<PoseMeasurement>(&problem.measurement.instrument)) markers_ = pose->photogrammetry;
+  if (InstrumentView view = view_of(problem.measurement); view.fits_pose) markers_ = std::move(view.targets);
   find_readings();
   read_configurations(bytes);
 }

@@ -1,22 +1,14 @@
 #include "posewright/lists/platform_images.hpp"
 
-#include <cmath>
+#include "posewright/model/instrument_view.hpp"
 
 namespace posewright {
 
 std::optional<PlatformPoints> platform_points(const Problem& problem, const IdentificationModel& model) {
   if (std::get_if<SixLegsSpec>(&problem.robot) == nullptr) return std::nullopt;
-  PlatformPoints points;
-  if (const auto* pose = std::get_if<PoseMeasurement>(&problem.measurement.instrument)) {
-    points.body = pose->photogrammetry;
-    points.noise = pose->point_sigma;
-  } else if (const auto* targets = std::get_if<PointsMeasurement>(&problem.measurement.instrument)) {
-    if (targets->components.size() < 3) return std::nullopt;
-    points.body = targets->targets;
-    const auto* noise = std::get_if<GaussianNoise>(&targets->noise);
-    if (noise == nullptr) return std::nullopt;  // another at every distance: no single shape's
-    points.noise = std::sqrt(noise->covariance.trace() / 3);
-  }
+  const InstrumentView view = view_of(problem.measurement);
+  if (!view.point_noise) return std::nullopt;  // another at every distance: no single shape's
+  PlatformPoints points{view.targets, *view.point_noise, {}};
   if (points.body.size() < 3) return std::nullopt;
   for (const Coordinate& actuator : model.actuators())
     points.joints.push_back(actuator.name.substr(0, actuator.name.rfind('.')));

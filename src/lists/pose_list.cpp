@@ -46,29 +46,29 @@ void judge_value(double& value, const Coordinate& c, const SourcePlace& place) {
 
 }  // namespace
 
-PoseSource poses_in_file(const std::filesystem::path& file, const std::string& format) {
-  return [file, format](const std::vector<Coordinate>& coordinates) { return read_poses(file, coordinates, format); };
+void require_fits(const PoseList& list, const std::vector<Coordinate>& coordinates) {
+  for (const auto& q : list.configurations)
+    if (q.size() != coordinates.size())
+      throw InputError({list.name, 0}, fmt::format("has poses of {} values", q.size()),
+                       fmt::format("{} coordinates of this problem", coordinates.size()));
 }
 
-PoseSource poses_of(const Plan& plan) {
-  return [text = plan_json(plan)](const std::vector<Coordinate>& coordinates) {
-    return read_poses_text(text, "plan", coordinates);
-  };
+PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates) {
+  return read_poses_text(plan_json(plan), "plan", coordinates);
 }
 
-PoseSource poses_given(std::vector<std::vector<double>> configurations) {
-  return [given = std::move(configurations)](const std::vector<Coordinate>& coordinates) {
-    PoseList list;
-    list.name = "configurations";
-    if (given.empty()) throw InputError({list.name, 0}, "has no poses", "at least one is needed");
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      const SourcePlace place{fmt::format("{}: pose {}", list.name, i + 1), 0};
-      std::vector<double> q = completed(given[i], coordinates, place);
-      for (std::size_t k = 0; k < q.size(); ++k) judge_value(q[k], coordinates[k], place);
-      list.configurations.push_back(std::move(q));
-    }
-    return list;
-  };
+PoseList poses_given(const std::vector<std::vector<double>>& configurations,
+                     const std::vector<Coordinate>& coordinates) {
+  PoseList list;
+  list.name = "configurations";
+  if (configurations.empty()) throw InputError({list.name, 0}, "has no poses", "at least one is needed");
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    const SourcePlace place{fmt::format("{}: pose {}", list.name, i + 1), 0};
+    std::vector<double> q = completed(configurations[i], coordinates, place);
+    for (std::size_t k = 0; k < q.size(); ++k) judge_value(q[k], coordinates[k], place);
+    list.configurations.push_back(std::move(q));
+  }
+  return list;
 }
 
 }  // namespace posewright

@@ -77,9 +77,8 @@ void ClosedChain::own_selection(std::span<const int> selected, std::vector<int>&
   }
 }
 
-bool ClosedChain::actuator_values(std::span<const double> q, std::span<const double> correction,
-                                  std::span<double> values) const {
-  return do_inverse_kinematics(q, own_part(correction), values);
+bool ClosedChain::actuator_values(const Point& at, std::span<double> values) const {
+  return do_inverse_kinematics(at.q, own_part(at.correction), values);
 }
 
 Eigen::Isometry3d ClosedChain::platform(std::span<const double> q) const {
@@ -106,25 +105,24 @@ void ClosedChain::loops(std::span<const double> q, std::span<const double> actua
   do_loops(q, actuators, own, selected, out);
 }
 
-bool ClosedChain::linearise(std::span<const double> q, std::span<const double> correction,
-                            std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
-                            Twists* reading_twists) const {
+bool ClosedChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
+                            Twists& twists, Twists* reading_twists) const {
   Scratch& s = scratch_of_this_thread();
-  const auto own = own_part(correction);
+  const auto own = own_part(at.correction);
   s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
+  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
   own_selection(selected, s.own);
-  const Eigen::Isometry3d X_BasePlatform = do_platform(q, s.freedoms);
-  loops(q, s.actuators, own, s.own, s.loops);
+  const Eigen::Isometry3d X_BasePlatform = do_platform(at.q, s.freedoms);
+  loops(at.q, s.actuators, own, s.own, s.loops);
   if (!solve_response(s)) return false;
 
   Frame<double> frame = frame_of(X_MeasureBase_);
-  const DisplacementAxes base = displace(frame, correction.empty() ? nullptr : correction.data());
+  const DisplacementAxes base = displace(frame, at.correction.empty() ? nullptr : at.correction.data());
   const Eigen::Isometry3d X_MeasureBase = isometry_of(frame);
   frame.then(X_BasePlatform);
   const std::size_t first_tool = std::size_t(first_own() + own_count_);
   const DisplacementAxes tool =
-      displace(frame, correction.size() > first_tool ? correction.data() + first_tool : nullptr);
+      displace(frame, at.correction.size() > first_tool ? at.correction.data() + first_tool : nullptr);
   X_MeasureTip = isometry_of(frame);
 
   twists.resize(6, Eigen::Index(selected.size()));
@@ -144,18 +142,17 @@ bool ClosedChain::linearise(std::span<const double> q, std::span<const double> c
   return true;
 }
 
-bool ClosedChain::sensor_rows(std::span<const double> q, std::span<const double> correction,
-                              std::span<const int> selected, Eigen::MatrixXd& rows,
+bool ClosedChain::sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,
                               Eigen::MatrixXd& reading_rows) const {
   Scratch& s = scratch_of_this_thread();
-  const auto own = own_part(correction);
+  const auto own = own_part(at.correction);
   s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
+  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
   own_selection(selected, s.own);
-  do_platform(q, s.freedoms);
-  loops(q, s.actuators, own, s.own, s.loops);
+  do_platform(at.q, s.freedoms);
+  loops(at.q, s.actuators, own, s.own, s.loops);
   if (!solve_response(s)) return false;
-  read_sensors(q, s.actuators, own, s.own, s.sensors);
+  read_sensors(at.q, s.actuators, own, s.own, s.sensors);
   rows = s.sensors.parameter + s.sensors.platform * s.response * s.loops.parameter;
   reading_rows = s.sensors.actuator + s.sensors.platform * s.response * s.loops.actuator;
   return true;
@@ -171,20 +168,18 @@ void ClosedChain::read_sensors(std::span<const double> q, std::span<const double
   do_sensors(q, actuators, own, selected, out);
 }
 
-bool ClosedChain::sensor_values(std::span<const double> q, std::span<const double> correction,
-                                Eigen::VectorXd& values) const {
+bool ClosedChain::sensor_values(const Point& at, Eigen::VectorXd& values) const {
   Scratch& s = scratch_of_this_thread();
-  const auto own = own_part(correction);
+  const auto own = own_part(at.correction);
   s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(q, own, s.actuators)) return false;
-  read_sensors(q, s.actuators, own, {}, s.sensors);
+  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
+  read_sensors(at.q, s.actuators, own, {}, s.sensors);
   values = s.sensors.value;
   return true;
 }
 
-bool ClosedChain::configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                   std::span<const double> correction, std::span<double> q) const {
-  const auto found = forward_kinematics(actuators, start, correction);
+bool ClosedChain::configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const {
+  const auto found = forward_kinematics(actuators, start);
   if (!found) return false;
   std::copy(found->begin(), found->end(), q.begin());
   return true;
@@ -196,13 +191,12 @@ void ClosedChain::do_sensors(std::span<const double>, std::span<const double>, s
 }
 
 std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<const double> actuators,
-                                                                   std::span<const double> start,
-                                                                   std::span<const double> correction) const {
+                                                                   const Point& start) const {
   Scratch& s = scratch_of_this_thread();
-  std::vector<double> q(start.begin(), start.end());
+  std::vector<double> q(start.q.begin(), start.q.end());
   for (int step = 0; step < newton_steps; ++step) {
     do_platform(q, s.freedoms);
-    loops(q, actuators, own_part(correction), {}, s.loops);
+    loops(q, actuators, own_part(start.correction), {}, s.loops);
     s.factor.compute(s.loops.platform * s.freedoms);
     if (!s.loops.value.allFinite() || is_singular(s.factor)) return std::nullopt;
     const Eigen::VectorXd change = s.factor.solve(s.loops.value);

@@ -48,32 +48,29 @@ CompensatorGeometry::CompensatorGeometry(const CompensatorGeometrySpec& spec, co
   rows_ = 6;
 }
 
-CompensatorGeometry::Pins CompensatorGeometry::pins(std::span<const double> q,
-                                                    std::span<const double> correction) const {
+CompensatorGeometry::Pins CompensatorGeometry::pins(const Point& at) const {
   const auto corrected = [&](double nominal, std::size_t i) {
-    return nominal + (correction.empty() ? 0.0 : correction[i]);
+    return nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
   };
   Pins pins;
   pins.L = corrected(spec_.L, length);
-  const double angle = q[0] + corrected(0.0, offset);
+  const double angle = at.q[0] + corrected(0.0, offset);
   pins.along = {std::sin(angle), std::cos(angle), 0};
   pins.across = {std::cos(angle), -std::sin(angle), 0};
-  pins.base = displace(pins.frame, correction.empty() ? nullptr : correction.data() + base);
+  pins.base = displace(pins.frame, at.correction.empty() ? nullptr : at.correction.data() + base);
   pins.P0 = pins.frame.R * Eigen::Vector3d(-corrected(spec_.ax, pin_x), -corrected(spec_.ay, pin_y), 0) + pins.frame.p;
   pins.P1 = pins.frame.R * (pins.L * pins.along) + pins.frame.p;
   return pins;
 }
 
-bool CompensatorGeometry::do_read(std::span<const double> q, std::span<const double> correction,
-                                  Eigen::VectorXd& y) const {
-  const Pins at = pins(q, correction);
-  y << at.P0, at.P1;
+bool CompensatorGeometry::do_read(const Point& at, Eigen::VectorXd& y) const {
+  const Pins placed = pins(at);
+  y << placed.P0, placed.P1;
   return true;
 }
 
-bool CompensatorGeometry::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                       std::span<const int> selected, Linearisation& out) const {
-  const auto [frame, axes, along, across, P0, P1, L] = pins(q, correction);
+bool CompensatorGeometry::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
+  const auto [frame, axes, along, across, P0, P1, L] = pins(at);
   out.G.setZero(rows_, Eigen::Index(selected.size()));
   for (std::size_t c = 0; c < selected.size(); ++c) {
     auto column = out.G.col(Eigen::Index(c));
@@ -108,9 +105,9 @@ bool CompensatorGeometry::do_linearise(std::span<const double> q, std::span<cons
   return true;
 }
 
-Eigen::Isometry3d CompensatorGeometry::do_tool_pose(std::span<const double> q, std::span<const double>) const {
+Eigen::Isometry3d CompensatorGeometry::do_tool_pose(const Point& at) const {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.translation() = spec_.L * Eigen::Vector3d(std::sin(q[0]), std::cos(q[0]), 0);
+  X.translation() = spec_.L * Eigen::Vector3d(std::sin(at.q[0]), std::cos(at.q[0]), 0);
   return X;
 }
 

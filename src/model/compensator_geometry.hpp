@@ -17,10 +17,9 @@ class CompensatorGeometry : public IdentificationModel {
   CompensatorGeometry(const CompensatorGeometrySpec& spec, const MeasurementSpec& measurement);
 
  private:
-  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
-  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                    Linearisation& out) const override;
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
   /// The axis' frame, where the pins are in M, and the crank's direction in the frame.
   struct Pins {
@@ -29,7 +28,7 @@ class CompensatorGeometry : public IdentificationModel {
     Eigen::Vector3d along, across, P0, P1;
     double L;
   };
-  Pins pins(std::span<const double> q, std::span<const double> correction) const;
+  Pins pins(const Point& at) const;
 
   CompensatorGeometrySpec spec_;
   PointNoise noise_;

@@ -139,33 +139,33 @@ DhChain::DhChain(DhDescription chain) : chain_(std::move(chain)) {
   for (int i = 0; i < int(parameters_.size()); ++i) geometric_.push_back({i, i < 6 ? 0 : i >= tool_ ? 1 : 2});
 }
 
-bool DhChain::linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                        Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const {
+bool DhChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                        Twists* reading_twists) const {
   static thread_local std::vector<Twist> along;  // of base, named motions, tool
   along.clear();
   if (reading_twists != nullptr) reading_twists->resize(6, Eigen::Index(coordinates_.size()));
-  const bool corrected = !correction.empty();
+  const bool corrected = !at.correction.empty();
   Frame<double> frame = frame_of(chain_.base);
-  const DisplacementAxes base = displace(frame, corrected ? correction.data() : nullptr);
+  const DisplacementAxes base = displace(frame, corrected ? at.correction.data() : nullptr);
   for (int k = 0; k < 6; ++k) along.push_back(base.twist(k));
   for (const ElementaryMotion& motion : chain_.motions) {
     const Eigen::Vector3d axis = frame.R.col(motion.axis);
     const Twist twist = motion.rotation ? revolute(axis, frame.p) : prismatic(axis);
     double value = motion.nominal;
     if (motion.coordinate >= 0) {
-      value += q[std::size_t(motion.coordinate)];
+      value += at.q[std::size_t(motion.coordinate)];
       if (reading_twists != nullptr) reading_twists->col(motion.coordinate) = twist;
     }
     if (!motion.name.empty()) {
-      if (corrected) value += correction[along.size()];
+      if (corrected) value += at.correction[along.size()];
       along.push_back(twist);
     }
     if (motion.rotation) frame.then_rotate(Eigen::Vector3d::Unit(motion.axis), value);
     else frame.p += axis * value;
   }
   frame.then(chain_.tool);
-  const bool tool_corrected = correction.size() > std::size_t(tool_);
-  const DisplacementAxes tool = displace(frame, tool_corrected ? correction.data() + tool_ : nullptr);
+  const bool tool_corrected = at.correction.size() > std::size_t(tool_);
+  const DisplacementAxes tool = displace(frame, tool_corrected ? at.correction.data() + tool_ : nullptr);
   for (int k = 0; k < 6; ++k) along.push_back(tool.twist(k));
   twists.resize(6, Eigen::Index(selected.size()));
   for (std::size_t c = 0; c < selected.size(); ++c) {

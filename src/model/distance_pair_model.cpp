@@ -63,21 +63,24 @@ Eigen::Vector3d DistancePairModel::target(const Eigen::Isometry3d& X, std::span<
   return X * p;
 }
 
-bool DistancePairModel::end(std::span<const double> q, std::span<const double> correction,
-                            std::span<const int> selected, End& result) const {
-  return tip_->linearise(q, correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)), selected,
-                         result.X, result.twists, &result.reading_twists);
+std::span<const double> DistancePairModel::tip_part(std::span<const double> correction) const {
+  return correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
+}
+
+bool DistancePairModel::end(const Point& at, std::size_t which, std::span<const int> selected, End& result) const {
+  const std::vector<double> q = at_end(at.q, which);
+  return tip_->linearise({q, tip_part(at.correction), 0, at.load_case}, selected, result.X, result.twists,
+                         &result.reading_twists);
 }
 
 void DistancePairModel::do_take_loads_at(std::span<const double> correction) {
-  tip_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)));
+  tip_->take_loads_at(tip_part(correction));
 }
 
-bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                     std::span<const int> selected, Linearisation& out) const {
+bool DistancePairModel::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local End ends[2];
   for (std::size_t i = 0; i < 2; ++i)
-    if (!end(at_end(q, i), correction, selected, ends[i])) return false;
+    if (!end(at, i, selected, ends[i])) return false;
   out.G.resize(rows_, Eigen::Index(selected.size()));
   out.covariance.setZero(rows_, rows_);
   const auto readings = Eigen::Index(tip_->reading_noise().size());
@@ -88,8 +91,8 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
     displacement_of_a_visit(repeatability_, each.X.translation(), each.displacement);
   }
   for (int t = 0; t < rows_; ++t) {
-    const Eigen::Vector3d from = target(ends[0].X, correction, std::size_t(t)),
-                          to = target(ends[1].X, correction, std::size_t(t));
+    const Eigen::Vector3d from = target(ends[0].X, at.correction, std::size_t(t)),
+                          to = target(ends[1].X, at.correction, std::size_t(t));
     const double d = (to - from).norm();
     if (!spans(spec_, d)) return false;
     const Eigen::Vector3d e = (to - from) / d;
@@ -117,50 +120,51 @@ bool DistancePairModel::do_linearise(std::span<const double> q, std::span<const 
   return true;
 }
 
-bool DistancePairModel::do_read(std::span<const double> q, std::span<const double> correction,
-                                Eigen::VectorXd& y) const {
+bool DistancePairModel::do_read(const Point& at, Eigen::VectorXd& y) const {
   static thread_local End ends[2];
   for (std::size_t i = 0; i < 2; ++i)
-    if (!end(at_end(q, i), correction, {}, ends[i])) return false;
+    if (!end(at, i, {}, ends[i])) return false;
   for (int t = 0; t < rows_; ++t)
-    y[t] = (target(ends[1].X, correction, std::size_t(t)) - target(ends[0].X, correction, std::size_t(t))).norm();
+    y[t] = (target(ends[1].X, at.correction, std::size_t(t)) - target(ends[0].X, at.correction, std::size_t(t))).norm();
   return true;
 }
 
-bool DistancePairModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                            std::span<const double> correction, std::span<double> q) const {
-  std::copy(start.begin(), start.end(), q.begin());
-  const auto tip = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
+bool DistancePairModel::do_configuration_at(std::span<const double> actuators, const Point& start,
+                                            std::span<double> q) const {
+  std::copy(start.q.begin(), start.q.end(), q.begin());
   const std::size_t each = actuators.size() / 2;
   for (std::size_t i = 0; i < 2; ++i) {
-    std::vector<double> own = at_end(start, i);
-    if (!tip_->configuration_at(actuators.subspan(i * each, each), at_end(start, i), tip, own)) return false;
+    const std::vector<double> from = at_end(start.q, i);
+    std::vector<double> own = from;
+    const Point at{from, tip_part(start.correction), 0, start.load_case};
+    if (!tip_->configuration_at(actuators.subspan(i * each, each), at, own)) return false;
     std::copy_n(own.begin(), moving_, q.begin() + std::ptrdiff_t(i * moving_));
   }
   return true;
 }
 
-bool DistancePairModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+bool DistancePairModel::do_measurable(const Point& at) const {
   End ends[2];
   for (std::size_t i = 0; i < 2; ++i)
-    if (!end(at_end(q, i), correction, {}, ends[i])) return false;
+    if (!end(at, i, {}, ends[i])) return false;
   for (std::size_t t = 0; t < spec_.targets.size(); ++t)
-    if (!spans(spec_, (target(ends[1].X, correction, t) - target(ends[0].X, correction, t)).norm())) return false;
+    if (!spans(spec_, (target(ends[1].X, at.correction, t) - target(ends[0].X, at.correction, t)).norm())) return false;
   return true;
 }
 
-bool DistancePairModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                                           std::span<double> values) const {
+bool DistancePairModel::do_actuator_values(const Point& at, std::span<double> values) const {
   const std::size_t actuators = values.size() / 2;
-  const auto tip = correction.empty() ? correction : correction.first(std::size_t(tip_parameters_));
-  return tip_->actuator_values(at_end(q, 0), tip, values.first(actuators)) &&
-         tip_->actuator_values(at_end(q, 1), tip, values.last(actuators));
+  const auto values_at = [&](std::size_t which, std::span<double> own) {
+    const std::vector<double> q = at_end(at.q, which);
+    return tip_->actuator_values({q, tip_part(at.correction), 0, at.load_case}, own);
+  };
+  return values_at(0, values.first(actuators)) && values_at(1, values.last(actuators));
 }
 
-Eigen::Isometry3d DistancePairModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
+Eigen::Isometry3d DistancePairModel::do_tool_pose(const Point& at) const {
   End second;
   second.X.setIdentity();
-  end(at_end(q, 1), correction, {}, second);
+  end(at, 1, {}, second);
   return second.X;
 }
 

@@ -18,22 +18,19 @@ class DistancePairModel : public IdentificationModel {
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;
-  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                    Linearisation& out) const override;
-  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
-  bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                           std::span<const double> correction, std::span<double> q) const override;
-  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
-  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                          std::span<double> values) const override;
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
+  bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
+  bool do_measurable(const Point& at) const override;
+  bool do_actuator_values(const Point& at, std::span<double> values) const override;
   /// That of the second configuration.
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
   /// The robot's own coordinates at the first (0) or second (1) end.
   std::vector<double> at_end(std::span<const double> q, std::size_t which) const;
   struct End;
-  bool end(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-           End& result) const;
+  bool end(const Point& at, std::size_t which, std::span<const int> selected, End& result) const;
+  std::span<const double> tip_part(std::span<const double> correction) const;
   Eigen::Vector3d target(const Eigen::Isometry3d& X, std::span<const double> correction, std::size_t t) const;
 
   std::unique_ptr<TipModel> tip_;

@@ -212,18 +212,19 @@ void ElasticChain::torques(std::span<const double> q, int load, bool link_weight
   }
 }
 
-double ElasticChain::load_alone(std::span<const double> q, std::size_t coordinate) const {
+double ElasticChain::load_alone(const Point& at, std::size_t coordinate) const {
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
-  torques(q, int(q[joints]), false, std::span(torque).first(joints));
+  torques(at.q, at.load_case, false, std::span(torque).first(joints));
   return torque[coordinate];
 }
 
-void ElasticChain::deflect(std::span<const double> q, std::span<const double> elastic, std::span<double> deflection,
-                           std::span<double> derivative) const {
+void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const {
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
-  torques(q, int(q[joints]), std::span(torque).first(joints));
+  torques(at.q, at.load_case, std::span(torque).first(joints));
+  const auto elastic =
+      at.correction.empty() ? at.correction : at.correction.subspan(std::size_t(first_), springs_.size());
   const auto value = [&](std::size_t i) {
     return parameters_[std::size_t(first_) + i].nominal + (elastic.empty() ? 0.0 : elastic[i]);
   };
@@ -231,17 +232,17 @@ void ElasticChain::deflect(std::span<const double> q, std::span<const double> el
     const Spring& spring = springs_[i];
     const auto c = std::size_t(spring.coordinate);
     derivative[i] = 0.0;
-    if (spring.kind == Spring::Kind::listed && q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
+    if (spring.kind == Spring::Kind::listed && at.q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
     if (spring.kind == Spring::Kind::compliance || spring.kind == Spring::Kind::listed) {
       deflection[c] = value(i) * torque[c];
       derivative[i] = torque[c];
     }
     if (spring.kind != Spring::Kind::joint_stiffness) continue;
     // Three parameters in a row share one deflection, δ = (τ − M) / K.
-    const CompensatorLinkage<double> linkage(*spec_.compensator, q[c]);
+    const CompensatorLinkage<double> linkage(*spec_.compensator, at.q[c]);
     const double stiffness = value(i) + linkage.added_stiffness(value(i + 1), value(i + 2));
     const double acts = spec_.compensator->torque ? 1.0 : 0.0;
-    const double load = spec_.compensator->torque || !spec_.link_gravity ? torque[c] : load_alone(q, c);
+    const double load = spec_.compensator->torque || !spec_.link_gravity ? torque[c] : load_alone(at, c);
     deflection[c] = (load - acts * linkage.torque(value(i + 1), value(i + 2))) / stiffness;
     derivative[i] = -deflection[c] / stiffness;
     derivative[i + 1] = -(acts * linkage.torque(1, 0) + deflection[c] * linkage.added_stiffness(1, 0)) / stiffness;
@@ -250,26 +251,24 @@ void ElasticChain::deflect(std::span<const double> q, std::span<const double> el
   }
 }
 
-bool ElasticChain::linearise(std::span<const double> q, std::span<const double> correction,
-                             std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+bool ElasticChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
                              Twists* reading_twists) const {
   static thread_local std::vector<int> geometric;
   static thread_local std::vector<double> rigid, derivative;
   static thread_local Twists own_readings;
-  const std::size_t joints = chain_.coordinates().size(), count = springs_.size(), first = std::size_t(first_);
+  const std::size_t joints = chain_.coordinates().size(), count = springs_.size();
   std::array<double, max_joints> deflection{};
   derivative.assign(count, 0.0);
-  const auto elastic = correction.empty() ? correction : correction.subspan(first, count);
-  deflect(q, elastic, std::span(deflection).first(joints), derivative);
+  deflect(at, std::span(deflection).first(joints), derivative);
 
-  geometric_part(correction, rigid);
+  geometric_part(at.correction, rigid);
   geometric.clear();
   for (const int index : selected) {
     if (index < first_) geometric.push_back(index);
     else geometric.push_back(index < first_ + int(count) ? chain_.layout().count : index - int(count));
   }
   Twists* readings = reading_twists != nullptr ? reading_twists : &own_readings;
-  chain_.linearise_deflected(q.first(joints), std::span(deflection).first(joints), rigid, geometric, X, twists,
+  chain_.linearise_deflected(at.q.first(joints), std::span(deflection).first(joints), rigid, geometric, X, twists,
                              readings);
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int i = selected[c] - first_;

@@ -18,9 +18,10 @@ void about_tip_origin(const Eigen::Vector3d& p, Twists& twists) {
 
 }  // namespace
 
-/// Configuration and corrections, each cut into the robot's and the instrument's.
+/// A point cut into the robot's and the instrument's.
 struct ExplicitModel::Parts {
-  std::span<const double> q, tip_correction, own_correction;
+  Point tip;
+  std::span<const double> own_correction;
   int station;
 };
 
@@ -52,20 +53,18 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
       std::any_of(tip_->reading_noise().begin(), tip_->reading_noise().end(), [](double s) { return s > 0; });
 }
 
-ExplicitModel::Parts ExplicitModel::parts(std::span<const double> q, std::span<const double> correction) const {
-  const bool choice = q.size() > tip_->coordinates().size();
-  return {q.first(tip_->coordinates().size()),
-          correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)),
-          correction.empty() ? correction : correction.subspan(std::size_t(tip_parameters_)),
-          choice ? int(q.back()) : 0};
+ExplicitModel::Parts ExplicitModel::parts(const Point& at) const {
+  const std::size_t tip = at.correction.empty() ? 0 : std::size_t(tip_parameters_);
+  return {{at.q.first(tip_->coordinates().size()), at.correction.first(tip), 0, at.load_case},
+          at.correction.subspan(tip),
+          at.station};
 }
 
 /// Twists of the selected parameters (zero for the instrument's own columns) and of what moves the tip at random, 1σ
 /// each (joint readings, the visit's displacement); the instrument's own covariance.
 bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> selected, Eigen::Isometry3d& X,
                                      Linearisation& out) const {
-  if (!tip_->linearise(p.q, p.tip_correction, selected, X, out.twists, reading_noise_ ? &out.reading_twists : nullptr))
-    return false;
+  if (!tip_->linearise(p.tip, selected, X, out.twists, reading_noise_ ? &out.reading_twists : nullptr)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
   for (std::size_t c = 0; c < selected.size(); ++c) {
     // Without its tool the tip's catalogue ends earlier than the tip knows: what follows is the instrument's.
@@ -102,9 +101,8 @@ void ExplicitModel::do_take_loads_at(std::span<const double> correction) {
   tip_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)));
 }
 
-bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                 std::span<const int> selected, Linearisation& out) const {
-  const Parts p = parts(q, correction);
+bool ExplicitModel::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
+  const Parts p = parts(at);
   Eigen::Isometry3d X;
   if (!twists_and_noise(p, selected, X, out)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
@@ -121,11 +119,11 @@ bool ExplicitModel::do_linearise(std::span<const double> q, std::span<const doub
   return true;
 }
 
-bool ExplicitModel::do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const {
-  const Parts p = parts(q, correction);
+bool ExplicitModel::do_read(const Point& at, Eigen::VectorXd& y) const {
+  const Parts p = parts(at);
   static thread_local Twists none;
   Eigen::Isometry3d X;
-  if (!tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr)) return false;
+  if (!tip_->linearise(p.tip, {}, X, none, nullptr)) return false;
   measurement_->read({X, p.own_correction, p.station}, y);
   return true;
 }
@@ -140,11 +138,11 @@ void ExplicitModel::do_shifted(const Eigen::VectorXd& predicted, const Eigen::Ve
   measurement_->shifted(predicted, change, out);
 }
 
-bool ExplicitModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                        std::span<const double> correction, std::span<double> q) const {
-  std::copy(start.begin(), start.end(), q.begin());
-  const Parts p = parts(start, correction);
-  return tip_->configuration_at(actuators, p.q, p.tip_correction, q.first(p.q.size()));
+bool ExplicitModel::do_configuration_at(std::span<const double> actuators, const Point& start,
+                                        std::span<double> q) const {
+  std::copy(start.q.begin(), start.q.end(), q.begin());
+  const Parts p = parts(start);
+  return tip_->configuration_at(actuators, p.tip, q.first(p.tip.q.size()));
 }
 
 int ExplicitModel::do_block_rows(std::span<const int> selected) const {
@@ -153,9 +151,8 @@ int ExplicitModel::do_block_rows(std::span<const int> selected) const {
   return std::min(rows_, 6 + int(own));
 }
 
-bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<const double> correction,
-                                          std::span<const int> selected, Linearisation& out) const {
-  const Parts p = parts(q, correction);
+bool ExplicitModel::do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const {
+  const Parts p = parts(at);
   Eigen::Isometry3d X;
   if (!twists_and_noise(p, selected, X, out)) return false;
   const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
@@ -180,34 +177,31 @@ bool ExplicitModel::do_linearise_factored(std::span<const double> q, std::span<c
   return true;
 }
 
-bool ExplicitModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+bool ExplicitModel::do_measurable(const Point& at) const {
   if (unmeasurable_reason_.empty()) return true;
-  const Parts p = parts(q, correction);
+  const Parts p = parts(at);
   Twists none;
   Eigen::Isometry3d X;
-  return tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr) &&
-         measurement_->sees({X, p.own_correction, p.station});
+  return tip_->linearise(p.tip, {}, X, none, nullptr) && measurement_->sees({X, p.own_correction, p.station});
 }
 
-bool ExplicitModel::do_reading_twists(std::span<const double> q, std::span<const double> correction,
-                                      Twists& twists) const {
-  const Parts p = parts(q, correction);
+bool ExplicitModel::do_reading_twists(const Point& at, Twists& twists) const {
+  const Parts p = parts(at);
   Twists none;
   Eigen::Isometry3d X;
-  return tip_->linearise(p.q, p.tip_correction, {}, X, none, &twists);
+  return tip_->linearise(p.tip, {}, X, none, &twists);
 }
 
-bool ExplicitModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                                       std::span<double> values) const {
-  const Parts p = parts(q, correction);
-  return tip_->actuator_values(p.q, p.tip_correction, values);
+bool ExplicitModel::do_actuator_values(const Point& at, std::span<double> values) const {
+  const Parts p = parts(at);
+  return tip_->actuator_values(p.tip, values);
 }
 
-Eigen::Isometry3d ExplicitModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
-  const Parts p = parts(q, correction);
+Eigen::Isometry3d ExplicitModel::do_tool_pose(const Point& at) const {
+  const Parts p = parts(at);
   Twists none;
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  tip_->linearise(p.q, p.tip_correction, {}, X, none, nullptr);
+  tip_->linearise(p.tip, {}, X, none, nullptr);
   return X;
 }
 

@@ -59,10 +59,19 @@ std::span<const double> IdentificationModel::total(std::span<const double> corre
   return scratch;
 }
 
+Point IdentificationModel::point(std::span<const double> q, std::span<const double> total) const {
+  Point at{q, total};
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    if (!coordinates_[i].choice()) continue;
+    (coordinates_[i].name == "station" ? at.station : at.load_case) = int(q[i]);
+  }
+  return at;
+}
+
 bool IdentificationModel::linearise(std::span<const double> q, std::span<const double> correction,
                                     std::span<const int> selected, Linearisation& out) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  if (!do_linearise(q, total(correction, out.correction), selected, out)) return false;
+  if (!do_linearise(point(q, total(correction, out.correction)), selected, out)) return false;
   hide(q, out);
   return true;
 }
@@ -70,21 +79,22 @@ bool IdentificationModel::linearise(std::span<const double> q, std::span<const d
 bool IdentificationModel::linearise_factored(std::span<const double> q, std::span<const double> correction,
                                              std::span<const int> selected, Linearisation& out) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  if (!do_linearise_factored(q, total(correction, out.correction), selected, out)) return false;
+  if (!do_linearise_factored(point(q, total(correction, out.correction)), selected, out)) return false;
   hide(q, out);
   return true;
 }
 
-/// Where the robot stands with the (total) correction, its actuators as they are at q with nominal parameters.
-bool IdentificationModel::settle(std::span<const double> q, std::span<const double> correction,
-                                 std::vector<double>& scratch, std::span<const double>& settled) const {
-  settled = q;
-  if (actuators_.empty() || correction.empty()) return true;
+/// Moves `at` to where the robot stands with its (total) correction, the actuators as they are with nominal parameters.
+bool IdentificationModel::settle(Point& at, std::vector<double>& scratch) const {
+  if (actuators_.empty() || at.correction.empty()) return true;
   static thread_local std::vector<double> actuators;
   actuators.resize(actuators_.size());
-  scratch.resize(q.size());
-  settled = scratch;
-  return do_actuator_values(q, shift_, actuators) && do_configuration_at(actuators, q, correction, scratch);
+  scratch.resize(at.q.size());
+  Point nominal = at;
+  nominal.correction = shift_;
+  if (!do_actuator_values(nominal, actuators) || !do_configuration_at(actuators, at, scratch)) return false;
+  at.q = scratch;
+  return true;
 }
 
 bool IdentificationModel::predict(std::span<const double> q, std::span<const double> correction,
@@ -92,22 +102,18 @@ bool IdentificationModel::predict(std::span<const double> q, std::span<const dou
   require_size(q.size(), coordinates_.size(), "configuration");
   // A model inside another one has neither actuators nor nominal values of its own, so it leaves these alone.
   static thread_local std::vector<double> sum, scratch;
-  const auto whole = total(correction, sum);
-  std::span<const double> settled;
+  Point at = point(q, total(correction, sum));
   y.resize(Eigen::Index(readings_.size()));
-  return settle(q, whole, scratch, settled) && do_read(settled, whole, y);
+  return settle(at, scratch) && do_read(at, y);
 }
 
 bool IdentificationModel::predict_and_linearise(std::span<const double> q, std::span<const double> correction,
                                                 std::span<const int> selected, Linearisation& out,
                                                 Eigen::VectorXd& y) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  const auto whole = total(correction, out.correction);
-  std::span<const double> settled;
+  Point at = point(q, total(correction, out.correction));
   y.resize(Eigen::Index(readings_.size()));
-  if (!settle(q, whole, out.settled, settled) || !do_read(settled, whole, y) ||
-      !do_linearise(settled, whole, selected, out))
-    return false;
+  if (!settle(at, out.settled) || !do_read(at, y) || !do_linearise(at, selected, out)) return false;
   hide(q, out);
   return true;
 }
@@ -131,7 +137,7 @@ bool IdentificationModel::configuration_at(std::span<const double> actuators, st
                                            std::span<double> q) const {
   require_size(start.size(), coordinates_.size(), "configuration");
   require_size(actuators.size(), actuators_.size(), "actuators");
-  return do_configuration_at(actuators, start, shift_, q);
+  return do_configuration_at(actuators, point(start, shift_), q);
 }
 
 void IdentificationModel::do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
@@ -139,9 +145,8 @@ void IdentificationModel::do_difference(const Eigen::VectorXd& measured, const E
   out = measured - predicted;
 }
 
-bool IdentificationModel::do_configuration_at(std::span<const double>, std::span<const double> start,
-                                              std::span<const double>, std::span<double> q) const {
-  std::copy(start.begin(), start.end(), q.begin());
+bool IdentificationModel::do_configuration_at(std::span<const double>, const Point& start, std::span<double> q) const {
+  std::copy(start.q.begin(), start.q.end(), q.begin());
   return true;
 }
 
@@ -181,42 +186,37 @@ void IdentificationModel::blank_hidden(std::span<const double> q, Eigen::VectorX
 bool IdentificationModel::reading_twists(std::span<const double> q,
                                          Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_reading_twists(q, shift_, twists);
+  return do_reading_twists(point(q, shift_), twists);
 }
 
 bool IdentificationModel::measurable(std::span<const double> q) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_measurable(q, shift_);
+  return do_measurable(point(q, shift_));
 }
 
 bool IdentificationModel::actuator_values(std::span<const double> q, std::span<double> values) const {
   require_size(q.size(), coordinates_.size(), "configuration");
   require_size(values.size(), actuators_.size(), "actuators");
-  return do_actuator_values(q, shift_, values);
+  return do_actuator_values(point(q, shift_), values);
 }
 
 Eigen::Isometry3d IdentificationModel::tool_pose(std::span<const double> q) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_tool_pose(q, shift_);
+  return do_tool_pose(point(q, shift_));
 }
 
 int IdentificationModel::do_block_rows(std::span<const int>) const { return rows_; }
 
-bool IdentificationModel::do_linearise_factored(std::span<const double>, std::span<const double>, std::span<const int>,
-                                                Linearisation&) const {
+bool IdentificationModel::do_linearise_factored(const Point&, std::span<const int>, Linearisation&) const {
   throw std::logic_error("this model does not factor its rows");
 }
 
-bool IdentificationModel::do_reading_twists(std::span<const double>, std::span<const double>,
-                                            Eigen::Matrix<double, 6, Eigen::Dynamic>&) const {
+bool IdentificationModel::do_reading_twists(const Point&, Eigen::Matrix<double, 6, Eigen::Dynamic>&) const {
   return false;
 }
 
-bool IdentificationModel::do_measurable(std::span<const double>, std::span<const double>) const { return true; }
+bool IdentificationModel::do_measurable(const Point&) const { return true; }
 
-bool IdentificationModel::do_actuator_values(std::span<const double>, std::span<const double>,
-                                             std::span<double>) const {
-  return true;
-}
+bool IdentificationModel::do_actuator_values(const Point&, std::span<double>) const { return true; }
 
 }  // namespace posewright

@@ -45,10 +45,9 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
 
 void JointSensorModel::do_take_loads_at(std::span<const double> correction) { tip_->take_loads_at(correction); }
 
-bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                    std::span<const int> selected, Linearisation& out) const {
+bool JointSensorModel::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Eigen::MatrixXd rows, reading_rows;
-  if (!tip_->sensor_rows(q, correction, selected, rows, reading_rows)) return false;
+  if (!tip_->sensor_rows(at, selected, rows, reading_rows)) return false;
   out.G.resize(rows_, rows.cols());
   out.rows.resize(rows_, reading_rows.cols());
   for (Eigen::Index i = 0; i < rows_; ++i) {
@@ -63,10 +62,9 @@ bool JointSensorModel::do_linearise(std::span<const double> q, std::span<const d
   return true;
 }
 
-bool JointSensorModel::do_read(std::span<const double> q, std::span<const double> correction,
-                               Eigen::VectorXd& y) const {
+bool JointSensorModel::do_read(const Point& at, Eigen::VectorXd& y) const {
   static thread_local Eigen::VectorXd all;
-  if (!tip_->sensor_values(q, correction, all)) return false;
+  if (!tip_->sensor_values(at, all)) return false;
   for (Eigen::Index i = 0; i < rows_; ++i) y[i] = all[sensors_[std::size_t(i)]];
   return true;
 }
@@ -78,26 +76,25 @@ void JointSensorModel::do_difference(const Eigen::VectorXd& measured, const Eige
     if (readings_[std::size_t(i)].unit == "rad") out[i] = std::remainder(out[i], 2 * std::numbers::pi);
 }
 
-bool JointSensorModel::do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                           std::span<const double> correction, std::span<double> q) const {
-  return tip_->configuration_at(actuators, start, correction, q);
+bool JointSensorModel::do_configuration_at(std::span<const double> actuators, const Point& start,
+                                           std::span<double> q) const {
+  return tip_->configuration_at(actuators, start, q);
 }
 
-bool JointSensorModel::do_measurable(std::span<const double> q, std::span<const double> correction) const {
+bool JointSensorModel::do_measurable(const Point& at) const {
   Twists none;
   Eigen::Isometry3d X;
-  return tip_->linearise(q, correction, {}, X, none, nullptr);
+  return tip_->linearise(at, {}, X, none, nullptr);
 }
 
-bool JointSensorModel::do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                                          std::span<double> values) const {
-  return tip_->actuator_values(q, correction, values);
+bool JointSensorModel::do_actuator_values(const Point& at, std::span<double> values) const {
+  return tip_->actuator_values(at, values);
 }
 
-Eigen::Isometry3d JointSensorModel::do_tool_pose(std::span<const double> q, std::span<const double> correction) const {
+Eigen::Isometry3d JointSensorModel::do_tool_pose(const Point& at) const {
   Twists none;
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  tip_->linearise(q, correction, {}, X, none, nullptr);
+  tip_->linearise(at, {}, X, none, nullptr);
   return X;
 }
 

@@ -17,17 +17,14 @@ class JointSensorModel : public IdentificationModel {
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;
-  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                    Linearisation& out) const override;
-  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                      Eigen::VectorXd& out) const override;
-  bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                           std::span<const double> correction, std::span<double> q) const override;
-  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
-  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                          std::span<double> values) const override;
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
+  bool do_measurable(const Point& at) const override;
+  bool do_actuator_values(const Point& at, std::span<double> values) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
   std::unique_ptr<TipModel> tip_;
   std::vector<int> sensors_;  // which of the robot's, in the order of the rows

@@ -26,38 +26,36 @@ LoadDifference::LoadDifference(std::unique_ptr<IdentificationModel> inside) : in
 
 void LoadDifference::do_take_loads_at(std::span<const double> correction) { inside_->take_loads_at(correction); }
 
-bool LoadDifference::do_linearise(std::span<const double> q, std::span<const double> correction,
-                                  std::span<const int> selected, Linearisation& out) const {
+bool LoadDifference::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Linearisation unloaded;
   static thread_local std::vector<double> same;
-  same.assign(q.begin(), q.end());
+  same.assign(at.q.begin(), at.q.end());
   same[load_] = 0.0;
   unloaded.reading_share = out.reading_share;
-  if (!inside_->linearise(q, correction, selected, out) || !inside_->linearise(same, correction, selected, unloaded))
+  if (!inside_->linearise(at.q, at.correction, selected, out) ||
+      !inside_->linearise(same, at.correction, selected, unloaded))
     return false;
   out.G -= unloaded.G;
   out.covariance += unloaded.covariance;
   return true;
 }
 
-bool LoadDifference::do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const {
+bool LoadDifference::do_read(const Point& at, Eigen::VectorXd& y) const {
   static thread_local Eigen::VectorXd loaded, unloaded;
   static thread_local std::vector<double> same;
-  same.assign(q.begin(), q.end());
+  same.assign(at.q.begin(), at.q.end());
   same[load_] = 0.0;
-  if (!inside_->predict(q, correction, loaded) || !inside_->predict(same, correction, unloaded)) return false;
+  if (!inside_->predict(at.q, at.correction, loaded) || !inside_->predict(same, at.correction, unloaded)) return false;
   inside_->difference(loaded, unloaded, y);
   return true;
 }
 
-bool LoadDifference::do_measurable(std::span<const double> q, std::span<const double>) const {
-  std::vector<double> same(q.begin(), q.end());
+bool LoadDifference::do_measurable(const Point& at) const {
+  std::vector<double> same(at.q.begin(), at.q.end());
   same[load_] = 0.0;
-  return inside_->measurable(q) && inside_->measurable(same);
+  return inside_->measurable(at.q) && inside_->measurable(same);
 }
 
-Eigen::Isometry3d LoadDifference::do_tool_pose(std::span<const double> q, std::span<const double>) const {
-  return inside_->tool_pose(q);
-}
+Eigen::Isometry3d LoadDifference::do_tool_pose(const Point& at) const { return inside_->tool_pose(at.q); }
 
 }  // namespace posewright

@@ -16,11 +16,10 @@ class LoadDifference : public IdentificationModel {
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;
-  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                    Linearisation& out) const override;
-  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
-  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
+  bool do_measurable(const Point& at) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
   std::unique_ptr<IdentificationModel> inside_;
   std::size_t load_ = 0;  ///< which coordinate is the load case

@@ -66,6 +66,23 @@ Eigen::Vector2d by_lens(const Eigen::Vector3d& p, const Lens& lens, int k) {
 
 }  // namespace
 
+InstrumentView view_of(const CameraMeasurement& camera) {
+  InstrumentView view;
+  view.has_places = true;
+  view.places = {{{"camera", camera.camera}, "camera", "the camera"}};
+  view.places_on_tip = camera.on_hand;
+  view.points_on_tip = !camera.on_hand;
+  view.points_at = camera.board;
+  view.points_parameters = "board";
+  view.axis = Eigen::Vector3d::UnitZ();
+  for (int r = 0; r < camera.rows; ++r)
+    for (int c = 0; c < camera.columns; ++c)
+      view.points.push_back({"point " + std::to_string(r + 1) + "," + std::to_string(c + 1),
+                             {c * camera.spacing, r * camera.spacing, 0},
+                             {}});
+  return view;
+}
+
 /// Camera and board in M with their corrections, and the axes of these.
 struct CameraModel::Scene {
   Eigen::Isometry3d X_MeasureCamera, X_MeasureBoard;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+InstrumentView view_of(const CameraMeasurement& camera);
 
 /// A camera and a board of known points, one on the tip, the other fixed. Rows: point by point, image coordinates u, v
 /// (px). Own parameters: camera.{x,…,rz} and board.{x,…,rz}, displacements of their frames in what carries them (the

@@ -8,6 +8,12 @@ constexpr double shortest = 1e-6;           // m
 
 }  // namespace
 
+InstrumentView view_of(const DistanceMeasurement& distance) {
+  InstrumentView view;
+  view.targets = distance.targets;
+  return view;
+}
+
 double distance_variance(const DistanceMeasurement& spec, double d, double repeats) {
   const double sigma = spec.sigma + spec.sigma_per_m * d;
   return sigma * sigma / repeats;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+InstrumentView view_of(const DistanceMeasurement& distance);
 
 /// Distances from fixed anchors to targets on the tip: ball bar, cable sensor. Rows: anchor by anchor, target by
 /// target, d = ‖p − c‖ + length. Own parameters: target.NAME.{x,y,z} (tip frame), anchor.NAME.{x,y,z} (measurement

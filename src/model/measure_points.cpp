@@ -1,9 +1,23 @@
 #include "measure_points.hpp"
 
+#include <cmath>
+
 #include "point_noise.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
+InstrumentView view_of(const PointsMeasurement& points) {
+  InstrumentView view;
+  view.targets = points.targets;
+  const auto* noise = std::get_if<GaussianNoise>(&points.noise);
+  if (noise != nullptr && points.components.size() == 3) view.point_noise = std::sqrt(noise->covariance.trace() / 3);
+  view.has_places = true;
+  for (const StationSpec& station : points.stations)
+    view.places.push_back({station, "station." + station.name, "station " + station.name});
+  for (const TargetSpec& t : points.targets) view.points.push_back({t.name, t.position, "target." + t.name});
+  return view;
+}
+
 PointsModel::PointsModel(const MeasurementSpec& spec)
     : spec_(std::get<PointsMeasurement>(spec.instrument)), places_(spec_.stations), repeats_(spec.repeats) {
   rows_per_target_ = int(spec_.components.size());

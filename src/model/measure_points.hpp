@@ -1,10 +1,13 @@
 #pragma once
 
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/problem/problem.hpp"
 #include "stations.hpp"
 
 namespace posewright {
+
+InstrumentView view_of(const PointsMeasurement& points);
 
 /// Positions of targets fixed to the tip. Rows: target by target, the chosen components of its position in the frame of
 /// the station that looks (the measurement frame if there are no stations). Own parameters: target.NAME.{x,y,z} in

@@ -23,6 +23,16 @@ std::unique_ptr<MeasurementModel> points_of(const PoseMeasurement& pose) {
 
 }  // namespace
 
+InstrumentView view_of(const PoseMeasurement& pose) {
+  InstrumentView view;
+  view.targets = pose.photogrammetry;
+  view.fits_pose = true;
+  view.point_noise = pose.point_sigma;
+  view.all_places = true;
+  for (const TargetSpec& t : view.targets) view.points.push_back({t.name, t.position, {}});
+  return view;
+}
+
 PoseModel::PoseModel(const MeasurementSpec& spec)
     : spec_(std::get<PoseMeasurement>(spec.instrument)), points_(points_of(spec_)), repeats_(spec.repeats) {
   rows_ = int(spec_.components.size());

@@ -2,10 +2,13 @@
 
 #include <memory>
 
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
+
+InstrumentView view_of(const PoseMeasurement& pose);
 
 /// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a
 /// spatial rotation vector in M): v + ω × p and ω of a twist. Readings pose.{x,…,rz}: the position and the rotation

@@ -2,40 +2,74 @@
 
 #include <stdexcept>
 
+#include "distance_pair_model.hpp"
+#include "joint_sensor_model.hpp"
 #include "measure_camera.hpp"
 #include "measure_distance.hpp"
 #include "measure_points.hpp"
 #include "measure_pose.hpp"
+#include "posewright/model/explicit_model.hpp"
 
 namespace posewright {
 namespace {
 
-/// One overload an instrument: a new one is one file and one row here.
-struct ModelOfMeasurement {
-  const MeasurementSpec& spec;
-  std::unique_ptr<MeasurementModel> operator()(const PoseMeasurement&) const {
-    return std::make_unique<PoseModel>(spec);
-  }
-  std::unique_ptr<MeasurementModel> operator()(const PointsMeasurement&) const {
-    return std::make_unique<PointsModel>(spec);
-  }
-  std::unique_ptr<MeasurementModel> operator()(const DistanceMeasurement& distance) const {
-    if (distance.anchors.empty())
-      throw std::invalid_argument("a distance between configurations is not a view of one tip");
-    return std::make_unique<DistanceModel>(spec);
-  }
-  std::unique_ptr<MeasurementModel> operator()(const CameraMeasurement&) const {
-    return std::make_unique<CameraModel>(spec);
-  }
-  std::unique_ptr<MeasurementModel> operator()(const JointsMeasurement&) const {
-    throw std::invalid_argument("joint sensors are no view of a tip");
-  }
-};
+using Measurement = std::unique_ptr<MeasurementModel>;
+
+// One row an instrument: its model of a tip that is looked at, and what it looks at. A new one is one file and one row.
+Measurement model_of(const PoseMeasurement&, const MeasurementSpec& spec) { return std::make_unique<PoseModel>(spec); }
+Measurement model_of(const PointsMeasurement&, const MeasurementSpec& spec) {
+  return std::make_unique<PointsModel>(spec);
+}
+Measurement model_of(const DistanceMeasurement& distance, const MeasurementSpec& spec) {
+  if (distance.anchors.empty()) return nullptr;
+  return std::make_unique<DistanceModel>(spec);
+}
+Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
+  return std::make_unique<CameraModel>(spec);
+}
+Measurement model_of(const JointsMeasurement&, const MeasurementSpec&) { return nullptr; }
+
+/// What does not say what it looks at looks at nothing.
+template <class Instrument>
+InstrumentView view_of(const Instrument&) {
+  return {};
+}
+
+/// What is not a view of one tip makes its readings of the robot itself.
+using Model = std::unique_ptr<IdentificationModel>;
+template <class Instrument>
+Model model_without_view(const Instrument&, std::unique_ptr<TipModel>, const Problem&) {
+  return nullptr;
+}
+Model model_without_view(const DistanceMeasurement&, std::unique_ptr<TipModel> robot, const Problem& problem) {
+  return std::make_unique<DistancePairModel>(std::move(robot), problem.measurement);
+}
+Model model_without_view(const JointsMeasurement&, std::unique_ptr<TipModel> robot, const Problem& problem) {
+  return std::make_unique<JointSensorModel>(std::move(robot), problem);
+}
+
+Measurement looking(const MeasurementSpec& spec) {
+  return std::visit([&](const auto& instrument) { return model_of(instrument, spec); }, spec.instrument);
+}
 
 }  // namespace
 
 std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec) {
-  return std::visit(ModelOfMeasurement{spec}, spec.instrument);
+  Measurement measurement = looking(spec);
+  if (measurement == nullptr) throw std::invalid_argument("this instrument does not look at one tip");
+  return measurement;
+}
+
+std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const Problem& problem) {
+  const MeasurementSpec& spec = problem.measurement;
+  if (Measurement measurement = looking(spec))
+    return std::make_unique<ExplicitModel>(std::move(robot), std::move(measurement), spec.repeatability);
+  return std::visit([&](const auto& instrument) { return model_without_view(instrument, std::move(robot), problem); },
+                    spec.instrument);
+}
+
+InstrumentView view_of(const MeasurementSpec& measurement) {
+  return std::visit([](const auto& instrument) { return view_of(instrument); }, measurement.instrument);
 }
 
 }  // namespace posewright

@@ -1,13 +1,10 @@
 #include "posewright/model/model_factory.hpp"
 
 #include "compensator_geometry.hpp"
-#include "distance_pair_model.hpp"
-#include "joint_sensor_model.hpp"
 #include "load_difference.hpp"
 #include "posewright/model/delta.hpp"
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/elastic_chain.hpp"
-#include "posewright/model/explicit_model.hpp"
 #include "posewright/model/five_bar.hpp"
 #include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
@@ -46,18 +43,10 @@ struct MakeTip {
   std::unique_ptr<TipModel> operator()(const CompensatorGeometrySpec&) const { return nullptr; }
 };
 
-/// An instrument that looks at one tip, or one of the two that do not.
 std::unique_ptr<IdentificationModel> observed(const Problem& problem, const VariantSpec& variant) {
-  const MeasurementSpec& measurement = problem.measurement;
   if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
-    return std::make_unique<CompensatorGeometry>(*compensator, measurement);
-  auto tip = make_tip(problem, variant);
-  if (std::holds_alternative<JointsMeasurement>(measurement.instrument))
-    return std::make_unique<JointSensorModel>(std::move(tip), problem);
-  const auto* distance = std::get_if<DistanceMeasurement>(&measurement.instrument);
-  if (distance != nullptr && distance->anchors.empty())
-    return std::make_unique<DistancePairModel>(std::move(tip), measurement);
-  return std::make_unique<ExplicitModel>(std::move(tip), make_measurement(measurement), measurement.repeatability);
+    return std::make_unique<CompensatorGeometry>(*compensator, problem.measurement);
+  return observe(make_tip(problem, variant), problem);
 }
 
 }  // namespace

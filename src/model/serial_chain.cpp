@@ -87,10 +87,9 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
   add_displacement("tool", int(chain_.joints.size()), 1, chain_.X_LastTip, 5e-3, 1 * degree);
 }
 
-bool SerialChain::linearise(std::span<const double> q, std::span<const double> correction,
-                            std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+bool SerialChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
                             Twists* reading_twists) const {
-  linearise_deflected(q, {}, correction, selected, X, twists, reading_twists);
+  linearise_deflected(at.q, {}, at.correction, selected, X, twists, reading_twists);
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <span>
 
@@ -150,6 +151,26 @@ PointsMeasurement read_points(const Section& section, bool single) {
   return points;
 }
 
+/// Instruments by the word under `type`; a new one is one row.
+struct InstrumentReader {
+  std::string_view name;
+  InstrumentSpec (*read)(const Section& measurement);
+};
+constexpr std::array<InstrumentReader, 6> instruments = {{
+    {"pose", [](const Section& measurement) -> InstrumentSpec { return read_pose(measurement); }},
+    {"points", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, false); }},
+    {"position", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, true); }},
+    {"distance", [](const Section& measurement) -> InstrumentSpec { return read_distance(measurement); }},
+    {"camera", [](const Section& measurement) -> InstrumentSpec { return read_camera(measurement); }},
+    {"joints", [](const Section& measurement) -> InstrumentSpec { return read_joint_sensors(measurement); }},
+}};
+
+std::vector<std::string_view> instrument_names() {
+  std::vector<std::string_view> names;
+  for (const InstrumentReader& reader : instruments) names.push_back(reader.name);
+  return names;
+}
+
 /// {position, rotation}, or the position alone. Beside a noise in pixels a plain number may be meant in those, so it
 /// needs its unit.
 Repeatability read_repeatability(const Value& value, const std::string& type) {
@@ -169,6 +190,15 @@ Repeatability read_repeatability(const Value& value, const std::string& type) {
 }
 
 }  // namespace
+
+std::vector<StationSpec>* stations_of(MeasurementSpec& measurement) {
+  return std::visit(
+      [](auto& instrument) -> std::vector<StationSpec>* {
+        if constexpr (requires { instrument.stations; }) return &instrument.stations;
+        else return nullptr;
+      },
+      measurement.instrument);
+}
 
 std::vector<StationSpec> read_stations(const Value& value) {
   std::vector<StationSpec> stations;
@@ -197,12 +227,9 @@ MeasurementSpec read_measurement(const Value& value) {
   const Section section(value);
   MeasurementSpec measurement;
   measurement.line = value.line();
-  const std::string type = section.at("type").choice({"pose", "points", "position", "distance", "camera", "joints"});
-  if (type == "pose") measurement.instrument = read_pose(section);
-  else if (type == "distance") measurement.instrument = read_distance(section);
-  else if (type == "camera") measurement.instrument = read_camera(section);
-  else if (type == "joints") measurement.instrument = read_joint_sensors(section);
-  else measurement.instrument = read_points(section, type == "position");
+  const std::string type = section.at("type").choice(instrument_names());
+  for (const InstrumentReader& reader : instruments)
+    if (reader.name == type) measurement.instrument = reader.read(section);
   if (const Value* repeats = section.find("repeats"))
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))

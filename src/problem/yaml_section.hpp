@@ -37,7 +37,10 @@ class Value {
   Located<std::string> located_text() const { return {text(), line_}; }
   /// Text that names one thing: no `*` or `?`.
   Located<std::string> exact_name() const;
-  std::string choice(std::initializer_list<std::string_view> allowed) const;
+  std::string choice(std::initializer_list<std::string_view> allowed) const {
+    return choice(std::vector<std::string_view>(allowed));
+  }
+  std::string choice(const std::vector<std::string_view>& allowed) const;
   /// true, false or, as YAML 1.1 has it, yes, no.
   bool flag() const;
   int integer(int lower, int upper) const;

@@ -47,7 +47,7 @@ Located<std::string> Value::exact_name() const {
   return {std::move(result), line_};
 }
 
-std::string Value::choice(std::initializer_list<std::string_view> allowed) const {
+std::string Value::choice(const std::vector<std::string_view>& allowed) const {
   const std::string list = fmt::format("allowed: {}", fmt::join(allowed, ", "));
   std::string result = scalar(list);
   if (std::find(allowed.begin(), allowed.end(), result) == allowed.end()) fail("is " + in_quotes(result), list);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -18,8 +19,8 @@ constexpr int most_named = 5;
 std::vector<std::string> names_of_readings(const Problem& problem, const IdentificationModel& model) {
   std::vector<std::string> names;
   for (const Reading& reading : model.readings()) names.push_back(reading.name);
-  if (const auto* pose = std::get_if<PoseMeasurement>(&problem.measurement.instrument))
-    for (const TargetSpec& marker : pose->photogrammetry) names.push_back(marker.name + ".x");
+  if (const InstrumentView view = view_of(problem.measurement); view.fits_pose)
+    for (const TargetSpec& marker : view.targets) names.push_back(marker.name + ".x");
   return names;
 }
 

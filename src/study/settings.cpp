@@ -55,8 +55,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
                      "set design: test_poses");
   s.candidates = options.candidates.value_or(design.candidates.value);
   s.candidates_from = options.candidates_from;
-  if (!s.candidates_from && !options.candidates && design.candidates_from)
-    s.candidates_from = poses_in_file(*design.candidates_from);
+  if (!s.candidates_from && !options.candidates) s.candidates_file = design.candidates_from.value_or("");
   s.prior = options.prior.value_or(design.prior);
   s.reserve = options.reserve || design.reserve;
   s.repeats = options.repeats.value_or(design.repeats);
@@ -66,7 +65,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   if (find_criterion(s.criterion)->needs_test_poses && !design.test_poses)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
   s.measured = options.measured;
-  if (!s.measured && design.measured) s.measured = poses_in_file(*design.measured);
+  if (!s.measured) s.measured_file = design.measured.value_or("");
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.planner.seed = options.seed;
   s.planner.threads = options.threads;

@@ -32,6 +32,13 @@ Configurations drawn(const Study& study, const Settings& settings, const Monitor
   return sample_configurations(*study.first().workspace, sampling, monitor);
 }
 
+std::optional<PoseList> given_or_read(const std::optional<PoseList>& given, const std::filesystem::path& file,
+                                      const std::vector<Coordinate>& coordinates) {
+  if (given) require_fits(*given, coordinates);
+  if (given || file.empty()) return given;
+  return read_poses(file, coordinates);
+}
+
 /// Candidates of the first variant that all others can take.
 Configurations common(const std::vector<Variant>& variants, Configurations all) {
   if (variants.size() == 1) return all;
@@ -120,10 +127,10 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
   // Bad lists are told before the long work.
   study.measured.dimension = int(coordinates.size());
-  if (settings.measured)
-    for (const auto& q : settings.measured(coordinates).configurations) append(study.measured, q);
-  if (settings.candidates_from)
-    take_listed_candidates(study, problem, settings.candidates_from(without_limits(coordinates)));
+  if (const auto measured = given_or_read(settings.measured, settings.measured_file, coordinates))
+    for (const auto& q : measured->configurations) append(study.measured, q);
+  if (const auto list = given_or_read(settings.candidates_from, settings.candidates_file, without_limits(coordinates)))
+    take_listed_candidates(study, problem, *list);
   else study.configurations = common(study.variants, drawn(study, settings, monitor));
   for (Variant& variant : study.variants) {
     try {

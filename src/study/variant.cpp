@@ -40,6 +40,10 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
   return variant;
 }
 
+std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::string& variant) {
+  return place_variant(problem, find_variant(problem, variant), nullptr).workspace->coordinates();
+}
+
 Variant make_variant(const Problem& problem, const VariantOptions& options, const Monitor& monitor) {
   Variant variant = place_variant(problem, find_variant(problem, options.variant), make_cell(problem));
   variant.columns = select_columns(*variant.model, problem, *variant.spec);

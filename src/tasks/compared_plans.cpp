@@ -72,7 +72,8 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
 PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists) {
   PlansToCompare result;
   for (const CompareOptions::List& list : lists) {
-    const PoseList read = list.poses(study.first().workspace->coordinates());
+    const PoseList& read = list.poses;
+    require_fits(read, study.first().workspace->coordinates());
     Configurations poses;
     poses.dimension = study.configurations.dimension;
     for (std::size_t i = 0; i < read.configurations.size(); ++i) {

@@ -23,13 +23,12 @@ constexpr double proved_drop = 5e4;
 
 class ListEvaluation {
  public:
-  ListEvaluation(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
-                 const Monitor& monitor)
+  ListEvaluation(const Problem& problem, const PoseList& list, const EvaluateOptions& options, const Monitor& monitor)
       : options_(options), monitor_(monitor), settings_(settings_of(problem, numbered(options.plan))) {
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
-    const PoseList list = poses(coordinates);
+    require_fits(list, coordinates);
     notes_ = study_.notes;
     notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
     note_parameters(list, problem, notes_);
@@ -239,17 +238,12 @@ class ListEvaluation {
 
 }  // namespace
 
-PoseListEvaluation evaluate_problem(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& list, const EvaluateOptions& options,
                                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  PoseListEvaluation result = ListEvaluation(problem, poses, options, monitor).evaluate(problem);
+  PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate(problem);
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
-}
-
-PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
-                                    const EvaluateOptions& options, const Monitor& monitor) {
-  return evaluate_problem(problem, poses_in_file(poses), options, monitor);
 }
 
 }  // namespace posewright

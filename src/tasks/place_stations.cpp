@@ -21,13 +21,12 @@ constexpr int quick_candidates = 400, quick_restarts = 1;
 
 using Set = std::vector<std::size_t>;  // indices into the list of places
 
-const PointsMeasurement& instrument_of(const Problem& problem) {
-  const auto* points = std::get_if<PointsMeasurement>(&problem.measurement.instrument);
-  if (points == nullptr)
+void require_stations(const Problem& problem) {
+  MeasurementSpec measurement = problem.measurement;
+  if (stations_of(measurement) == nullptr)
     throw InputError(problem.at(problem.workspace.stations->line),
                      "workspace.stations: this instrument has no stations",
                      "trackers and cameras that measure points do");
-  return *points;
 }
 
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
@@ -75,9 +74,9 @@ void move_bodies(Problem& problem, const std::vector<StationSpec>& before, const
 }
 
 Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
-  auto& points = std::get<PointsMeasurement>(problem.measurement.instrument);
-  move_bodies(problem, points.stations, chosen);
-  points.stations = chosen;
+  std::vector<StationSpec>& stations = *stations_of(problem.measurement);
+  move_bodies(problem, stations, chosen);
+  stations = chosen;
   return problem;
 }
 
@@ -230,7 +229,7 @@ class Ranking {
 std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor) {
   if (!problem.workspace.stations)
     throw InputError(problem.at(0), "names no places for stations", "set workspace: stations: among or box");
-  instrument_of(problem);
+  require_stations(problem);
   return Ranking(problem, options, monitor).rank();
 }
 

@@ -201,7 +201,7 @@ Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& pl
   options.criterion = told_apart ? "discriminate" : "o1";
   options.poses = poses;
   options.smallest = options.reserve = false;
-  options.measured = poses_of(plan);
+  options.measured = poses_of(plan, pose_coordinates(problem, options.variant));
   return plan_problem(problem, options, monitor);
 }
 

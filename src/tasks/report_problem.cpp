@@ -49,13 +49,12 @@ class ReportBuilder {
     if (!options.route.empty()) report_.route_json = read_text(options.route, plan_size_limit);
     report_.plan_json = std::move(plan_.text);
     // What was measured before is in the plan, wherever it came from.
-    settings_.measured = [this](const std::vector<Coordinate>& coordinates) {
-      list_ = read_poses_text(report_.plan_json, plan_.file.string(), coordinates);
-      PoseList before;
-      for (std::size_t i = 0; i < list_.configurations.size(); ++i)
-        if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
-      return before;
-    };
+    list_ = read_poses_text(report_.plan_json, plan_.file.string(),
+                            pose_coordinates(problem, settings_.variants.front().name.value));
+    PoseList before;
+    for (std::size_t i = 0; i < list_.configurations.size(); ++i)
+      if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
+    settings_.measured = std::move(before);
     study_ = make_study(problem, settings_, whole_);
     if (whole_.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
     all_.dimension = new_.dimension = study_.configurations.dimension;

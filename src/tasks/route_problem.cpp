@@ -29,7 +29,7 @@ struct Stop {
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
-  Router(const Problem& problem, const PoseSource& poses, const RouteOptions& options, const Monitor& monitor)
+  Router(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor)
       : problem_(problem),
         options_(options),
         monitor_(monitor),
@@ -48,7 +48,7 @@ class Router {
       route_.units.push_back(c.unit);
     }
     route_.home = space_.home();
-    read_stops(poses);
+    take_stops(poses);
   }
 
   Route make() {
@@ -65,8 +65,8 @@ class Router {
   }
 
  private:
-  void read_stops(const PoseSource& poses) {
-    const PoseList list = poses(variant_.workspace->coordinates());
+  void take_stops(const PoseList& list) {
+    require_fits(list, variant_.workspace->coordinates());
     route_.plan_file = list.name;
     route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
     route_.notes = list.notes;
@@ -308,17 +308,12 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan) {
   throw InputError({plan.string(), 0}, "its problem file '" + name + "' is not there", "name it with --problem FILE");
 }
 
-Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
+Route route_problem(const Problem& problem, const PoseList& poses, const RouteOptions& options,
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   Route route = Router(problem, poses, options, monitor).make();
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;
-}
-
-Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
-                    const Monitor& monitor) {
-  return route_problem(problem, poses_in_file(plan), options, monitor);
 }
 
 }  // namespace posewright

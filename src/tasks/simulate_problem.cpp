@@ -43,7 +43,7 @@ class SimulationRun {
     result_.truth = truth_spec_.name;
   }
 
-  Simulation simulate(const PoseSource& plan) {
+  Simulation simulate(const PoseList& plan) {
     take_poses(plan);
     take_truth();
     predict();
@@ -73,8 +73,8 @@ class SimulationRun {
     return make_variant(problem, wanted, monitor_);
   }
 
-  void take_poses(const PoseSource& plan) {
-    const PoseList list = plan(fitted_.workspace->coordinates());
+  void take_poses(const PoseList& list) {
+    require_fits(list, fitted_.workspace->coordinates());
     result_.plan = list.name;
     result_.notes = list.notes;
     Linearisation out;
@@ -163,7 +163,7 @@ class SimulationRun {
 
 }  // namespace
 
-Simulation simulate_problem(const Problem& problem, const PoseSource& plan, const SimulateOptions& options,
+Simulation simulate_problem(const Problem& problem, const PoseList& plan, const SimulateOptions& options,
                             const Monitor& monitor) {
   return SimulationRun(problem, options, monitor).simulate(plan);
 }

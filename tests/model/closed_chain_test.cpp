@@ -16,6 +16,7 @@
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "tests/kit/jets.hpp"
+#include "tests/kit/residuals.hpp"
 
 namespace posewright {
 namespace {
@@ -83,7 +84,7 @@ std::vector<Jet> leg_loops(const SixLegsSpec& spec, std::span<const double> q, s
   for (std::size_t i = 0; i < 6; ++i) actuator[i] = d[own + 6 + i] + rho[i];
   std::vector<double> reference(6, 0.0);
   if (slides) {
-    EXPECT_TRUE(SixLegs(spec, {}).actuator_values(std::vector<double>(6, 0.0), {}, reference));
+    EXPECT_TRUE(SixLegs(spec, {}).actuator_values({std::vector<double>(6, 0.0), {}}, reference));
   }
   std::vector<Jet> g;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -120,7 +121,7 @@ void compare_loops(const ClosedChain& chain, std::size_t own, const LoopOracle& 
     std::vector<double> correction(chain.parameters().size(), 0.0), rho(actuators);
     for (std::size_t j = 0; j < own; ++j)
       correction[6 + j] = size * random.uniform(-1, 1) * chain.parameters()[6 + j].tolerance;
-    if (!chain.actuator_values(q, correction, rho)) continue;
+    if (!chain.actuator_values({q, correction}, rho)) continue;
     ++compared;
     ClosedChain::Loops loops;
     chain.loops(q, rho, std::span(correction).subspan(6, own), all, loops);
@@ -210,8 +211,8 @@ TEST(ClosedChain, ForwardKinematicsUndoesInverseKinematics) {
       for (const Coordinate& c : chain->coordinates()) middle.push_back(0.5 * (c.lower + c.upper));
       for (std::size_t j = 0; j < correction.size(); ++j)
         correction[j] = random.uniform(-1, 1) * chain->parameters()[j].tolerance;
-      if (!chain->actuator_values(q, correction, rho)) continue;
-      const auto back = chain->forward_kinematics(rho, middle, correction);
+      if (!chain->actuator_values({q, correction}, rho)) continue;
+      const auto back = chain->forward_kinematics(rho, {middle, correction});
       ASSERT_TRUE(back.has_value());
       for (std::size_t k = 0; k < q.size(); ++k) EXPECT_NEAR((*back)[k], q[k], 1e-9);
       ++compared;
@@ -222,7 +223,8 @@ TEST(ClosedChain, ForwardKinematicsUndoesInverseKinematics) {
 
 TEST(ClosedChain, ForwardKinematicsSaysWhereThereIsNone) {
   const SixLegs chain(inclined_telescope(), limits());
-  EXPECT_FALSE(chain.forward_kinematics(std::vector<double>{0.9, -0.9, 0.9, -0.9, 0.9, -0.9}, std::vector<double>(6)));
+  EXPECT_FALSE(
+      chain.forward_kinematics(std::vector<double>{0.9, -0.9, 0.9, -0.9, 0.9, -0.9}, {std::vector<double>(6), {}}));
 }
 
 TEST(ClosedChain, TwistsOfParametersAreThoseOfThePlatformWhenActuatorsStandStill) {
@@ -231,17 +233,17 @@ TEST(ClosedChain, TwistsOfParametersAreThoseOfThePlatformWhenActuatorsStandStill
     std::vector<double> q;
     for (const Coordinate& c : chain->coordinates()) q.push_back(c.lower + 0.6 * (c.upper - c.lower));
     std::vector<double> rho(chain->actuators().size());
-    ASSERT_TRUE(chain->actuator_values(q, {}, rho));
+    ASSERT_TRUE(chain->actuator_values({q, {}}, rho));
     std::vector<int> all(chain->parameters().size());
     std::iota(all.begin(), all.end(), 0);
     Eigen::Isometry3d X;
     Twists twists, readings, none;
-    ASSERT_TRUE(chain->linearise(q, {}, all, X, twists, &readings));
+    ASSERT_TRUE(chain->linearise({q, {}}, all, X, twists, &readings));
     const auto tip_at = [&](const std::vector<double>& correction, const std::vector<double>& actuators) {
       Eigen::Isometry3d Y;
-      const auto x = chain->forward_kinematics(actuators, q, correction);
+      const auto x = chain->forward_kinematics(actuators, {q, correction});
       EXPECT_TRUE(x.has_value());
-      chain->linearise(*x, correction, {}, Y, none, nullptr);
+      chain->linearise({*x, correction}, {}, Y, none, nullptr);
       return Y;
     };
     const auto compare = [&](const Eigen::Isometry3d& plus, const Eigen::Isometry3d& minus, double h,
@@ -281,7 +283,7 @@ TEST(ClosedChain, InformationEqualsThatOfTheWeightedLoopEquations) {
   const SixLegs chain(spec, limits());
   const std::vector<double> q = {1e-3, -5e-4, 1e-4, 2e-3, -1e-3, 3e-3};
   std::vector<double> rho(6);
-  ASSERT_TRUE(chain.actuator_values(q, {}, rho));
+  ASSERT_TRUE(chain.actuator_values({q, {}}, rho));
   std::vector<int> selected(54), own(54);
   std::iota(selected.begin(), selected.end(), 6);
   std::iota(own.begin(), own.end(), 0);
@@ -306,8 +308,8 @@ TEST(Delta, ElbowsPointOutwardsWhetherThePlatformHangsOrStands) {
   spec.lower.z() = 0.6, spec.upper.z() = 0.8;
   const Delta standing(spec);
   std::vector<double> below(3), above(3);
-  ASSERT_TRUE(hanging.actuator_values(std::vector<double>{0.05, -0.02, -0.7}, {}, below));
-  ASSERT_TRUE(standing.actuator_values(std::vector<double>{0.05, -0.02, 0.7}, {}, above));
+  ASSERT_TRUE(hanging.actuator_values({std::vector<double>{0.05, -0.02, -0.7}, {}}, below));
+  ASSERT_TRUE(standing.actuator_values({std::vector<double>{0.05, -0.02, 0.7}, {}}, above));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(above[i], -below[i], 1e-12);
     EXPECT_GT(std::cos(above[i]), 0);
@@ -349,7 +351,7 @@ TEST(FiveBar, SensorRowsEqualAutomaticDifferentiationThroughTheClosedLoops) {
   for (int n = 0; n < 1000; ++n) {
     const std::vector<double> q = random_configuration(chain.coordinates(), random);
     std::vector<double> rho(2);
-    if (!chain.actuator_values(q, {}, rho)) continue;
+    if (!chain.actuator_values({q, {}}, rho)) continue;
     // 12 parameters, then x, y, then both actuators.
     const auto at = [&](const std::vector<Jet>& d, bool sensor) {
       std::vector<Jet> rows;
@@ -374,7 +376,7 @@ TEST(FiveBar, SensorRowsEqualAutomaticDifferentiationThroughTheClosedLoops) {
     Eigen::MatrixXd rows, reading_rows;
     std::vector<int> all(chain.parameters().size());
     std::iota(all.begin(), all.end(), 0);
-    ASSERT_TRUE(chain.sensor_rows(q, {}, all, rows, reading_rows));
+    ASSERT_TRUE(chain.sensor_rows({q, {}}, all, rows, reading_rows));
     EXPECT_LT((rows.middleCols(6, 12) - (psi.leftCols<12>() - solve * f.leftCols<12>())).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT((reading_rows - (psi.rightCols<2>() - solve * f.rightCols<2>())).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_EQ(rows.leftCols<6>().norm() + rows.rightCols<6>().norm(), 0) << "base and tool have no effect on sensors";

@@ -57,7 +57,7 @@ Eigen::Isometry3d tip_of(const TipModel& model, const std::vector<double>& q,
   for (const CalibratedValue& v : values) correction.push_back(v.correction());
   Eigen::Isometry3d X;
   Twists none;
-  model.linearise(q, correction, {}, X, none, nullptr);
+  model.linearise({q, correction}, {}, X, none, nullptr);
   return X;
 }
 

@@ -46,7 +46,7 @@ TEST(DhTable, HasTheTipOfTheCorrectedArm) {
           Twists none;
           for (int i = 0; i < 20; ++i) {
             const std::vector<double> q = random_configuration(chain.coordinates, random);
-            models[k]->linearise(q, correction, {}, X, none, nullptr);
+            models[k]->linearise({q, correction}, {}, X, none, nullptr);
             ASSERT_LT((X.matrix() - table.tip(q).matrix()).cwiseAbs().maxCoeff(), 1e-9) << named.name;
           }
         }

@@ -13,6 +13,7 @@
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/error.hpp"
 #include "tests/kit/jets.hpp"
+#include "tests/kit/residuals.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/urdf_text.hpp"
 
@@ -48,8 +49,8 @@ TEST(DenavitHartenberg, ChainHasTheSameTipAsTheUrdfEverywhere) {
       Twists none;
       for (int i = 0; i < 20; ++i) {
         const std::vector<double> q = random_configuration(chain.coordinates, random);
-        frames.linearise(q, {}, {}, X, none, nullptr);
-        dh.linearise(q, {}, {}, Y, none, nullptr);
+        frames.linearise({q, {}}, {}, X, none, nullptr);
+        dh.linearise({q, {}}, {}, Y, none, nullptr);
         ASSERT_TRUE(X.isApprox(Y, 1e-9)) << named.name;
       }
     }
@@ -190,8 +191,8 @@ TEST(DenavitHartenberg, AlmostParallelAxesOfARoundedUrdfAreParallel) {
     Twists none;
     for (int i = 0; i < 20; ++i) {
       const std::vector<double> q = random_configuration(chain.coordinates, random);
-      frames.linearise(q, {}, {}, X, none, nullptr);
-      converted.linearise(q, {}, {}, Y, none, nullptr);
+      frames.linearise({q, {}}, {}, X, none, nullptr);
+      converted.linearise({q, {}}, {}, Y, none, nullptr);
       EXPECT_TRUE(X.isApprox(Y, 1e-9));
     }
     std::vector<Parameter> labels;

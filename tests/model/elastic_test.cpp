@@ -16,6 +16,7 @@
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/jets.hpp"
 #include "tests/kit/random_chain.hpp"
+#include "tests/kit/residuals.hpp"
 
 namespace posewright {
 namespace {
@@ -223,11 +224,11 @@ TEST(Compensator, UnloadedArmStandsStraightUnlessTheTorqueIsAskedFor) {
   const std::vector<double> q = {0.1, -0.8, 0.4, 0.2, 0.3, 0.1, 0};  // the last: no load
   Twists none;
   Eigen::Isometry3d straight, X;
-  ASSERT_TRUE(ElasticChain(chain, rigid, {}).linearise(q, {}, {}, straight, none, nullptr));
-  ASSERT_TRUE(ElasticChain(chain, spec, {}).linearise(q, {}, {}, X, none, nullptr));
+  ASSERT_TRUE(ElasticChain(chain, rigid, {}).linearise({q, {}}, {}, straight, none, nullptr));
+  ASSERT_TRUE(ElasticChain(chain, spec, {}).linearise({q, {}}, {}, X, none, nullptr));
   EXPECT_LT((X.matrix() - straight.matrix()).norm(), 1e-14);
   spec.compensator->torque = true;
-  ASSERT_TRUE(ElasticChain(chain, spec, {}).linearise(q, {}, {}, X, none, nullptr));
+  ASSERT_TRUE(ElasticChain(chain, spec, {}).linearise({q, {}}, {}, X, none, nullptr));
   EXPECT_GT((X.matrix() - straight.matrix()).norm(), 1e-2);
 }
 

@@ -15,6 +15,7 @@
 #include "posewright/support/random.hpp"
 #include "tests/kit/jets.hpp"
 #include "tests/kit/random_chain.hpp"
+#include "tests/kit/residuals.hpp"
 
 namespace posewright {
 namespace {
@@ -136,8 +137,8 @@ TEST(SerialChain, MovingTheBaseTurnsRowsAndNothingElse) {
   std::iota(all.begin(), all.end(), 0);
   Twists a, b;
   Eigen::Isometry3d X, Y;
-  before.linearise(q, {}, all, X, a, nullptr);
-  after.linearise(q, {}, all, Y, b, nullptr);
+  before.linearise({q, {}}, all, X, a, nullptr);
+  after.linearise({q, {}}, all, Y, b, nullptr);
   EXPECT_TRUE(Y.isApprox(move * X, 1e-13));
   // A twist transforms by the adjoint.
   for (Eigen::Index j = 0; j < a.cols(); ++j) {

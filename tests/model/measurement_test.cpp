@@ -15,6 +15,7 @@
 #include "src/model/pinhole.hpp"
 #include "tests/kit/jets.hpp"
 #include "tests/kit/random_chain.hpp"
+#include "tests/kit/residuals.hpp"
 
 namespace posewright {
 namespace {

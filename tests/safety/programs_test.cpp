@@ -22,6 +22,7 @@
 #include "posewright/tasks/check_sequence.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
 #include "tests/outputs/program_readers.hpp"
@@ -113,7 +114,7 @@ Routed routed(const Problem& problem, const TemporaryFolder& folder) {
   result.plan = plan_problem(problem, {}, Monitor{});
   RouteOptions options;
   options.from_home = true;
-  const PoseSource poses = poses_in_file(folder.write("plan.json", plan_json(result.plan)));
+  const PoseList poses = poses_in(problem, folder.write("plan.json", plan_json(result.plan)));
   result.route = route_problem(problem, poses, options, Monitor{});
   result.sequence = checked_sequence(problem, parse_sequence(route_json(result.route), "route.json"));
   return result;

@@ -11,6 +11,7 @@
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
 
@@ -67,7 +68,7 @@ TEST_P(CellOfRealArm, PosesAndMotionsHoldWhenOtherCodeLooksAtThem) {
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions options;
   options.closed = true;
-  const Route route = route_problem(problem, file, options, Monitor{});
+  const Route route = route_problem(problem, poses_in(problem, file), options, Monitor{});
   EXPECT_EQ(route.poses.size() + route.unreachable.size(), 12U);
   EXPECT_LE(route.unreachable.size(), 2U);
   EXPECT_EQ(route.motions.size(), route.poses.size());
@@ -136,9 +137,9 @@ TEST(ExampleCell, PlanAndRouteAreTheSameOnAnyNumberOfThreadsAndShorterThanThePla
   RouteOptions options;
   options.from_home = options.closed = true;
   options.threads = 1;
-  Route first = route_problem(problem, file, options, Monitor{});
+  Route first = route_problem(problem, poses_in(problem, file), options, Monitor{});
   options.threads = 2;
-  Route second = route_problem(problem, file, options, Monitor{});
+  Route second = route_problem(problem, poses_in(problem, file), options, Monitor{});
   EXPECT_EQ(route_json(first), route_json(second));
   EXPECT_LT(first.travel_seconds(), first.planned_seconds);
   EXPECT_EQ(first.motions.front().from, 0);
@@ -161,7 +162,7 @@ TEST(ExampleCell, HomeInCollisionIsSaidWithWhatCollides) {
   RouteOptions options;
   options.from_home = true;
   try {
-    route_problem(problem, file, options, Monitor{});
+    route_problem(problem, poses_in(problem, file), options, Monitor{});
     FAIL() << "home is in the fixture";
   } catch (const CannotDo& error) {
     EXPECT_THAT(error.what(), HasSubstr("home is not free"));
@@ -178,7 +179,7 @@ TEST(ExampleCell, APoseThatIsNoLongerFreeIsLeftOutAndNamed) {
   // A new obstacle where the tip of pose 3 is.
   const Eigen::Vector3d p = plan.poses[2].tool_pose->translation();
   problem.workspace.collision->obstacles.push_back({"newcomer", SphereShape{0.2}, {p, Eigen::Vector3d::Zero()}, "", 1});
-  const Route route = route_problem(problem, file, {}, Monitor{});
+  const Route route = route_problem(problem, poses_in(problem, file), {}, Monitor{});
   ASSERT_FALSE(route.unreachable.empty());
   bool named = false;
   for (const SkippedPose& skipped : route.unreachable)

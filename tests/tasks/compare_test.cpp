@@ -30,10 +30,11 @@ CompareOptions quick(std::vector<std::string> variants, int poses) {
   return options;
 }
 
-CompareOptions given(std::vector<std::string> variants, const std::vector<std::vector<double>>& list) {
+CompareOptions given(const Problem& problem, std::vector<std::string> variants,
+                     const std::vector<std::vector<double>>& list) {
   CompareOptions options = quick(std::move(variants), 0);
   options.plan.poses.reset();
-  options.plans.push_back({"mine", poses_given(list)});
+  options.plans.push_back({"mine", given_poses(problem, list)});
   return options;
 }
 
@@ -148,7 +149,7 @@ TEST(Compare, FirstOrderBiasIsThatOfTheWholeFitWhereTheEffectIsSmall) {
 TEST(Compare, BiasIsTheLeastSquaresAnswerToTheDifferenceOfTheReadings) {
   const Problem problem = example("telescope/problem.yaml");
   const auto list = list_of(problem, 25);
-  const Comparison c = compare_problem(problem, given({"rigid", "matrix"}, list), {});
+  const Comparison c = compare_problem(problem, given(problem, {"rigid", "matrix"}, list), {});
   const VariantAlias& alias = alias_of(c, "rigid", "matrix");
   ASSERT_EQ(c.scores.size(), 2U);
   EXPECT_EQ(c.scores[0].infeasible, 0);
@@ -187,7 +188,8 @@ TEST(Compare, NothingIsAliasedByTheSameVariantAndTwiceTheDifferenceIsTwiceTheBia
     problem.variants.back().nominal.push_back(value("kappa", 0.004 * times));
     problem.variants.back().nominal.push_back(value("leg_1.az", 2e-4 * times));
   }
-  const Comparison c = compare_problem(problem, given({"rigid", "same", "once", "twice"}, list_of(problem, 20)), {});
+  const Comparison c =
+      compare_problem(problem, given(problem, {"rigid", "same", "once", "twice"}, list_of(problem, 20)), {});
   EXPECT_TRUE(alias_of(c, "rigid", "same").sources.empty());
   for (const AliasedParameter& p : alias_of(c, "rigid", "same").parameters) {
     EXPECT_EQ(p.shift, 0);
@@ -231,12 +233,12 @@ class Arm : public testing::Test {
 
 TEST_F(Arm, AListIsScoredAsEvaluateScoresIt) {
   const auto list = list_of(problem_, 9);
-  const CompareOptions options = given({"geometric"}, list);
+  const CompareOptions options = given(problem_, {"geometric"}, list);
   const Comparison c = compare_problem(problem_, options, {});
   EvaluateOptions evaluate;
   evaluate.plan = options.plan;
   evaluate.plan.variant = "geometric";
-  const PoseListEvaluation e = evaluate_problem(problem_, poses_given(list), evaluate, {});
+  const PoseListEvaluation e = evaluate_problem(problem_, given_poses(problem_, list), evaluate, {});
   ASSERT_EQ(c.scores.size(), 1U);
   EXPECT_EQ(c.scores[0].log_det, e.plan.log_det);
   EXPECT_EQ(c.scores[0].rho0, e.plan.rho0);
@@ -250,7 +252,7 @@ TEST_F(Arm, WhatAnEqualParameterTakesUpIsWholeAndLeavesNoErrorOfTheRobot) {
   for (auto& pattern : problem_.variants.back().parameters)
     if (pattern.value == "py1") pattern.value = "joint_a3.y";
   problem_.variants.back().tolerance.push_back(value("joint_a3.y", 3e-3));
-  const Comparison c = compare_problem(problem_, given({"geometric", "swapped"}, list_of(problem_, 9)), {});
+  const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "swapped"}, list_of(problem_, 9)), {});
   const VariantAlias& alias = alias_of(c, "geometric", "swapped");
   ASSERT_EQ(alias.sources.size(), 1U);
   EXPECT_EQ(alias.sources[0].spread, 3e-3);
@@ -266,7 +268,7 @@ TEST_F(Arm, AParameterPaysWhereItsToleranceIsWideAndNotWhereItIsNarrow) {
   problem_.variants.back().fixed.push_back({"px2", 0});
   for (const double tolerance : {5e-3, 1e-8}) {
     problem_.variants.front().tolerance = {value("px2", tolerance)};
-    const Comparison c = compare_problem(problem_, given({"geometric", "few"}, list), {});
+    const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "few"}, list), {});
     const ExtraWorth& worth = worth_of(c, "geometric", "few");
     EXPECT_EQ(worth.measure, ExtraWorth::Measure::test_poses);
     EXPECT_THAT(worth.extra, testing::ElementsAre("px2"));
@@ -275,7 +277,7 @@ TEST_F(Arm, AParameterPaysWhereItsToleranceIsWideAndNotWhereItIsNarrow) {
   }
   problem_.design.test_poses.reset();
   problem_.variants.front().tolerance = {value("px2", 5e-3)};
-  const Comparison c = compare_problem(problem_, given({"geometric", "few"}, list), {});
+  const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "few"}, list), {});
   EXPECT_EQ(worth_of(c, "geometric", "few").measure, ExtraWorth::Measure::shared_parameters);
   EXPECT_TRUE(worth_of(c, "geometric", "few").worth().value());
 }
@@ -283,7 +285,7 @@ TEST_F(Arm, AParameterPaysWhereItsToleranceIsWideAndNotWhereItIsNarrow) {
 TEST_F(Arm, ToleranceThatCountsAsKnowledgeKeepsBiasSmaller) {
   problem_.variants.push_back(copy_of(problem_, "geometric", "few"));
   problem_.variants.back().fixed.push_back({"px2", 0});
-  CompareOptions options = given({"geometric", "few"}, list_of(problem_, 9));
+  CompareOptions options = given(problem_, {"geometric", "few"}, list_of(problem_, 9));
   const auto largest = [&] {
     const Comparison c = compare_problem(problem_, options, {});
     double size = 0;
@@ -307,8 +309,8 @@ TEST_F(Arm, ConventionsShareNoCatalogueAndTheNoiseIsToldAllTheSame) {
 
 TEST_F(Arm, TooFewPosesAreAReasonNotAnEnd) {
   const auto list = list_of(problem_, 9);
-  CompareOptions options = given({"geometric"}, {list[0], list[1]});
-  options.plans.push_back({"longer", poses_given(list)});
+  CompareOptions options = given(problem_, {"geometric"}, {list[0], list[1]});
+  options.plans.push_back({"longer", given_poses(problem_, list)});
   const Comparison c = compare_problem(problem_, options, {});
   EXPECT_THAT(c.scores[0].why_not, HasSubstr("2 poses give"));
   EXPECT_EQ(c.scores[1].why_not, "");

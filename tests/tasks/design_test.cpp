@@ -15,6 +15,7 @@
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -92,7 +93,7 @@ TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
   PlanOptions options = quick();
   options.poses = 20;
   const Plan first = plan_problem(problem, options, Monitor{});
-  options.measured = poses_in_file(folder.write("measured.csv", poses_csv(first)));
+  options.measured = poses_in(problem, folder.write("measured.csv", poses_csv(first)));
   options.poses = 6;
   const Plan more = plan_problem(problem, options, Monitor{});
   ASSERT_EQ(more.poses.size(), 26U);
@@ -287,7 +288,7 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
   options.drop = 2;
   options.add = 3;
   for (const auto& file : {folder.write("p.csv", poses_csv(plan)), folder.write("p.json", plan_json(plan))}) {
-    const PoseListEvaluation e = evaluate_problem(problem, file, options, Monitor{});
+    const PoseListEvaluation e = evaluate_problem(problem, poses_in(problem, file), options, Monitor{});
     EXPECT_NEAR(e.plan.log_det, plan.log_det, 1e-9);
     EXPECT_NEAR(e.plan.certificate.efficiency, plan.certificate.efficiency, 1e-6);
     for (std::size_t i = 0; i < plan.poses.size(); ++i) {
@@ -317,10 +318,10 @@ TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnc
   options.plan = quick(200);
   const auto file = folder.write("four.csv", "x [mm],y [mm]\n0,300\n100,300\n-100,300\n0,400\n");
   options.plan.criterion = "test_pose";
-  EXPECT_THROW(evaluate_problem(problem, file, options, Monitor{}), CannotDo);
+  EXPECT_THROW(evaluate_problem(problem, poses_in(problem, file), options, Monitor{}), CannotDo);
   options.plan.criterion = "o1";
   options.drop = 1;  // three poses of two rows leave eight parameters open
-  EXPECT_THROW(evaluate_problem(problem, file, options, Monitor{}), CannotDo);
+  EXPECT_THROW(evaluate_problem(problem, poses_in(problem, file), options, Monitor{}), CannotDo);
 }
 
 TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
@@ -329,7 +330,7 @@ TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
   PlanOptions options = quick(200);
   options.poses = 10;
   const Plan first = plan_problem(problem, options, Monitor{});
-  options.measured = poses_in_file(folder.write("measured.csv", poses_csv(first)));
+  options.measured = poses_in(problem, folder.write("measured.csv", poses_csv(first)));
   for (const char* method : {"exchange", "auto"}) {
     options.method = method;
     const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));
@@ -364,13 +365,14 @@ TEST(Evaluate, BadListsNameFileLineAndWhatIsAllowed) {
            Bad{"{\"poses\": []}", "bad.csv: has no poses"},
        }) {
     try {
-      evaluate_problem(problem, folder.write("bad.csv", bad.text), {}, Monitor{});
+      evaluate_problem(problem, poses_in(problem, folder.write("bad.csv", bad.text)), {}, Monitor{});
       FAIL() << "accepted: " << bad.text;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(bad.message));
     }
   }
-  EXPECT_THROW(evaluate_problem(problem, folder.write("few.csv", "q1,q2\n1,2\n"), {}, Monitor{}), CannotDo);
+  EXPECT_THROW(evaluate_problem(problem, poses_in(problem, folder.write("few.csv", "q1,q2\n1,2\n")), {}, Monitor{}),
+               CannotDo);
 }
 
 }  // namespace

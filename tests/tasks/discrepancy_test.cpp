@@ -13,6 +13,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -111,7 +112,7 @@ TEST_F(Discrepancies, TheEvaluationOfAPlanRepeatsItsFigures) {
     EvaluateOptions options;
     options.plan.criterion = criterion;
     options.plan.truth = "both";
-    const PoseListEvaluation again = evaluate_problem(p, poses_given(configurations_of(made)), options, Monitor{});
+    const PoseListEvaluation again = evaluate_problem(p, given_poses(p, configurations_of(made)), options, Monitor{});
     EXPECT_NEAR(again.plan.criterion_value, made.criterion_value, 1e-9 * std::abs(made.criterion_value));
     EXPECT_NEAR(again.plan.discrimination->noncentrality(), made.discrimination->noncentrality(), 1e-9);
     const auto scored = [&](const std::string& name) {
@@ -130,7 +131,7 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
     compare.variants = {"plain", "both"};
     compare.truth = "both";
     compare.plan.candidates = 100;
-    compare.plans.push_back({"mine", poses_given(configurations_of(made))});
+    compare.plans.push_back({"mine", given_poses(p, configurations_of(made))});
     const Comparison c = compare_problem(p, compare, Monitor{});
     ASSERT_EQ(c.aliases.size(), 1U);
     const VariantAlias& alias = c.aliases.front();
@@ -155,7 +156,7 @@ TEST_F(Discrepancies, BiasPlansErrLessThanPlansThatKnowOfNoiseAlone) {
     EvaluateOptions options;
     options.plan.criterion = "bias";
     options.plan.truth = "longer";
-    return evaluate_problem(p, poses_given(configurations_of(plan(p, "test_pose", "longer"))), options, Monitor{})
+    return evaluate_problem(p, given_poses(p, configurations_of(plan(p, "test_pose", "longer"))), options, Monitor{})
         .plan.criterion_value;
   }());
 }
@@ -170,7 +171,7 @@ TEST_F(Discrepancies, MeasuredPosesAndPriorsCountInBothCriteria) {
       options.truth = "both";
       options.poses = 4;
       options.prior = prior;
-      options.measured = poses_given(configurations_of(first));
+      options.measured = given_poses(p, configurations_of(first));
       const Plan more = plan_problem(p, options, Monitor{});
       EXPECT_EQ(more.discrimination->readings, 20 + (prior ? 3 : 0));
       // More readings of the same effects leave more of them unexplained.

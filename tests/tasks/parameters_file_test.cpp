@@ -18,6 +18,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -126,11 +127,11 @@ TEST_F(PlannedAtParameters, ReportAndEvaluationAgreeAtTheParametersAndSaySoElsew
 
   EvaluateOptions options;
   options.plan.candidates = 200;
-  const PoseListEvaluation same = evaluate_problem(calibrated, poses_in_file(plan_file), options, Monitor{});
+  const PoseListEvaluation same = evaluate_problem(calibrated, poses_in(calibrated, plan_file), options, Monitor{});
   EXPECT_TRUE(same.notes.empty());
   EXPECT_NEAR(same.plan.log_det, plan.log_det, 1e-9 * std::abs(plan.log_det));
   EXPECT_EQ(same.plan.parameters_file.sha256, calibrated.parameters->sha256);
-  const PoseListEvaluation other = evaluate_problem(nominal, poses_in_file(plan_file), options, Monitor{});
+  const PoseListEvaluation other = evaluate_problem(nominal, poses_in(nominal, plan_file), options, Monitor{});
   ASSERT_EQ(other.notes.size(), 1U);
   EXPECT_THAT(other.notes.front(), HasSubstr("everything here is at nominal ones (--parameters "));
 }
@@ -139,14 +140,14 @@ TEST_F(PlannedAtParameters, RouteStatesThemAndNotesOthers) {
   const Plan plan = quick_plan(calibrated);
   const auto plan_file = folder.write("plan.json", plan_json(plan));
   RouteOptions options;
-  const Route route = route_problem(calibrated, plan_file, options, Monitor{});
+  const Route route = route_problem(calibrated, poses_in(calibrated, plan_file), options, Monitor{});
   EXPECT_TRUE(route.notes.empty());
   EXPECT_EQ(json::parse(route_json(route))["problem"]["parameters"]["sha256"], calibrated.parameters->sha256);
   Problem changed = nominal;
   folder.write("cal.yaml", "posewright_parameters: 1\nvariant: " + nominal.variants.front().name +
                                "\nparameters: {leg_1.distal: {value: 0.3501}}\n");
   apply_parameters(changed, read_calibrated_parameters(file), {});
-  const Route other = route_problem(changed, plan_file, options, Monitor{});
+  const Route other = route_problem(changed, poses_in(changed, plan_file), options, Monitor{});
   ASSERT_EQ(other.notes.size(), 1U);
   EXPECT_THAT(other.notes.front(), HasSubstr("with sha256 "));
 }

@@ -10,6 +10,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/select_blocks.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/random_blocks.hpp"
 
 namespace posewright {
@@ -78,7 +79,7 @@ TEST_F(RegisteredCriteria, OfAnyNameAreScoredAlikeInAListThatIsGiven) {
   EvaluateOptions options;
   options.plan.criterion = "registered_a";
   options.plan.truth = "links_and_offsets";
-  const PoseListEvaluation e = evaluate_problem(problem_, poses_of(made), options, Monitor{});
+  const PoseListEvaluation e = evaluate_problem(problem_, planned_poses(problem_, made), options, Monitor{});
   const auto score = [&](const std::string& name) {
     for (const CriterionScore& s : e.scores)
       if (s.name == name) return s;

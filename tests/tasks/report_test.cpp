@@ -14,6 +14,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -141,7 +142,7 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions route_options;
   route_options.from_home = route_options.closed = true;
-  const Route route = route_problem(problem, file, route_options, Monitor{});
+  const Route route = route_problem(problem, poses_in(problem, file), route_options, Monitor{});
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
   brief.route = folder.write("route.json", route_json(route));
@@ -177,7 +178,7 @@ TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
   const auto other = folder.write("other.json", plan_json(plan_problem(problem, options, Monitor{})));
   RouteOptions closed;
   closed.closed = true;
-  Route route = route_problem(problem, file, closed, Monitor{});
+  Route route = route_problem(problem, poses_in(problem, file), closed, Monitor{});
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
   brief.route = folder.write("route.json", route_json(route));

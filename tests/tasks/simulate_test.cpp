@@ -32,7 +32,8 @@ SimulateOptions quick(const std::string& variant, int draws) {
 
 TEST(Simulate, ArmIsAsPredictedAtThePlacesToo) {
   const Problem problem = example("kr270/problem.yaml");
-  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 18)), quick("geometric", 200), Monitor{});
+  const Simulation s =
+      simulate_problem(problem, given_poses(problem, list_of(problem, 18)), quick("geometric", 200), Monitor{});
   EXPECT_EQ(s.summary.fitted, 200);
   EXPECT_EQ(s.readings, 18 * 9);
   ASSERT_TRUE(s.accuracy);
@@ -50,14 +51,14 @@ TEST(Simulate, OtherNominalValuesBiasTheEstimatesAsComparingSays) {
   options.truth = "matrix";
   options.truth_nominal = true;
   options.experiment.exact = true;
-  const Simulation s = simulate_problem(problem, poses_given(list), options, Monitor{});
+  const Simulation s = simulate_problem(problem, given_poses(problem, list), options, Monitor{});
   EXPECT_FALSE(s.confirmed);
   EXPECT_THAT(s.verdict, Contains(HasSubstr("readings come from matrix")));
   EXPECT_THAT(s.verdict, Contains(HasSubstr("power")));
   CompareOptions compare;
   compare.variants = {"linear", "matrix"};
   compare.plan.candidates = 200;
-  compare.plans.push_back({"list", poses_given(list)});
+  compare.plans.push_back({"list", given_poses(problem, list)});
   const Comparison c = compare_problem(problem, compare, Monitor{});
   const auto alias =
       std::find_if(c.aliases.begin(), c.aliases.end(), [](const auto& a) { return a.fitted == "linear"; });
@@ -72,7 +73,8 @@ TEST(Simulate, OtherNominalValuesBiasTheEstimatesAsComparingSays) {
 
 TEST(Simulate, SaysWhereThePredictionCannotHold) {
   const Problem problem = example("telescope/problem.yaml");
-  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 20)), quick("rigid", 30), Monitor{});
+  const Simulation s =
+      simulate_problem(problem, given_poses(problem, list_of(problem, 20)), quick("rigid", 30), Monitor{});
   EXPECT_FALSE(s.confirmed);
   EXPECT_GT(s.curvature.largest, curvature_limit);
   EXPECT_THAT(s.verdict, Contains(HasSubstr("not linear within its own uncertainty")));
@@ -83,19 +85,21 @@ TEST(Simulate, VariantsOfOtherCataloguesAreComparedByReadingsAlone) {
   SimulateOptions options = quick("geometric", 20);
   options.truth = "denavit_hartenberg";
   options.candidates = 200;
-  const Simulation s = simulate_problem(problem, poses_given(list_of(problem, 18)), options, Monitor{});
+  const Simulation s = simulate_problem(problem, given_poses(problem, list_of(problem, 18)), options, Monitor{});
   EXPECT_FALSE(s.parameters.front().errors);
   EXPECT_THAT(s.verdict, Contains(HasSubstr("do not share one catalogue")));
   ASSERT_TRUE(s.accuracy);
   EXPECT_GT(s.accuracy->observed, 0);
   options.truth_nominal = true;
-  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 18)), options, Monitor{}), CannotDo);
+  EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 18)), options, Monitor{}), CannotDo);
 }
 
 TEST(Simulate, RefusesWhatDoesNotDetermineTheParameters) {
   const Problem problem = example("kr270/problem.yaml");
-  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 3)), quick("geometric", 5), Monitor{}), CannotDo);
-  EXPECT_THROW(simulate_problem(problem, poses_given(list_of(problem, 18)), quick("none", 5), Monitor{}), InputError);
+  EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 3)), quick("geometric", 5), Monitor{}),
+               CannotDo);
+  EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 18)), quick("none", 5), Monitor{}),
+               InputError);
 }
 
 }  // namespace

@@ -28,21 +28,18 @@ class Stage : public IdentificationModel {
   }
 
  private:
-  bool do_linearise(std::span<const double> q, std::span<const double>, std::span<const int>,
-                    Linearisation& out) const override {
-    out.G = Eigen::MatrixXd::Constant(1, 1, q[0]);
+  bool do_linearise(const Point& at, std::span<const int>, Linearisation& out) const override {
+    out.G = Eigen::MatrixXd::Constant(1, 1, at.q[0]);
     out.covariance = Eigen::MatrixXd::Constant(1, 1, 4.0);
     return true;
   }
-  bool do_read(std::span<const double>, std::span<const double>, Eigen::VectorXd&) const override { return false; }
-  bool do_actuator_values(std::span<const double> q, std::span<const double>, std::span<double> values) const override {
-    values[0] = q[0] + q[1];
-    values[1] = q[2];
-    return q[0] <= reach_;
+  bool do_read(const Point&, Eigen::VectorXd&) const override { return false; }
+  bool do_actuator_values(const Point& at, std::span<double> values) const override {
+    values[0] = at.q[0] + at.q[1];
+    values[1] = at.q[2];
+    return at.q[0] <= reach_;
   }
-  Eigen::Isometry3d do_tool_pose(std::span<const double>, std::span<const double>) const override {
-    return Eigen::Isometry3d::Identity();
-  }
+  Eigen::Isometry3d do_tool_pose(const Point&) const override { return Eigen::Isometry3d::Identity(); }
   double reach_;
 };
 

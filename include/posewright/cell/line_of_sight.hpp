@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {
@@ -68,10 +69,9 @@ class LineOfSight : public Visibility {
   };
 
   LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision);
-  void add_points(const std::vector<TargetSpec>& targets);
-  void add_board(const CameraMeasurement& camera);
+  void add_station(const InstrumentView::Place& place);
+  void add_points(const InstrumentView& view);
   void add_normals(const Problem& problem);
-  void add_reasons();
   bool seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station, std::span<char> seen,
                  int* reason) const;
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,17 +25,14 @@ struct PoseList {
   ParametersFile parameters_file{};    ///< that it was made at
 };
 
-/// A list that is read once the coordinates of the problem are known, and judged by them: InputError for values that do
-/// not fit. Empty: there is no list.
-using PoseSource = std::function<PoseList(const std::vector<Coordinate>&)>;
+/// Throws InputError for a list that was read with coordinates of another number than these.
+void require_fits(const PoseList& list, const std::vector<Coordinate>& coordinates);
 
-/// poses.csv, any CSV with the coordinates' names, plan.json, route.json, or a list in the named `format`
-/// (outputs/pose_formats.hpp).
-PoseSource poses_in_file(const std::filesystem::path& file, const std::string& format = "");
-/// The poses of a plan in memory.
-PoseSource poses_of(const Plan& plan);
+/// The poses of a plan in memory. Throws InputError for a plan that has other coordinates.
+PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates);
 /// Configurations in memory: one value for each coordinate, in their order; choices that have one label only may be
-/// left out.
-PoseSource poses_given(std::vector<std::vector<double>> configurations);
+/// left out. Throws InputError for values that do not fit.
+PoseList poses_given(const std::vector<std::vector<double>>& configurations,
+                     const std::vector<Coordinate>& coordinates);
 
 }  // namespace posewright

@@ -20,27 +20,22 @@ inline std::string near_singularity() { return "near a singularity"; }
 /// Parameters: base.{x,…,rz} (displacement of the base in M), the robot's own, tool.{x,…,rz} (of the platform).
 class ClosedChain : public TipModel {
  public:
-  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const final;
-  bool actuator_values(std::span<const double> q, std::span<const double> correction,
-                       std::span<double> values) const final;
+  bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                 Twists* reading_twists) const final;
+  bool actuator_values(const Point& at, std::span<double> values) const final;
 
   std::vector<Polyline> skeleton(std::span<const double> q) const final;
 
-  bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                   Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const final;
+  bool sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,
+                   Eigen::MatrixXd& reading_rows) const final;
 
-  bool sensor_values(std::span<const double> q, std::span<const double> correction,
-                     Eigen::VectorXd& values) const final;
-  bool configuration_at(std::span<const double> actuators, std::span<const double> start,
-                        std::span<const double> correction, std::span<double> q) const final;
+  bool sensor_values(const Point& at, Eigen::VectorXd& values) const final;
+  bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const final;
 
   /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty if it
   /// does not converge in 50 steps or meets a singularity.
   /// @param correction  of all parameters, or empty for zero
-  std::optional<std::vector<double>> forward_kinematics(std::span<const double> actuators,
-                                                        std::span<const double> start,
-                                                        std::span<const double> correction = {}) const;
+  std::optional<std::vector<double>> forward_kinematics(std::span<const double> actuators, const Point& start) const;
 
   /// Pose of the platform in the base frame, nominal.
   Eigen::Isometry3d platform(std::span<const double> q) const;

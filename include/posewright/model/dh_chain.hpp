@@ -33,33 +33,13 @@ enum class DhConvention { distal, proximal };
 /// misalignments would make it jump. Throws CannotDo for a chain with mimic joints.
 DhDescription denavit_hartenberg(const ChainDescription& chain, DhConvention convention);
 
-/// Pose of the tip in a scalar of its own, for differentiation; corrections: base (6), motions with a name, tool (6).
-template <class T>
-Frame<T> dh_tip_pose(const DhDescription& chain, const double* q, const T* correction) {
-  Frame<T> frame;
-  frame.then(chain.base);
-  frame.then_displace(correction);
-  const T* next = correction + 6;
-  for (const ElementaryMotion& motion : chain.motions) {
-    T value = T(motion.nominal);
-    if (motion.coordinate >= 0) value += T(q[motion.coordinate]);
-    if (!motion.name.empty()) value += *next++;
-    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(motion.axis);
-    if (motion.rotation) frame.then_rotate(axis, value);
-    else frame.then_translate(axis.cast<T>() * value);
-  }
-  frame.then(chain.tool);
-  frame.then_displace(next);
-  return frame;
-}
-
 /// Parameters: base.{x,…,rz}; JOINT.{theta, d, a, alpha, beta} as there are; tool.{x,…,rz}.
 class DhChain : public TipModel {
  public:
   explicit DhChain(DhDescription chain);
 
-  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
+  bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                 Twists* reading_twists) const override;
 
   const DhDescription& description() const { return chain_; }
 

@@ -33,8 +33,8 @@ class ElasticChain : public TipModel {
   /// Throws InputError for joints that the chain has not.
   ElasticChain(ChainDescription chain, const ElastostaticSpec& spec, const SourcePlace& place);
 
-  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
+  bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                 Twists* reading_twists) const override;
 
   void take_loads_at(std::span<const double> correction) override;
 
@@ -54,10 +54,9 @@ class ElasticChain : public TipModel {
   void add_springs(const SourcePlace& place);
   void geometric_part(std::span<const double> correction, std::vector<double>& rigid) const;
   /// Torque at one coordinate by the load case, without the weight of links.
-  double load_alone(std::span<const double> q, std::size_t coordinate) const;
+  double load_alone(const Point& at, std::size_t coordinate) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
-  void deflect(std::span<const double> q, std::span<const double> elastic, std::span<double> deflection,
-               std::span<double> derivative) const;
+  void deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const;
 
   SerialChain chain_;
   ElastostaticSpec spec_;

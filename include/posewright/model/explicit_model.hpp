@@ -26,26 +26,22 @@ class ExplicitModel : public IdentificationModel {
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;
-  bool do_linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                    Linearisation& out) const override;
-  bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const override;
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                      Eigen::VectorXd& out) const override;
   void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
-  bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                           std::span<const double> correction, std::span<double> q) const override;
+  bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
   int do_block_rows(std::span<const int> selected) const override;
-  bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
-                             std::span<const int> selected, Linearisation& out) const override;
-  bool do_measurable(std::span<const double> q, std::span<const double> correction) const override;
-  bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                          std::span<double> values) const override;
-  Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const override;
+  bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_measurable(const Point& at) const override;
+  bool do_actuator_values(const Point& at, std::span<double> values) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
-  bool do_reading_twists(std::span<const double> q, std::span<const double> correction, Twists& twists) const override;
+  bool do_reading_twists(const Point& at, Twists& twists) const override;
 
   struct Parts;
-  Parts parts(std::span<const double> q, std::span<const double> correction) const;
+  Parts parts(const Point& at) const;
   bool twists_and_noise(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
                         Linearisation& out) const;
   void displace_alone(const MeasurementModel::Sighting& sighting, Linearisation& out) const;

@@ -41,6 +41,14 @@ struct Reading {
   std::string unit;  ///< "m", "rad", "px"
 };
 
+/// Where a robot stands and with which parameters, from where it is seen, under which load.
+struct Point {
+  std::span<const double> q;           ///< configuration, SI
+  std::span<const double> correction;  ///< ξ − nominal of every parameter; empty: all zero
+  int station = 0;                     ///< index among the instrument's
+  int load_case = 0;                   ///< index among the robot's
+};
+
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
   /// Input, r × r; empty: all one. Factors of the covariance of the readings alone (of what stays at a pose none),
@@ -177,29 +185,25 @@ class IdentificationModel {
   int rows_per_target_ = 0;
 
  private:
-  virtual bool do_linearise(std::span<const double> q, std::span<const double> correction,
-                            std::span<const int> selected, Linearisation& out) const = 0;
+  virtual bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const = 0;
   /// Readings of the robot standing at q.
-  virtual bool do_read(std::span<const double> q, std::span<const double> correction, Eigen::VectorXd& y) const = 0;
+  virtual bool do_read(const Point& at, Eigen::VectorXd& y) const = 0;
   virtual void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                              Eigen::VectorXd& out) const;
   virtual void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
-  virtual bool do_configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                   std::span<const double> correction, std::span<double> q) const;
+  virtual bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const;
   virtual void do_take_loads_at(std::span<const double> correction);
   virtual int do_block_rows(std::span<const int> selected) const;
-  virtual bool do_linearise_factored(std::span<const double> q, std::span<const double> correction,
-                                     std::span<const int> selected, Linearisation& out) const;
-  virtual bool do_measurable(std::span<const double> q, std::span<const double> correction) const;
-  virtual bool do_actuator_values(std::span<const double> q, std::span<const double> correction,
-                                  std::span<double> values) const;
-  virtual Eigen::Isometry3d do_tool_pose(std::span<const double> q, std::span<const double> correction) const = 0;
-  virtual bool do_reading_twists(std::span<const double> q, std::span<const double> correction,
-                                 Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+  virtual bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const;
+  virtual bool do_measurable(const Point& at) const;
+  virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
+  virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
+  virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
   void hide(std::span<const double> q, Linearisation& out) const;
-  bool settle(std::span<const double> q, std::span<const double> correction, std::vector<double>& scratch,
-              std::span<const double>& settled) const;
+  bool settle(Point& at, std::vector<double>& scratch) const;
 
+  /// q as the virtual functions take it, its choices resolved.
+  Point point(std::span<const double> q, std::span<const double> total) const;
   std::span<const double> total(std::span<const double> correction, std::vector<double>& scratch) const;
 
   std::shared_ptr<const Visibility> visibility_;

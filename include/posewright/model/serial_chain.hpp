@@ -6,7 +6,10 @@
 namespace posewright {
 
 /// Serial arm: base.{x,y,z,rx,ry,rz}; per joint NAME.{x,y,z,rx,ry,rz} (displacement of its frame before it moves),
-/// NAME.offset and NAME.gear (not for mimic joints); tool.{x,…,rz}. More than can be identified on purpose: the
+/// NAME.offset and NAME.gear (not for mimic joints); tool.{x,…,rz}. Pose of the tip in the measurement frame:
+///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
+///   X_LastTip D(tool).
+/// More than can be identified on purpose: the
 /// irreducible subset comes out of the identifiability analysis.
 class SerialChain : public TipModel {
  public:
@@ -15,8 +18,8 @@ class SerialChain : public TipModel {
 
   /// Columns are spatial twists (theory.md eq. (5)): rotation about axis ω through o gives (o × ω, ω), translation
   /// (axis, 0). Selected indices beyond the chain's own parameters give zero columns.
-  bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                 Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const override;
+  bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                 Twists* reading_twists) const override;
 
   /// The same with every joint turned further than it reads by `deflection` (rad or m per coordinate; empty: zero).
   void linearise_deflected(std::span<const double> q, std::span<const double> deflection,

@@ -74,27 +74,4 @@ struct Frame {
   }
 };
 
-/// Pose of the tip in the measurement frame:
-///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
-///   X_LastTip D(tool).
-/// @param correction  all parameters in the order of ChainLayout
-template <class T>
-Frame<T> tip_pose(const ChainDescription& chain, const ChainLayout& layout, const double* q, const T* correction) {
-  Frame<T> frame;
-  frame.then(chain.X_MeasureBase);
-  frame.then_displace(correction);
-  for (std::size_t k = 0; k < chain.joints.size(); ++k) {
-    const ChainJoint& joint = chain.joints[k];
-    frame.then(joint.X_ParentJoint);
-    frame.then_displace(correction + layout.displacement[k]);
-    const T* own = correction + layout.offset[std::size_t(joint.coordinate)];
-    const T value = joint.multiplier * ((T(1.0) + own[1]) * q[joint.coordinate] + own[0]) + T(joint.offset);
-    if (joint.prismatic) frame.then_translate(joint.axis.cast<T>() * value);
-    else frame.then_rotate(joint.axis, value);
-  }
-  frame.then(chain.X_LastTip);
-  frame.then_displace(correction + layout.tool);
-  return frame;
-}
-
 }  // namespace posewright

@@ -1,38 +1,15 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "posewright/model/closed_chain.hpp"
 
 namespace posewright {
 
-/// One leg's parameters in the scalar type T: base joint a, platform joint b, actuator direction u, length l.
-template <class T>
-struct LegParameters {
-  T a[3], b[3], u[2], l;  ///< u without its third component, which is √(1 − ux² − uy²) with the nominal sign
-};
-
-/// Loop equation of one leg, g = l + extension − ‖p + R (b + lift·z) − a − slide·u‖ (theory.md eq. (8)). A leg with a
-/// prismatic base joint slides, a leg of variable length extends; `lift` is the platform's deformation at b.
-/// @param p, R    platform pose in the base frame (m; row-major rotation)
-/// @param u_sign  sign of the third component of u
-template <class T>
-T leg_residual(const T* p, const T* R, const T& slide, const T& extension, const T& lift, const LegParameters<T>& leg,
-               double u_sign) {
-  using std::sqrt;
-  const T u[3] = {leg.u[0], leg.u[1], u_sign * sqrt(T(1.0) - leg.u[0] * leg.u[0] - leg.u[1] * leg.u[1])};
-  T squared(0.0);
-  for (int i = 0; i < 3; ++i) {
-    const T h = p[i] + R[3 * i] * leg.b[0] + R[3 * i + 1] * leg.b[1] + R[3 * i + 2] * (leg.b[2] + lift) - leg.a[i] -
-                slide * u[i];
-    squared += h * h;
-  }
-  return leg.l + extension - sqrt(squared);
-}
-
 /// Six-legged parallel robot: with prismatic base actuators (6-PUS, e.g. a telescope's secondary mirror) or legs of
-/// variable length (Gough/Stewart platform).
+/// variable length (Gough/Stewart platform). Loop equation of one leg (theory.md eq. (8)):
+///   g = l + extension − ‖p + R (b + lift·z) − a − slide·u‖;
+/// a leg with a prismatic base joint slides, a leg of variable length extends; lift is the platform's deformation at b.
 ///
 /// Configuration: x, y, z (m) added to the reference position, rx, ry, rz (rad): R = Rz Ry Rx R_reference. Own
 /// parameters: leg_i.{ax, ay, az, bx, by, bz, ux, uy, l}, i = 1 … 6 (no ux, uy for a Gough platform); a in the base

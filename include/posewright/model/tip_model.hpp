@@ -35,15 +35,14 @@ class TipModel {
   /// Pose of the tip in M, at configuration q and corrections (all parameters, or empty for zero).
   /// Fills twists (6 × selected; zero for indices beyond the own parameters) and, unless null, reading_twists
   /// (6 × readings); both are resized if needed. False if q is unreachable or singular.
-  virtual bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                         Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const = 0;
+  virtual bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
+                         Twists& twists, Twists* reading_twists) const = 0;
 
   /// From now on loads bend the robot as they do with these corrections (all parameters, maybe without tool.*).
   virtual void take_loads_at(std::span<const double> correction);
 
   /// Actuators at q; false if q is unreachable.
-  virtual bool actuator_values(std::span<const double> q, std::span<const double> correction,
-                               std::span<double> values) const;
+  virtual bool actuator_values(const Point& at, std::span<double> values) const;
 
   /// Lines that show a robot whose links have no shapes (legs, rims) at its nominal parameters, measurement frame, m.
   /// Empty if q is unreachable or the robot is an arm.
@@ -51,17 +50,15 @@ class TipModel {
 
   /// Derivatives of what the redundant sensors read: along the selected parameters (sensors × selected) and along the
   /// readings (sensors × readings). False if q is unreachable. Throws std::logic_error if there are no sensors.
-  virtual bool sensor_rows(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
-                           Eigen::MatrixXd& rows, Eigen::MatrixXd& reading_rows) const;
+  virtual bool sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,
+                           Eigen::MatrixXd& reading_rows) const;
 
   /// What the redundant sensors read (rad or m). False and throws as sensor_rows().
-  virtual bool sensor_values(std::span<const double> q, std::span<const double> correction,
-                             Eigen::VectorXd& values) const;
+  virtual bool sensor_values(const Point& at, Eigen::VectorXd& values) const;
 
   /// Where the robot stands when its actuators have these values, near `start`; without actuators it stays there. False
   /// if a closed chain does not close.
-  virtual bool configuration_at(std::span<const double> actuators, std::span<const double> start,
-                                std::span<const double> correction, std::span<double> q) const;
+  virtual bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const;
 
  protected:
   std::vector<Parameter> parameters_;

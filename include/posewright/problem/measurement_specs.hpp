@@ -105,4 +105,7 @@ struct MeasurementSpec {
   int line = 0;
 };
 
+/// Where its instrument stands, to be changed; null for one that has no stations.
+std::vector<StationSpec>* stations_of(MeasurementSpec& measurement);
+
 }  // namespace posewright

@@ -17,11 +17,12 @@ struct PlanOptions {
   bool smallest = false;  ///< the smallest number of poses that reaches design: require
   std::optional<Repeats> repeats;
   std::optional<Scaling> scaling;
-  std::optional<bool> prior;  ///< count tolerances as prior knowledge
-  bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
-  PoseSource measured;        ///< poses that are measured already; empty = as in the file
-  /// Candidates, in place of drawn ones; empty = as in the file, unless `candidates` says how many to draw.
-  PoseSource candidates_from{};
+  std::optional<bool> prior;           ///< count tolerances as prior knowledge
+  bool reserve = false;                ///< maximise what is left when the pose that hurts most is lost
+  std::optional<PoseList> measured{};  ///< poses that are measured already; none: as in the file
+  /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
+  /// many to draw.
+  std::optional<PoseList> candidates_from{};
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

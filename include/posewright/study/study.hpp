@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +25,10 @@ struct Settings {
   Scaling scaling = Scaling::tolerance;
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
   Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
-  PoseSource measured;                         ///< empty: none
-  PoseSource candidates_from;                  ///< empty: candidates are drawn
+  std::optional<PoseList> measured;
+  std::optional<PoseList> candidates_from;  ///< none: candidates are drawn
+  /// The same as files that are still to be read; empty: none.
+  std::filesystem::path measured_file, candidates_file;
   PlannerOptions planner;
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.

@@ -37,6 +37,10 @@ struct Variant {
 /// targets only, if line of sight is asked for.
 Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell);
 
+/// What lists of poses of a problem are read with: names, units, limits and labels of a variant's coordinates (empty:
+/// the first). Throws as place_variant().
+std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::string& variant = "");
+
 struct VariantOptions {
   std::string variant;                  ///< empty = as in the file
   std::vector<std::string> parameters;  ///< columns to keep, by name; empty = all that can be identified

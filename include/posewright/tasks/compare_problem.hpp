@@ -17,7 +17,7 @@ struct CompareOptions {
   std::string truth;                  ///< aliases of this variant alone; empty: of every one
   struct List {
     std::string name;
-    PoseSource poses;
+    PoseList poses;  ///< read with pose_coordinates()
   };
   std::vector<List> plans;  ///< empty: the best plan for each variant is searched
   /// method (empty: exchange), poses, candidates, restarts, seed, threads; poses, method and restarts for plans that

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/lists/pose_list.hpp"
 #include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
@@ -42,11 +43,9 @@ struct EvaluateOptions {
 
 /// The user's own list: scored by every criterion that the problem allows, its certificate against the candidates, the
 /// contribution of each pose and what its loss would cost, which `drop` poses to leave out, which `add` to measure
-/// more. Throws InputError for a list that cannot be read or holds infeasible poses, naming the constraint.
-PoseListEvaluation evaluate_problem(const Problem& problem, const PoseSource& poses, const EvaluateOptions& options,
+/// more. Throws InputError for a list that holds infeasible poses, naming the constraint.
+/// @param poses  read with pose_coordinates()
+PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& poses, const EvaluateOptions& options,
                                     const Monitor& monitor);
-/// The same for a file.
-PoseListEvaluation evaluate_problem(const Problem& problem, const std::filesystem::path& poses,
-                                    const EvaluateOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

@@ -30,10 +30,7 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan);
 /// the tour are real; where the tour is optimal for these times, no other order is shorter. Throws InputError for a
 /// list that does not fit, CannotDo if home is asked for and not free, or no pose can be reached, and where the
 /// search is stopped.
-Route route_problem(const Problem& problem, const PoseSource& poses, const RouteOptions& options,
-                    const Monitor& monitor);
-/// The same for a file.
-Route route_problem(const Problem& problem, const std::filesystem::path& plan, const RouteOptions& options,
-                    const Monitor& monitor);
+/// @param poses  read with pose_coordinates()
+Route route_problem(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

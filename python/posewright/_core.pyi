@@ -550,6 +550,13 @@ class Stations:
     def to_dict(self) -> dict[str, Any]: ...
     def __len__(self) -> int: ...
 
+class Exported:
+    @property
+    def files(self) -> dict[str, bytes]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def save(self, folder: _Path = ".", *, overwrite: bool = False) -> list[os.PathLike[str]]: ...
+
 class Report:
     @property
     def notes(self) -> list[str]: ...
@@ -618,6 +625,24 @@ def stations(
     time_limit: Optional[float] = None,
     progress: _Report = None,
 ) -> Stations: ...
+def export(
+    plan: Union[Plan, Route, _Path],
+    to: str,
+    problem: Optional[Problem] = None,
+    *,
+    unchecked: bool = False,
+    name: Optional[str] = None,
+    speed: Optional[float] = None,
+    settle: Optional[float] = None,
+    wait: Optional[float] = None,
+    digital_output: Union[int, str, None] = None,
+    digital_input: Union[int, str, None] = None,
+    tool: Optional[int] = None,
+    base: Optional[int] = None,
+    coupling: Optional[float] = None,
+    controller: Optional[_Path] = None,
+    group: Optional[str] = None,
+) -> Exported: ...
 def report(
     problem: Problem,
     plan: _Path,

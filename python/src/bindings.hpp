@@ -55,11 +55,11 @@ auto with_places(const GivenProblem& problem, Work&& work) {
 
 /// None where the value is not text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);
-/// A Plan, a file's name (with the format of a list that another program wrote), or an array of configurations.
 /// What lists of this problem are read with.
 inline std::vector<Coordinate> coordinates_of(const GivenProblem& given, const std::string& variant = "") {
   return with_places(given, [&] { return pose_coordinates(given.problem, variant); });
 }
+/// A Plan, a file's name (with the format of a list that another program wrote), or an array of configurations.
 PoseList pose_list(const py::object& poses, const std::vector<Coordinate>& coordinates, const std::string& format = "");
 /// The kept columns of a plan's variant.
 std::vector<std::string> kept_parameters(const Plan& plan, const std::string& variant);
@@ -86,5 +86,6 @@ void bind_route(py::module_& m);
 void bind_blocks(py::module_& m);
 void bind_criteria(py::module_& m);
 void bind_tasks(py::module_& m);
+void bind_export(py::module_& m);
 
 }  // namespace posewright::python

@@ -44,4 +44,5 @@ PYBIND11_MODULE(_core, m) {
   bind_route(m);
   bind_blocks(m);
   bind_tasks(m);
+  bind_export(m);
 }

@@ -1,4 +1,4 @@
-"""Simulate, calibrate, compare, stations, report: what the command line says, and files that it reads."""
+"""Simulate, calibrate, compare, stations, report, export: what the command line says, and files that it reads."""
 import json
 
 import numpy as np
@@ -73,6 +73,38 @@ def test_a_report_holds_the_plan_and_is_a_page(kr270, small_plan, tmp_path):
     assert json.loads(report.to_json())["schema"] == "posewright/report/1"
     report.save(tmp_path / "report.html")
     assert (tmp_path / "report.html").read_text().lstrip().lower().startswith("<!doctype html")
+
+
+def test_exported_files_are_those_of_the_command_line(program, kr270, small_plan, tmp_path):
+    small_plan.save(tmp_path / "plan.json")
+    made = pw.export(small_plan, "abb-rapid", kr270, speed=10, coupling=0)
+    assert pw.export(tmp_path / "plan.json", "abb-rapid", kr270, speed=10, coupling=0).files == made.files
+    files = made.save(tmp_path)
+    assert [file.read_bytes() for file in files] == list(made.files.values()) and made.notes
+    theirs = tmp_path / "theirs" / files[0].name
+    theirs.parent.mkdir()
+    program("export", tmp_path / "plan.json", "--problem", kr270.file, "--to", "abb-rapid", "--speed", 10, "--coupling", 0, "-o", theirs)
+    assert theirs.read_bytes() == files[0].read_bytes()
+    with pytest.raises(FileExistsError):
+        made.save(tmp_path)
+
+
+def test_an_export_that_moves_a_robot_is_checked_against_it(kr270, small_plan, tmp_path):
+    path = tmp_path / "plan.json"
+    small_plan.save(path)
+    plan = json.loads(path.read_text())
+    plan["poses"][0]["configuration"][0] = 9.0
+    path.write_text(json.dumps(plan))
+    with pytest.raises(pw.InputError, match="joint_a1"):
+        pw.export(path, "abb-rapid", kr270, coupling=0)
+    assert "nothing is checked" in " ".join(pw.export(path, "abb-rapid", coupling=0, unchecked=True).notes)
+    for wrong in (lambda: pw.export(small_plan, "abb-rapid", coupling=0), lambda: pw.export(small_plan, "no-such-format"),
+                  lambda: pw.export(small_plan, "abb-rapid", kr270, speed=200), lambda: pw.export(3, "abb-rapid", kr270),
+                  lambda: pw.export(small_plan, "figaroh", speed=10)):
+        with pytest.raises(pw.InputError):
+            wrong()
+    with pytest.raises(TypeError):
+        pw.export(small_plan, "abb-rapid", kr270, sped=10)
 
 
 def test_stations_need_a_number_of_places(examples):

@@ -10,7 +10,7 @@
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
-#include "posewright/tasks/check_sequence.hpp"
+#include "posewright/tasks/export_sequence.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
@@ -22,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t plan_limit = 200'000'000, settings_limit = 1'000'000;
-constexpr const char* no_controller = "syntax checked, not run on a controller";
 
 po::options_description export_command_options() {
   po::options_description options("Options");
@@ -60,19 +59,16 @@ std::optional<double> number(const po::variables_map& values, const std::string&
   return value;
 }
 
-/// An option that a format does not read is a mistake, not decoration.
-void require_read(const PoseFormat& format, const po::variables_map& values) {
+std::vector<std::string> given_options(const po::variables_map& values) {
+  std::vector<std::string> given;
   for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base",
                              "coupling", "controller", "group"})
-    if (values.count(option) > 0 &&
-        std::find(format.options.begin(), format.options.end(), option) == format.options.end())
-      throw InputError({}, fmt::format("--{} is not read for {}", option, format.name),
-                       format.options.empty() ? "it has no options"
-                                              : fmt::format("allowed: --{}", fmt::join(format.options, ", --")));
+    if (values.count(option) > 0) given.emplace_back(option);
+  return given;
 }
 
 ExportOptions export_options(const PoseFormat& format, const po::variables_map& values, const fs::path& output) {
-  require_read(format, values);
+  require_read(format, given_options(values));
   ExportOptions result;
   if (const auto speed = whole_number(values, "speed", 1, 100)) result.speed = *speed;
   result.settle = number(values, "settle", 0, 3600);
@@ -94,23 +90,16 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   return result;
 }
 
-/// A program's poses as the robot of their problem can take them; lists are what they are.
-PoseSequence sequence_of(const PoseFormat& format, const fs::path& plan, const po::variables_map& values,
-                         const ExportOptions& options) {
-  PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
+/// The problem that a program is checked against; none for lists and if nobody asks.
+std::optional<Problem> problem_of(const PoseFormat& format, const fs::path& plan, const po::variables_map& values) {
   if (!format.moves_robot()) {
     for (const char* option : {"problem", "unchecked", "package", "parameters"})
       if (values.count(option) > 0)
         throw InputError({}, fmt::format("--{} is not read for {}", option, format.name), "lists are not checked");
-    return sequence;
+    return std::nullopt;
   }
-  if (values.count("unchecked") > 0) return sequence;
-  const double coupling = options.coupling.value_or(options.controller.coupling.value_or(0));
-  if (coupling != 0 && options.controller.range_deg.empty())
-    throw InputError({}, "axes that are coupled have ranges of their own on the controller",
-                     "range_deg in --controller FILE, or --unchecked");
-  const fs::path file = problem_file(values, plan);
-  return checked_sequence(problem_for_plan(file, values, plan), std::move(sequence));
+  if (values.count("unchecked") > 0) return std::nullopt;
+  return problem_for_plan(problem_file(values, plan), values, plan);
 }
 
 /// Where each file goes.
@@ -205,7 +194,7 @@ void print_table(bool json) {
                                  {"needs", format.needs},
                                  {"options", format.options},
                                  {"read_back", format.read != nullptr},
-                                 {"note", format.controller ? no_controller : ""}});
+                                 {"note", format.controller ? no_controller_note : ""}});
     fmt::print("{}", json_text(list));
     return;
   }
@@ -215,7 +204,7 @@ void print_table(bool json) {
     table.row({format.name + (format.controller ? " *" : ""), format.description, format.used_by,
                format.extension.empty() ? "folder" : format.extension, format.read != nullptr ? "yes" : "",
                format.needs});
-  fmt::print("{}\n* {}\n", table.text(), no_controller);
+  fmt::print("{}\n* {}\n", table.text(), no_controller_note);
 }
 
 std::string summary_json(const PoseFormat& format, const PoseSequence& sequence, const std::vector<fs::path>& files,
@@ -246,11 +235,9 @@ int run_export(const po::variables_map& values, const Words& positional) {
   const fs::path output = to_stdout ? fs::path() : fs::path(given);
   const ExportOptions export_settings = export_options(format, values, output);
   require_ending(format, output);
-  const PoseSequence sequence = sequence_of(format, plan, values, export_settings);
-  Exported exported = export_poses(format, sequence, export_settings);
-  if (format.controller) exported.notes.emplace_back(no_controller);
-  if (format.moves_robot() && values.count("unchecked") > 0)
-    exported.notes.emplace_back("nothing is checked against the robot's limits and velocities");
+  const PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
+  const std::optional<Problem> problem = problem_of(format, plan, values);
+  const Exported exported = export_sequence(format, sequence, export_settings, problem ? &*problem : nullptr);
   if (to_stdout) {
     std::fwrite(exported.files.front().bytes.data(), 1, exported.files.front().bytes.size(), stdout);
     print_notes(exported.notes);

@@ -1,0 +1,36 @@
+#include "posewright/tasks/export_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "posewright/support/error.hpp"
+#include "posewright/tasks/check_sequence.hpp"
+
+namespace posewright {
+
+void require_read(const PoseFormat& format, const std::vector<std::string>& given) {
+  for (const std::string& option : given)
+    if (std::find(format.options.begin(), format.options.end(), option) == format.options.end())
+      throw InputError({}, fmt::format("--{} is not read for {}", option, format.name),
+                       format.options.empty() ? "it has no options"
+                                              : fmt::format("allowed: --{}", fmt::join(format.options, ", --")));
+}
+
+Exported export_sequence(const PoseFormat& format, PoseSequence sequence, const ExportOptions& options,
+                         const Problem* problem) {
+  if (format.moves_robot() && problem != nullptr) {
+    const double coupling = options.coupling.value_or(options.controller.coupling.value_or(0));
+    if (coupling != 0 && options.controller.range_deg.empty())
+      throw InputError({}, "axes that are coupled have ranges of their own on the controller",
+                       "range_deg in --controller FILE, or --unchecked");
+    sequence = checked_sequence(*problem, std::move(sequence));
+  }
+  Exported exported = export_poses(format, sequence, options);
+  if (format.controller) exported.notes.emplace_back(no_controller_note);
+  if (format.moves_robot() && problem == nullptr)
+    exported.notes.emplace_back("nothing is checked against the robot's limits and velocities");
+  return exported;
+}
+
+}  // namespace posewright

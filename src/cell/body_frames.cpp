@@ -68,7 +68,8 @@ class ChainFrames : public BodyFrames {
     if (owner.starts_with("target") || owner.starts_with("station") || owner == "camera" || owner == "board")
       return count_;
     for (std::size_t k = 0; k < chain_.joints.size(); ++k)
-      if (chain_.joints[k].name == owner) return int(k) + 1;
+      if (const std::string& name = chain_.joints[k].name; name == owner || parameter.starts_with(name + ".coupling."))
+        return int(k) + 1;
     return owner == "tool" ? count_ : 1;
   }
 

@@ -215,14 +215,15 @@ void ElasticChain::torques(std::span<const double> q, int load, bool link_weight
 double ElasticChain::load_alone(const Point& at, std::size_t coordinate) const {
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
-  torques(at.q, at.load_case, false, std::span(torque).first(joints));
+  torques(at.readings(), at.load_case, false, std::span(torque).first(joints));
   return torque[coordinate];
 }
 
 void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const {
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
-  torques(at.q, at.load_case, std::span(torque).first(joints));
+  const auto q = at.readings();
+  torques(q, at.load_case, std::span(torque).first(joints));
   const auto elastic =
       at.correction.empty() ? at.correction : at.correction.subspan(std::size_t(first_), springs_.size());
   const auto value = [&](std::size_t i) {
@@ -232,14 +233,14 @@ void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::s
     const Spring& spring = springs_[i];
     const auto c = std::size_t(spring.coordinate);
     derivative[i] = 0.0;
-    if (spring.kind == Spring::Kind::listed && at.q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
+    if (spring.kind == Spring::Kind::listed && q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
     if (spring.kind == Spring::Kind::compliance || spring.kind == Spring::Kind::listed) {
       deflection[c] = value(i) * torque[c];
       derivative[i] = torque[c];
     }
     if (spring.kind != Spring::Kind::joint_stiffness) continue;
     // Three parameters in a row share one deflection, δ = (τ − M) / K.
-    const CompensatorLinkage<double> linkage(*spec_.compensator, at.q[c]);
+    const CompensatorLinkage<double> linkage(*spec_.compensator, q[c]);
     const double stiffness = value(i) + linkage.added_stiffness(value(i + 1), value(i + 2));
     const double acts = spec_.compensator->torque ? 1.0 : 0.0;
     const double load = spec_.compensator->torque || !spec_.link_gravity ? torque[c] : load_alone(at, c);

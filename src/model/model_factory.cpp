@@ -6,6 +6,7 @@
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/five_bar.hpp"
+#include "posewright/model/joint_effects.hpp"
 #include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/six_legs.hpp"
@@ -21,6 +22,11 @@ struct MakeTip {
   const VariantSpec& variant;
 
   std::unique_ptr<TipModel> operator()(const SerialArmSpec& arm) const {
+    std::unique_ptr<TipModel> chain = chain_of(arm);
+    if (arm.joint_effects.empty()) return chain;
+    return std::make_unique<JointEffects>(std::move(chain), arm.joint_effects, problem.file.string());
+  }
+  std::unique_ptr<TipModel> chain_of(const SerialArmSpec& arm) const {
     using Convention = VariantSpec::Convention;
     ChainDescription chain = read_urdf_chain(arm, problem.at(arm.line));
     if (variant.convention != Convention::frames) {

@@ -27,8 +27,30 @@ std::vector<std::pair<std::string, Located<std::string>>> read_parameter_names(c
   return names;
 }
 
+std::vector<JointEffectsSpec> read_joint_effects(const Value& value) {
+  std::vector<JointEffectsSpec> all;
+  for (const yaml::Entry& entry : Section(value).entries()) {
+    const Section section(entry.value);
+    section.allow({"eccentricity", "gear_ratio", "coupling"});
+    JointEffectsSpec effects;
+    effects.joint = entry.key;
+    if (const Value* eccentricity = section.find("eccentricity")) effects.eccentricity = eccentricity->flag();
+    if (const Value* ratio = section.find("gear_ratio")) {
+      effects.gear_ratio = ratio->number(Quantity::number, Sign::positive);
+      if (effects.eccentricity && (*effects.gear_ratio == 1 || *effects.gear_ratio == 2))
+        ratio->fail("is a harmonic of eccentricity, too", "another ratio, or one of both");
+    }
+    if (const Value* coupling = section.find("coupling")) effects.coupling = coupling->texts();
+    if (!effects.eccentricity && !effects.gear_ratio && effects.coupling.empty())
+      entry.value.fail("has no effect", "eccentricity: yes, gear_ratio or coupling");
+    all.push_back(std::move(effects));
+  }
+  return all;
+}
+
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& folder) {
-  robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic"});
+  robot.allow(
+      {"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "joint_effects"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
   arm.urdf = folder / urdf.text("a file name is expected");
@@ -40,6 +62,7 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
     arm.encoder_noise = noise->measured({Quantity::angle, Quantity::length}, Sign::not_negative).value;
   if (const Value* names = robot.find("parameter_names")) arm.parameter_names = read_parameter_names(*names);
   if (const Value* elastostatic = robot.find("elastostatic")) arm.elastostatic = read_elastostatic(*elastostatic);
+  if (const Value* effects = robot.find("joint_effects")) arm.joint_effects = read_joint_effects(*effects);
   return arm;
 }
 

@@ -47,6 +47,9 @@ struct Point {
   std::span<const double> correction;  ///< ξ − nominal of every parameter; empty: all zero
   int station = 0;                     ///< index among the instrument's
   int load_case = 0;                   ///< index among the robot's
+  std::span<const double> read{};      ///< what the joints read if they do not stand there; empty: q
+
+  std::span<const double> readings() const { return read.empty() ? q : read; }
 };
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.

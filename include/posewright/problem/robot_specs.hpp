@@ -64,6 +64,14 @@ struct ElastostaticSpec {
   int line = 0;
 };
 
+/// What a joint does beside what it reads (model/joint_effects.hpp).
+struct JointEffectsSpec {
+  Located<std::string> joint;                  ///< a name or a glob
+  bool eccentricity = false;                   ///< first and second harmonic of the joint's angle
+  std::optional<double> gear_ratio;            ///< periods of the gear's error in one turn of the joint
+  std::vector<Located<std::string>> coupling;  ///< joints that it follows a little
+};
+
 /// Serial arm read from a URDF file: the chain from link `base` to link `tip`.
 struct SerialArmSpec {
   std::filesystem::path urdf;                     ///< resolved against the problem file's folder
@@ -74,6 +82,7 @@ struct SerialArmSpec {
   /// User's name of a parameter → the model's name, e.g. px1 → joint_a2.x.
   std::vector<std::pair<std::string, Located<std::string>>> parameter_names;
   std::optional<ElastostaticSpec> elastostatic;
+  std::vector<JointEffectsSpec> joint_effects;
 };
 
 /// One leg of a six-legged platform, all vectors in m (u dimensionless, normalised by the reader).

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "posewright/model/tip_model.hpp"
+#include "posewright/problem/robot_specs.hpp"
+
+namespace posewright {
+
+/// Serial arm whose joints stand elsewhere than they read, by functions of the readings (theory.md eq. (32)):
+///   q' = q + c₁ cos q + s₁ sin q + c₂ cos 2q + s₂ sin 2q   (eccentricity: encoder or gear wheel off its axis, and
+///   oval)
+///          + c cos Nq + s sin Nq                           (gear: N periods a turn of the joint)
+///          + Σ k q_other                                   (coupling with another joint).
+/// Parameters NAME.{cos1, sin1, cos2, sin2}, NAME.{cos_g, sin_g} (rad), NAME.coupling.OTHER (own unit per other's), as
+/// the problem lists them, before tool.*; nominal 0. Loads bend the arm as it reads. Their twists are those of the
+/// joints' readings times the function.
+class JointEffects : public TipModel {
+ public:
+  /// @param arm  the chain whose coordinates are the joints' readings
+  /// Throws InputError for names that match no joint or one twice, and for angles of a joint that slides.
+  JointEffects(std::unique_ptr<TipModel> arm, const std::vector<JointEffectsSpec>& effects, const std::string& file);
+
+  bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                 Twists* reading_twists) const override;
+  void take_loads_at(std::span<const double> correction) override;
+
+ private:
+  enum class Kind { cosine, sine, linear };
+  /// One parameter: what it adds to the reading of `joint` is its value times the function of the reading of `of`.
+  struct Effect {
+    int joint, of;
+    Kind kind;
+    double frequency;
+    double value(double q) const;
+    double derivative(double q) const;
+  };
+
+  void add(const JointEffectsSpec& spec, int joint, const std::string& file);
+  std::span<const double> arm_part(std::span<const double> correction, std::vector<double>& rest) const;
+  double coefficient(const Point& at, std::size_t effect) const;
+
+  std::unique_ptr<TipModel> arm_;
+  std::vector<Effect> effects_;
+  int first_ = 0;  ///< index of the first effect's parameter
+};
+
+}  // namespace posewright

@@ -1,0 +1,148 @@
+#include "posewright/model/joint_effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "parameter_names.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// 1σ before calibration: an encoder disc 20 µm off its axis at a radius of 0.1 m; a coupling that was adjusted.
+constexpr double effect_angle_tolerance = 2e-4, coupling_tolerance = 1e-3;  // rad, 1
+
+int joint_named(const std::vector<Coordinate>& joints, const Located<std::string>& name, const std::string& file) {
+  for (int i = 0; i < int(joints.size()); ++i)
+    if (!joints[std::size_t(i)].choice() && joints[std::size_t(i)].name == name.value) return i;
+  throw_unknown_coordinate({file, name.line}, name.value, joints);
+}
+
+std::string unit_of_ratio(const Coordinate& own, const Coordinate& other) {
+  return own.unit == other.unit ? "1" : own.unit + "/" + other.unit;
+}
+
+}  // namespace
+
+double JointEffects::Effect::value(double q) const {
+  if (kind == Kind::linear) return q;
+  return kind == Kind::cosine ? std::cos(frequency * q) : std::sin(frequency * q);
+}
+
+double JointEffects::Effect::derivative(double q) const {
+  if (kind == Kind::linear) return 1.0;
+  return frequency * (kind == Kind::cosine ? -std::sin(frequency * q) : std::cos(frequency * q));
+}
+
+JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const std::vector<JointEffectsSpec>& effects,
+                           const std::string& file)
+    : arm_(std::move(arm)) {
+  coordinates_ = arm_->coordinates();
+  reading_noise_ = arm_->reading_noise();
+  parameters_ = arm_->parameters();
+  const auto is_tool = [](const Parameter& p) { return p.name.starts_with("tool."); };
+  const auto tool = std::find_if(parameters_.begin(), parameters_.end(), is_tool);
+  first_ = int(tool - parameters_.begin());
+  const std::vector<Parameter> last(tool, parameters_.end());
+  parameters_.erase(tool, parameters_.end());
+  std::set<int> taken;
+  for (const JointEffectsSpec& spec : effects) {
+    bool found = false;
+    for (int j = 0; j < int(coordinates_.size()); ++j) {
+      const Coordinate& c = coordinates_[std::size_t(j)];
+      if (c.choice() || !matches(spec.joint.value, c.name)) continue;
+      if (!taken.insert(j).second)
+        throw InputError({file, spec.joint.line}, "robot.joint_effects: joint '" + c.name + "' is there twice",
+                         "each joint once");
+      add(spec, j, file);
+      found = true;
+    }
+    if (!found) throw_unknown_coordinate({file, spec.joint.line}, spec.joint.value, coordinates_);
+  }
+  for (const IdentificationModel::Preference& p : arm_->geometric_parameters())
+    geometric_.push_back({p.parameter < first_ ? p.parameter : p.parameter + int(effects_.size()), p.tier});
+  // Somebody lists them because they are suspected; what geometry explains is geometry all the same.
+  for (std::size_t e = 0; e < effects_.size(); ++e) geometric_.push_back({first_ + int(e), 4});
+  parameters_.insert(parameters_.end(), last.begin(), last.end());
+}
+
+void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::string& file) {
+  const Coordinate& c = coordinates_[std::size_t(joint)];
+  const SourcePlace place{file, spec.joint.line};
+  if (c.unit != "rad" && (spec.eccentricity || spec.gear_ratio))
+    throw InputError(place, "robot.joint_effects: joint '" + c.name + "' does not turn",
+                     "eccentricity and gear_ratio are for joints that turn");
+  const auto harmonic = [&](const std::string& suffix, Kind kind, double frequency) {
+    parameters_.push_back({c.name + suffix, "rad", 0.0, effect_angle_tolerance, Role::interest});
+    effects_.push_back({joint, joint, kind, frequency});
+  };
+  if (spec.eccentricity)
+    for (const int n : {1, 2}) {
+      harmonic(".cos" + std::to_string(n), Kind::cosine, n);
+      harmonic(".sin" + std::to_string(n), Kind::sine, n);
+    }
+  if (spec.gear_ratio) {
+    harmonic(".cos_g", Kind::cosine, *spec.gear_ratio);
+    harmonic(".sin_g", Kind::sine, *spec.gear_ratio);
+  }
+  for (const Located<std::string>& name : spec.coupling) {
+    const int other = joint_named(coordinates_, name, file);
+    if (other == joint)
+      throw InputError({file, name.line}, "robot.joint_effects: joint '" + c.name + "' is coupled with itself",
+                       "that is " + c.name + ".gear");
+    parameters_.push_back({c.name + ".coupling." + name.value, unit_of_ratio(c, coordinates_[std::size_t(other)]), 0.0,
+                           coupling_tolerance, Role::interest});
+    effects_.push_back({joint, other, Kind::linear, 0.0});
+  }
+}
+
+std::span<const double> JointEffects::arm_part(std::span<const double> correction, std::vector<double>& rest) const {
+  if (correction.empty()) return correction;
+  const auto effects = correction.begin() + first_;
+  rest.assign(correction.begin(), effects);
+  rest.insert(rest.end(), effects + std::ptrdiff_t(effects_.size()), correction.end());
+  return rest;
+}
+
+double JointEffects::coefficient(const Point& at, std::size_t effect) const {
+  const std::size_t i = std::size_t(first_) + effect;
+  return parameters_[i].nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
+}
+
+void JointEffects::take_loads_at(std::span<const double> correction) {
+  std::vector<double> rest;
+  arm_->take_loads_at(arm_part(correction, rest));
+}
+
+bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+                             Twists* reading_twists) const {
+  static thread_local std::vector<double> turned, rest;
+  static thread_local std::vector<int> of_arm;
+  static thread_local Twists joints;
+  const int count = int(effects_.size()), beyond = int(arm_->parameters().size());
+  turned.assign(at.q.begin(), at.q.end());
+  for (std::size_t e = 0; e < effects_.size(); ++e)
+    turned[std::size_t(effects_[e].joint)] += coefficient(at, e) * effects_[e].value(at.q[std::size_t(effects_[e].of)]);
+  of_arm.clear();
+  for (const int index : selected)
+    of_arm.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
+  const Point arm{turned, arm_part(at.correction, rest), at.station, at.load_case, at.q};
+  if (!arm_->linearise(arm, of_arm, X, twists, &joints)) return false;
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    const int e = selected[c] - first_;
+    if (e < 0 || e >= count) continue;
+    const Effect& effect = effects_[std::size_t(e)];
+    twists.col(Eigen::Index(c)) = joints.col(effect.joint) * effect.value(at.q[std::size_t(effect.of)]);
+  }
+  if (reading_twists == nullptr) return true;
+  // A reading moves the joint itself and what its effects add.
+  *reading_twists = joints;
+  for (std::size_t e = 0; e < effects_.size(); ++e)
+    if (const double k = coefficient(at, e); k != 0)
+      reading_twists->col(effects_[e].of) +=
+          k * effects_[e].derivative(at.q[std::size_t(effects_[e].of)]) * joints.col(effects_[e].joint);
+  return true;
+}
+
+}  // namespace posewright

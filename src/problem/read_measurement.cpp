@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <span>
 
@@ -156,14 +155,14 @@ struct InstrumentReader {
   std::string_view name;
   InstrumentSpec (*read)(const Section& measurement);
 };
-constexpr std::array<InstrumentReader, 6> instruments = {{
+constexpr InstrumentReader instruments[] = {
     {"pose", [](const Section& measurement) -> InstrumentSpec { return read_pose(measurement); }},
     {"points", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, false); }},
     {"position", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, true); }},
     {"distance", [](const Section& measurement) -> InstrumentSpec { return read_distance(measurement); }},
     {"camera", [](const Section& measurement) -> InstrumentSpec { return read_camera(measurement); }},
     {"joints", [](const Section& measurement) -> InstrumentSpec { return read_joint_sensors(measurement); }},
-}};
+};
 
 std::vector<std::string_view> instrument_names() {
   std::vector<std::string_view> names;

@@ -1,4 +1,3 @@
-#include <array>
 #include <map>
 
 #include "posewright/support/text.hpp"
@@ -71,13 +70,13 @@ struct ModelReader {
   std::string_view name;
   RobotSpec (*read)(const Section& robot);
 };
-constexpr std::array<ModelReader, 5> models = {{
+constexpr ModelReader models[] = {
     {"six_pus", [](const Section& robot) -> RobotSpec { return read_six_legs(robot, LegActuation::slide); }},
     {"gough", [](const Section& robot) -> RobotSpec { return read_six_legs(robot, LegActuation::extend); }},
     {"five_bar", [](const Section& robot) -> RobotSpec { return read_five_bar(robot); }},
     {"delta", [](const Section& robot) -> RobotSpec { return read_delta(robot); }},
     {"compensator", [](const Section& robot) -> RobotSpec { return read_compensator_geometry(robot); }},
-}};
+};
 
 RobotSpec read_model(const Value& model, const Section& robot) {
   std::string names;

@@ -90,7 +90,7 @@ class Bash(Pages):
     def test_offers_names(self):
         self.assertEqual(self.complete("ev"), ["evaluate"])
         self.assertEqual(self.complete("plan", "x.yaml", "--criterion", "test"), ["test_pose", "test_pose_max"])
-        self.assertEqual(self.complete("plan", "--criterion", "=", "max"), ["maximin"])
+        self.assertEqual(self.complete("plan", "--criterion", "=", "maxi"), ["maximin"])
         self.assertEqual(self.complete("plan", "--method", "=")[:2], ["auto", "exchange"])
         self.assertEqual(self.complete("select", "--repeats", ""), ["allow", "forbid"])
         self.assertEqual(self.complete("plan", "--candidates", ""), [])

@@ -119,8 +119,8 @@ const BadFile parallel_robot[] = {
 };
 
 const BadFile measurements[] = {
-    {"MeasurementKindUnknown", arm, "type: points", "type: theodolite", 10,
-     "measurement.type is 'theodolite'; allowed: pose, points, position, distance, camera, joints"},
+    {"MeasurementKindUnknown", arm, "type: points", "type: crystal_ball", 10,
+     "measurement.type is 'crystal_ball'; allowed: pose, points, position, distance, camera, joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
      "unknown key 'targets'; allowed: type, components, device, repeats, repeatability, load"},
@@ -132,7 +132,7 @@ const BadFile measurements[] = {
     {"ComponentTwice", arm, "[z, x]", "[z, z]", 14, "measurement.components[2] is 'z'; it is already in the list"},
     {"ComponentsEmpty", arm, "[z, x]", "[]", 14, "measurement.components is empty; allowed: x, y, z"},
     {"DeviceUnknown", arm, "isotropic", "theodolite", 15,
-     "is 'theodolite'; allowed: isotropic, diagonal, covariance, laser_tracker, photogrammetry"},
+     "is 'crystal_ball'; allowed: isotropic, diagonal, covariance, laser_tracker, photogrammetry"},
     {"DeviceNoiseZero", arm, "\"0.1 mm\"", "0", 15, "measurement.device.noise is '0'; a value > 0 is expected"},
     {"DeviceNoiseMissing", arm, ", noise: \"0.1 mm\"", "", 15, "measurement.device has no key 'noise'"},
     {"PoseNoiseIsALength", platform, "{position: \"0.1 mm\", rotation: \"0.1 mrad\"}", "\"1 mm\"", 16,

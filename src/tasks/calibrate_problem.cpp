@@ -8,11 +8,13 @@
 
 #include "calibration_accuracy.hpp"
 #include "posewright/blocks/identifiability.hpp"
+#include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/outputs/table.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
@@ -64,6 +66,7 @@ class CalibrationRun {
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     judge_noise();
+    judge_frame();
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
     fill_parameters();
     result_.orientations =
@@ -95,6 +98,7 @@ class CalibrationRun {
     if (!options_.validate.empty()) {
       MeasuredData more = read_measured_data(options_.validate, problem_, *model_);
       for (const std::string& note : more.notes) result_.notes.push_back(options_.validate.string() + ": " + note);
+      validation_ = more.poses;
       for (MeasuredPose& pose : more.poses) held_back_.push_back(std::move(pose));
     }
     if (fitted_.empty()) throw InputError({options_.data.string(), 0}, "has no pose to fit", "use: fit");
@@ -215,6 +219,18 @@ class CalibrationRun {
           result_.left_out.placed, why, remedy));
   }
 
+  /// Poses of another day may have been read in another frame: their errors are then those of the frame.
+  void judge_frame() {
+    if (validation_.empty() || !result_.fit.converged) return;
+    const std::optional<FrameShift> shift = frame_shift(*model_, validation_, result_.correction);
+    if (!shift || !shift->is_another_frame()) return;
+    result_.notes.push_back(fmt::format(
+        "{}: another frame? With the base {} and {} away, residuals of its poses fall from {:.3g} to {:.3g} times the "
+        "stated noise; as stated, they are errors of the frame and not of the robot",
+        options_.validate.string(), shown_value(shift->moved, "m"), shown_value(shift->turned, "rad"), shift->before,
+        shift->after));
+  }
+
   /// Whether residuals are larger than the noise allows; then σ follow the residuals.
   void judge_noise() {
     const Fit& fit = result_.fit;
@@ -274,7 +290,7 @@ class CalibrationRun {
   const VariantSpec& spec_;
   std::unique_ptr<IdentificationModel> model_;
   VariantColumns columns_;
-  std::vector<MeasuredPose> fitted_, held_back_;
+  std::vector<MeasuredPose> fitted_, held_back_, validation_;
   std::vector<CalibratedParameter> left_out_;
   std::vector<double> placed_;
   std::vector<RepeatedReadings> repeated_;

@@ -131,7 +131,7 @@ const BadFile measurements[] = {
     {"ComponentUnknown", arm, "[z, x]", "[z, rx]", 14, "is 'rx'; allowed: x, y, z"},
     {"ComponentTwice", arm, "[z, x]", "[z, z]", 14, "measurement.components[2] is 'z'; it is already in the list"},
     {"ComponentsEmpty", arm, "[z, x]", "[]", 14, "measurement.components is empty; allowed: x, y, z"},
-    {"DeviceUnknown", arm, "isotropic", "theodolite", 15,
+    {"DeviceUnknown", arm, "isotropic", "crystal_ball", 15,
      "is 'crystal_ball'; allowed: isotropic, diagonal, covariance, laser_tracker, photogrammetry"},
     {"DeviceNoiseZero", arm, "\"0.1 mm\"", "0", 15, "measurement.device.noise is '0'; a value > 0 is expected"},
     {"DeviceNoiseMissing", arm, ", noise: \"0.1 mm\"", "", 15, "measurement.device has no key 'noise'"},

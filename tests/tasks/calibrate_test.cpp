@@ -476,5 +476,31 @@ TEST(Calibrate, TheMeasuredFanucIsAsItsDataSetSays) {
   EXPECT_LT(calibrate_problem(silent, options, Monitor{}).lack_of_fit.probability, 1e-6);
 }
 
+/// Notes of a calibration that is validated by poses of another day, the base moved by (x, y, z, rx, ry, rz).
+std::vector<std::string> notes_with_base_moved(const std::array<double, 6>& motion) {
+  VirtualFile data("kr270/problem.yaml", 40);
+  data.write();
+  std::vector<MeasuredPose> later = random_poses(*data.model, 12, data.random);
+  std::vector<double> truth = data.truth;
+  const auto& all = data.model->parameters();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (all[i].name == std::string("base.") + std::array{"x", "y", "z", "rx", "ry", "rz"}[k]) truth[i] += motion[k];
+  read_poses_of(*data.model, truth, 1.0, data.random, later);
+  CalibrateOptions options = data.options();
+  options.validate = data.folder.write("later.csv", measured_data_csv(*data.model, later));
+  const Calibration found = calibrate_problem(data.problem, options, Monitor{});
+  EXPECT_TRUE(found.fit.converged);
+  return found.notes;
+}
+
+TEST(Calibrate, SaysThatValidationPosesWereReadInAnotherFrame) {
+  EXPECT_THAT(notes_with_base_moved({}), testing::Not(testing::Contains(HasSubstr("another frame"))));
+  EXPECT_THAT(notes_with_base_moved({0.003, 0, 0, 0, 0, 0}),
+              testing::Contains(testing::AllOf(HasSubstr("another frame? With the base 3"), HasSubstr(" mm and "))));
+  EXPECT_THAT(notes_with_base_moved({4.6, -1, 0.2, 0, 0.01, 2.5}),
+              testing::Contains(testing::AllOf(HasSubstr("another frame? With the base 4"), HasSubstr("143"))));
+}
+
 }  // namespace
 }  // namespace posewright

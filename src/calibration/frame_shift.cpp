@@ -1,13 +1,13 @@
 #include "posewright/calibration/frame_shift.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "posewright/calibration/placement.hpp"
-#include "posewright/support/dense.hpp"
+#include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"
+#include "stacked_readings.hpp"
 
 namespace posewright {
 namespace {
@@ -28,35 +28,21 @@ VariantColumns base_columns(const IdentificationModel& model) {
   return columns;
 }
 
-std::vector<MeasuredPose> read_completely(const std::vector<MeasuredPose>& poses) {
-  std::vector<MeasuredPose> whole;
-  std::copy_if(poses.begin(), poses.end(), std::back_inserter(whole),
-               [](const MeasuredPose& pose) { return pose.y.allFinite(); });
-  return whole;
+/// Throws CannotDo if a pose is out of reach.
+double root_mean_square(const IdentificationModel& model, const VariantColumns& base,
+                        const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+  StackedReadings stacked(model, base, poses, Prior::none, correction);
+  const Eigen::VectorXd x = stacked.start();
+  stacked.weigh(x, Weighting::weighted);
+  Eigen::VectorXd residuals(stacked.rows());
+  stacked.residual(x, residuals);
+  return std::sqrt(residuals.squaredNorm() / double(stacked.readings()));
 }
 
-double root_mean_square(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
-                        const std::vector<double>& correction) {
-  Linearisation at;
-  Eigen::VectorXd y, off;
-  double sum = 0, readings = 0;
-  for (const MeasuredPose& pose : poses) {
-    if (!model.predict_and_linearise(pose.q, correction, {}, at, y)) continue;
-    model.difference(pose.y, y, off);
-    const Eigen::LLT<Eigen::MatrixXd> factor(at.covariance);
-    factor.matrixL().solveInPlace(off);
-    sum += off.squaredNorm();
-    readings += double(off.size());
-  }
-  return readings > 0 ? std::sqrt(sum / readings) : 0.0;
-}
-
-/// Rotation of a displacement Trans · Rz · Ry · Rx.
+/// Rotation of the base's displacement.
 Eigen::Matrix3d rotation_of(const std::vector<double>& correction, const std::vector<int>& base) {
   const auto angle = [&](std::size_t k) { return correction[std::size_t(base[3 + k])]; };
-  return (Eigen::AngleAxisd(angle(2), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(angle(1), Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(angle(0), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
+  return rotation_of_rpy({angle(0), angle(1), angle(2)});
 }
 
 }  // namespace
@@ -64,21 +50,20 @@ Eigen::Matrix3d rotation_of(const std::vector<double>& correction, const std::ve
 std::optional<FrameShift> frame_shift(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                                       const std::vector<double>& correction) {
   const VariantColumns base = base_columns(model);
-  const std::vector<MeasuredPose> whole = read_completely(poses);
-  if (base.selected.size() < base_names.size() || whole.size() < 3) return std::nullopt;
+  if (base.selected.size() < base_names.size() || poses.size() < 3) return std::nullopt;
   FrameShift shift;
-  shift.before = shift.after = root_mean_square(model, whole, correction);
   std::vector<double> best = correction;
   try {
+    shift.before = shift.after = root_mean_square(model, base, poses, correction);
     // From where the fit left it, and from the side that the nominal robot says.
     std::vector<double> aside = correction;
-    const std::vector<double> rough = placed(model, base, whole, {});
+    const std::vector<double> rough = placed(model, base, poses, {});
     for (const int i : base.selected) aside[std::size_t(i)] = rough[std::size_t(i)];
     for (const std::vector<double>& start : {correction, aside}) {
       FitOptions options;
       options.start = start;
-      const std::vector<double> found = fit(model, base, whole, options).correction;
-      const double rms = root_mean_square(model, whole, found);
+      const std::vector<double> found = fit(model, base, poses, options).correction;
+      const double rms = root_mean_square(model, base, poses, found);
       if (!(rms < shift.after)) continue;
       shift.after = rms;
       best = found;

@@ -32,4 +32,14 @@ void append_displacement(std::vector<Parameter>& parameters, const std::string& 
                           k < 3 ? nominal[k] : 0.0, k < 3 ? length_tolerance : angle_tolerance, Role::interest});
 }
 
+std::span<const double> without_block(std::span<const double> correction, int first, std::size_t count,
+                                      std::vector<double>& rest) {
+  rest.clear();
+  if (correction.empty()) return {};
+  const auto block = correction.begin() + first;
+  rest.assign(correction.begin(), block);
+  rest.insert(rest.end(), block + std::ptrdiff_t(count), correction.end());
+  return rest;
+}
+
 }  // namespace posewright

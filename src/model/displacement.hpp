@@ -54,6 +54,11 @@ inline DisplacementAxes displace(Frame<double>& frame, const double* d) {
   return axes;
 }
 
+/// The corrections of a robot inside another one, whose own parameters are a block of `count` from `first` on. `rest`
+/// holds them; empty corrections stay empty.
+std::span<const double> without_block(std::span<const double> correction, int first, std::size_t count,
+                                      std::vector<double>& rest);
+
 Frame<double> frame_of(const Eigen::Isometry3d& X);
 Eigen::Isometry3d isometry_of(const Frame<double>& frame);
 

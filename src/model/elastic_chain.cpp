@@ -161,17 +161,8 @@ void ElasticChain::add_springs(const SourcePlace& place) {
   }
 }
 
-/// The corrections of the chain alone.
-void ElasticChain::geometric_part(std::span<const double> correction, std::vector<double>& rigid) const {
-  rigid.clear();
-  if (correction.empty()) return;
-  const auto springs = correction.begin() + first_;
-  rigid.assign(correction.begin(), springs);
-  rigid.insert(rigid.end(), springs + std::ptrdiff_t(springs_.size()), correction.end());
-}
-
 void ElasticChain::take_loads_at(std::span<const double> correction) {
-  geometric_part(correction, loaded_at_);
+  without_block(correction, first_, springs_.size(), loaded_at_);
   if (!loaded_at_.empty()) loaded_at_.resize(std::size_t(chain_.layout().count), 0.0);
 }
 
@@ -262,7 +253,7 @@ bool ElasticChain::linearise(const Point& at, std::span<const int> selected, Eig
   derivative.assign(count, 0.0);
   deflect(at, std::span(deflection).first(joints), derivative);
 
-  geometric_part(at.correction, rigid);
+  without_block(at.correction, first_, springs_.size(), rigid);
   geometric.clear();
   for (const int index : selected) {
     if (index < first_) geometric.push_back(index);

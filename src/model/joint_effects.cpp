@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "displacement.hpp"
 #include "parameter_names.hpp"
 #include "posewright/support/error.hpp"
 
@@ -97,14 +98,6 @@ void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::strin
   }
 }
 
-std::span<const double> JointEffects::arm_part(std::span<const double> correction, std::vector<double>& rest) const {
-  if (correction.empty()) return correction;
-  const auto effects = correction.begin() + first_;
-  rest.assign(correction.begin(), effects);
-  rest.insert(rest.end(), effects + std::ptrdiff_t(effects_.size()), correction.end());
-  return rest;
-}
-
 double JointEffects::coefficient(const Point& at, std::size_t effect) const {
   const std::size_t i = std::size_t(first_) + effect;
   return parameters_[i].nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
@@ -112,7 +105,7 @@ double JointEffects::coefficient(const Point& at, std::size_t effect) const {
 
 void JointEffects::take_loads_at(std::span<const double> correction) {
   std::vector<double> rest;
-  arm_->take_loads_at(arm_part(correction, rest));
+  arm_->take_loads_at(without_block(correction, first_, effects_.size(), rest));
 }
 
 bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
@@ -127,7 +120,7 @@ bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eig
   of_arm.clear();
   for (const int index : selected)
     of_arm.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
-  const Point arm{turned, arm_part(at.correction, rest), at.station, at.load_case, at.q};
+  const Point arm{turned, without_block(at.correction, first_, effects_.size(), rest), at.station, at.load_case, at.q};
   if (!arm_->linearise(arm, of_arm, X, twists, &joints)) return false;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int e = selected[c] - first_;

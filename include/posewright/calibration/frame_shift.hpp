@@ -18,7 +18,7 @@ struct FrameShift {
 };
 
 /// @param correction  of all parameters, as they were fitted
-/// None if the model has no base, or fewer than three of these poses were read completely.
+/// None if the model has no base, there are fewer than three poses, or they do not tell where it is.
 std::optional<FrameShift> frame_shift(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                                       const std::vector<double>& correction);
 

@@ -34,7 +34,6 @@ class ClosedChain : public TipModel {
 
   /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty if it
   /// does not converge in 50 steps or meets a singularity.
-  /// @param correction  of all parameters, or empty for zero
   std::optional<std::vector<double>> forward_kinematics(std::span<const double> actuators, const Point& start) const;
 
   /// Pose of the platform in the base frame, nominal.

@@ -52,7 +52,6 @@ class ElasticChain : public TipModel {
     int listed = 0;  ///< which of the listed positions
   };
   void add_springs(const SourcePlace& place);
-  void geometric_part(std::span<const double> correction, std::vector<double>& rigid) const;
   /// Torque at one coordinate by the load case, without the weight of links.
   double load_alone(const Point& at, std::size_t coordinate) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.

@@ -38,7 +38,6 @@ class JointEffects : public TipModel {
   };
 
   void add(const JointEffectsSpec& spec, int joint, const std::string& file);
-  std::span<const double> arm_part(std::span<const double> correction, std::vector<double>& rest) const;
   double coefficient(const Point& at, std::size_t effect) const;
 
   std::unique_ptr<TipModel> arm_;

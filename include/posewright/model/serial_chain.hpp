@@ -9,8 +9,7 @@ namespace posewright {
 /// NAME.offset and NAME.gear (not for mimic joints); tool.{x,…,rz}. Pose of the tip in the measurement frame:
 ///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
 ///   X_LastTip D(tool).
-/// More than can be identified on purpose: the
-/// irreducible subset comes out of the identifiability analysis.
+/// More than can be identified on purpose: the irreducible subset comes out of the identifiability analysis.
 class SerialChain : public TipModel {
  public:
   /// Throws std::invalid_argument for a chain without joints or with more than 64.

@@ -29,7 +29,8 @@ SETS = [
 PLANS = [
     ("plan, o1 of everything", ["--variant", "everything", "--criterion", "o1"]),
     ("plan, o1", ["--variant", "geometric", "--criterion", "o1"]),
-    ("plan, test_pose", ["--variant", "geometric", "--criterion", "test_pose"]),
+    ("plan, test_pose", ["--variant", "everything", "--criterion", "test_pose"]),
+    ("plan, unmodelled", ["--variant", "allowing"]),
 ]
 FAILED = math.inf
 

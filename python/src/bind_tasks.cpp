@@ -89,7 +89,8 @@ bool is_useful(const Calibration& c) { return c.fit.converged && !c.left_out.ref
 
 std::string parameters_text(const MadeCalibration& made) {
   const Problem& problem = made.problem->problem;
-  return parameters_yaml(problem, find_variant(problem, made.value.variant), made.value.values);
+  return parameters_yaml(problem, find_variant(problem, made.value.variant), made.value.values,
+                         shown_effect(made.value));
 }
 
 void save_parameters(const MadeCalibration& made, const py::object& path, bool overwrite, bool force) {

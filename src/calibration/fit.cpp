@@ -200,6 +200,9 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
                    std::to_string(stacked.columns()) + " parameters");
   if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
     throw CannotDo("as many readings as parameters leave no residual to estimate the noise from: use weights wls");
+  if (options.effect != nullptr && options.weighting != Weighting::weighted)
+    throw CannotDo("an unmodelled effect counts with weights wls alone");
+  stacked.correlate(options.effect);
   Fit result;
   Eigen::VectorXd x = stacked.start();
   Eigen::VectorXd f;

@@ -9,6 +9,12 @@
 #include "posewright/support/error.hpp"
 
 namespace posewright {
+namespace {
+
+// Beyond so many features of an effect the rest hardly counts between poses.
+constexpr int most_features = 200;
+
+}  // namespace
 
 std::vector<int> indices_read(const Eigen::VectorXd& y) {
   std::vector<int> read;
@@ -79,6 +85,43 @@ void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
                      " is not positive definite");
   }
   if (weighting == Weighting::ordinary) use_one_variance_per_unit();
+  if (effect_ != nullptr) find_features();
+}
+
+void StackedReadings::find_features() {
+  const int tips = effect_->tips(), twists = effect_->twists();
+  Eigen::MatrixXd places;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    const Eigen::MatrixXd f = effect_->places(poses_[k].q);
+    if (k == 0) places.resize(f.rows(), Eigen::Index(poses_.size()) * tips);
+    places.middleCols(Eigen::Index(k) * tips, tips) = f;
+  }
+  const EffectFeatures features(effect_, places, most_features);
+  const Eigen::MatrixXd phi = features.at(places);
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(readings_, features.columns());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    const auto count = Eigen::Index(read_[k].size());
+    if (!linearise_at(model_, poses_[k], correction_, effect_->columns(), linearisation_, y_)) refuse(k);
+    Eigen::MatrixXd A = linearisation_.G(read_[k], Eigen::all);
+    root_[k].matrixL().solveInPlace(A);
+    for (Eigen::Index j = 0; j < phi.rows(); ++j)
+      for (int tip = 0; tip < tips; ++tip)
+        for (int c = 0; c < twists; ++c)
+          F.block(row, j * twists + c, count, 1) +=
+              phi(j, Eigen::Index(k) * tips + tip) * effect_->size_of(c) * A.col(tip * twists + c);
+    row += count;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
+  along_ = F * eigen.eigenvectors();
+  shrink_ = eigen.eigenvalues().cwiseMax(0.0);
+  for (double& s : shrink_) s = 1 / (std::sqrt(1 + s) * (1 + std::sqrt(1 + s)));
+}
+
+void StackedReadings::decorrelate(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  if (along_.size() == 0) return;
+  const Eigen::MatrixXd taken = shrink_.asDiagonal() * (along_.transpose() * rows);
+  rows -= along_ * taken;
 }
 
 /// The mean over all readings of the unit; what they are worth to each other within it is one.
@@ -118,6 +161,7 @@ bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
     root_[k].matrixL().solveInPlace(part_);
     for (Eigen::Index i = 0; i < part_.size(); ++i, ++row) f[row] = part_[i] * root_weight(int(row));
   }
+  decorrelate(f.head(readings_));
   for (const int j : known_) f[row++] = -x[j];
   return f.allFinite();
 }
@@ -134,6 +178,7 @@ bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
     for (Eigen::Index i = 0; i < rows_.rows(); ++i, ++row)
       J.row(row) = -root_weight(int(row)) * rows_.row(i).cwiseProduct(tolerances_.transpose());
   }
+  if (along_.size() > 0) decorrelate(J.topRows(readings_));
   J.bottomRows(Eigen::Index(known_.size())).setZero();
   for (const int j : known_) J(row++, j) = -1.0;
   return true;

@@ -22,6 +22,10 @@ class StackedReadings {
   /// The columns of the corrections to start from, in units of tolerance.
   Eigen::VectorXd start() const;
 
+  /// Readings are correlated from pose to pose by this effect: with the next weigh() on, rows are those of independent
+  /// ones, (I + F Fᵀ)^{−1/2} of the others, F its features among the poses.
+  void correlate(std::shared_ptr<const UnmodelledEffect> effect) { effect_ = std::move(effect); }
+
   /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo if a pose is out
   /// of reach there.
   void weigh(const Eigen::VectorXd& x, Weighting weighting);
@@ -58,6 +62,9 @@ class StackedReadings {
   [[noreturn]] void refuse(std::size_t pose) const;
   void use_one_variance_per_unit();
   double root_weight(int row) const;
+  void find_features();
+  /// Rows of the readings as independent ones.
+  void decorrelate(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   const IdentificationModel& model_;
   const VariantColumns& columns_;
@@ -70,6 +77,9 @@ class StackedReadings {
   std::vector<Eigen::LLT<Eigen::MatrixXd>> root_;  ///< per pose: covariance of what was read
   Eigen::VectorXd group_weights_;
   int readings_ = 0;
+  std::shared_ptr<const UnmodelledEffect> effect_;
+  Eigen::MatrixXd along_;   ///< F V of the correlated readings; empty: they are independent
+  Eigen::VectorXd shrink_;  ///< (1 − 1/√(1 + s))/s of FᵀF = V diag(s) Vᵀ
 
   std::vector<double> correction_;
   Linearisation linearisation_;

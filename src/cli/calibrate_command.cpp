@@ -78,7 +78,7 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
     files.push_back({wanted.urdf, urdf.text});
   }
   if (!wanted.parameters.empty())
-    files.push_back({wanted.parameters, parameters_yaml(problem, variant, result.values)});
+    files.push_back({wanted.parameters, parameters_yaml(problem, variant, result.values, shown_effect(result))});
   return files;
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
@@ -96,6 +97,7 @@ class TraceState : public DesignState {
   bool invert() {
     const Eigen::LLT<Eigen::MatrixXd> factor(information_);
     if (!is_regular(factor)) return false;
+    ++changes_;
     V_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
     const Eigen::MatrixXd VA = factor.solve(A_.transpose());
     B_ = VA * VA.transpose();
@@ -109,6 +111,24 @@ class TraceState : public DesignState {
     const auto J = blocks().block(std::size_t(j));
     rotated_.noalias() = J * W;
     result.noalias() = rotated_ * J.transpose();
+  }
+
+  /// D_j and T_j: the same for every member that may leave, so they are kept until the next change.
+  std::pair<Eigen::Map<const Eigen::MatrixXd>, Eigen::Map<const Eigen::MatrixXd>> own_both(int j) {
+    const std::size_t square = std::size_t(rows_) * std::size_t(rows_);
+    if (kept_.empty()) {
+      kept_.resize(2 * square * blocks().count());
+      kept_at_.assign(blocks().count(), 0);
+    }
+    double* const D = &kept_[2 * square * std::size_t(j)];
+    if (kept_at_[std::size_t(j)] != changes_) {
+      kept_at_[std::size_t(j)] = changes_;
+      own(j, V_, D_j_);
+      own(j, B_, T_j_);
+      Eigen::Map<Eigen::MatrixXd>(D, rows_, rows_) = D_j_;
+      Eigen::Map<Eigen::MatrixXd>(D + square, rows_, rows_) = T_j_;
+    }
+    return {{D, rows_, rows_}, {D + square, rows_, rows_}};
   }
 
   /// Projections of the leaving member; false if it is indispensable.
@@ -141,10 +161,11 @@ class TraceState : public DesignState {
     GE_.noalias() = CE_ * T_k_;
     // tr Q = tr T_j + 2⟨C E, G⟩ + ⟨C E T_k, C E⟩.
     if (trace(j) + 2 * CE_.cwiseProduct(G_).sum() + GE_.cwiseProduct(CE_).sum() <= most) return false;
-    own(j, V_, S_);
+    const auto [D, T] = own_both(j);
+    S_ = D;
     S_.noalias() += CE_ * C_.transpose();
     S_.diagonal().array() += 1.0;
-    own(j, B_, Q_);
+    Q_ = T;
     Q_.noalias() += GE_ * CE_.transpose();
     GE_.noalias() = CE_ * G_.transpose();
     Q_ += GE_ + GE_.transpose();
@@ -204,6 +225,9 @@ class TraceState : public DesignState {
   Eigen::MatrixXd information_;
   BlockArray::RowMatrix V_, B_, rotated_;
   std::vector<double> traces_, y_, z_;
+  std::vector<double> kept_;  // D_j, T_j of each candidate that was looked at closely
+  std::vector<long> kept_at_;
+  long changes_ = 0;  // of V and B
   Eigen::MatrixXd D_k_, T_k_, E_, D_j_, T_j_, C_ = Eigen::MatrixXd(rows_, rows_), G_ = Eigen::MatrixXd(rows_, rows_),
                                               CE_, GE_, S_, Q_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

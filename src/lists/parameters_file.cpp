@@ -83,12 +83,15 @@ void note_parameters(const PoseList& list, const Problem& problem, std::vector<s
 }
 
 std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
-                            const std::vector<EstimatedValue>& values) {
+                            const std::vector<EstimatedValue>& values,
+                            const std::optional<CalibratedEffect>& unmodelled) {
   std::string text = fmt::format(
       "posewright_parameters: 1\nvariant: {}\nconvention: {}\nproblem: {{file: {}, sha256: {}}}\n"
-      "# Values in SI.\nparameters:",
+      "# Values in SI.\n",
       yaml_text(variant.name), convention_name(variant.convention), yaml_text(problem.file.string()),
       yaml_text(problem.sha256));
+  if (unmodelled) text += fmt::format("unmodelled: {{size: {}, length: {}}}\n", unmodelled->size, unmodelled->length);
+  text += "parameters:";
   bool any = false;
   for (const EstimatedValue& entry : values) {
     const CalibratedValue& v = entry.value;

@@ -44,6 +44,8 @@ DistancePairModel::DistancePairModel(std::unique_ptr<TipModel> tip, const Measur
   append(actuators_, tip_->actuators(), second_suffix, false);
   for (const TargetSpec& t : spec_.targets) readings_.push_back({t.name + ".distance", "m"});
   rows_ = int(spec_.targets.size());
+  tips_ = 2;
+  tip_coordinates_ = moving_;
   unmeasurable_reason_ = "distance out of range";
   if (!actuators_.empty()) unmeasurable_reason_ += " or " + near_singularity();
 }
@@ -69,8 +71,15 @@ std::span<const double> DistancePairModel::tip_part(std::span<const double> corr
 
 bool DistancePairModel::end(const Point& at, std::size_t which, std::span<const int> selected, End& result) const {
   const std::vector<double> q = at_end(at.q, which);
-  return tip_->linearise({q, tip_part(at.correction), 0, at.load_case}, selected, result.X, result.twists,
-                         &result.reading_twists);
+  if (!tip_->linearise({q, tip_part(at.correction), 0, at.load_case}, selected, result.X, result.twists,
+                       &result.reading_twists))
+    return false;
+  // Without its tool the tip's catalogue ends earlier than the tip knows: what follows is not its own.
+  for (std::size_t c = 0; c < selected.size(); ++c)
+    if (const int k = selected[c] - tip_column(int(which), 0); selected[c] >= tip_column(0, 0))
+      result.twists.col(Eigen::Index(c)) =
+          k >= 0 && k < 6 ? unit_displacement(result.X.translation(), k) : Twist(Twist::Zero());
+  return true;
 }
 
 void DistancePairModel::do_take_loads_at(std::span<const double> correction) {
@@ -101,7 +110,7 @@ bool DistancePairModel::do_linearise(const Point& at, std::span<const int> selec
     along[1] << e, to.cross(e);
     out.G.row(t) = along[0].transpose() * ends[0].twists + along[1].transpose() * ends[1].twists;
     for (std::size_t c = 0; c < selected.size(); ++c) {
-      if (selected[c] < tip_parameters_) continue;
+      if (selected[c] < tip_parameters_ || selected[c] >= tip_column(0, 0)) continue;
       const int own = selected[c] - tip_parameters_;
       out.G(t, Eigen::Index(c)) =
           own / 3 == t ? e.dot(ends[1].X.linear().col(own % 3) - ends[0].X.linear().col(own % 3)) : 0.0;

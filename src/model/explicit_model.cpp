@@ -44,6 +44,9 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
   for (int i = 0; i < int(parameters_.size()); ++i)
     is_own_column_.push_back(i >= tip_parameters_ &&
                              !measurement_->motion({anywhere, {}, 0}, i - tip_parameters_, nullptr));
+  is_own_column_.resize(parameters_.size() + 6, 0);  // of the tip's own unit twists, none
+  tips_ = 1;
+  tip_coordinates_ = tip_->coordinates().size();
   unmeasurable_reason_ = measurement_->unseen_reason();
   if (!actuators_.empty()) unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + near_singularity();
   readings_ = measurement_->readings();
@@ -69,6 +72,10 @@ bool ExplicitModel::twists_and_noise(const Parts& p, std::span<const int> select
   for (std::size_t c = 0; c < selected.size(); ++c) {
     // Without its tool the tip's catalogue ends earlier than the tip knows: what follows is the instrument's.
     if (selected[c] < tip_parameters_) continue;
+    if (const int k = selected[c] - tip_column(0, 0); k >= 0) {
+      out.twists.col(Eigen::Index(c)) = unit_displacement(X.translation(), k);
+      continue;
+    }
     Twist twist = Twist::Zero();
     measurement_->motion(sighting, selected[c] - tip_parameters_, &twist);
     out.twists.col(Eigen::Index(c)) = twist;

@@ -128,6 +128,15 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
   return columns;
 }
 
+std::vector<int> fixed_parameters(const IdentificationModel& model, const Problem& problem,
+                                  const VariantSpec& variant) {
+  const ParameterNames names(model, problem);
+  std::vector<int> fixed;
+  for (const auto& pattern : variant.fixed)
+    for (const int i : names.find(pattern)) fixed.push_back(i);
+  return fixed;
+}
+
 std::vector<std::optional<double>> values_by_pattern(const VariantColumns& columns,
                                                      const std::vector<PatternValue>& values, const Problem& problem,
                                                      const char* what) {

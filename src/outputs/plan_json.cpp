@@ -192,6 +192,19 @@ Json statistics_json(const PlanStatistics& s) {
   return json;
 }
 
+Json unmodelled_json(const PlannedEffect& effect) {
+  const auto value = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
+  return {{"size", effect.size},
+          {"size_assumed", effect.size_assumed},
+          {"rotation", effect.rotation},
+          {"length", effect.length},
+          {"features", effect.features},
+          {"feature_error", effect.feature_error},
+          {"by_noise", value(effect.by_noise)},
+          {"by_effect", value(effect.by_effect)},
+          {"interpolated", value(effect.interpolated)}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json files_json(const std::vector<WrittenWith>& files) {
@@ -212,6 +225,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   json["criterion"] = criterion_json(plan);
   json["certificate"] = certificate_json(plan);
   if (plan.discrimination) json["discrimination"] = discrimination_json(*plan.discrimination);
+  if (plan.unmodelled) json["unmodelled"] = unmodelled_json(*plan.unmodelled);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();

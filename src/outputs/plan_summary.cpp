@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "nearest.hpp"
 #include "posewright/outputs/discrimination.hpp"
@@ -102,6 +103,22 @@ std::string stages_text(const Plan& plan) {
   return text + "\n";
 }
 
+std::string effect_text(const Plan& plan) {
+  if (!plan.unmodelled) return {};
+  const PlannedEffect& effect = *plan.unmodelled;
+  std::string text = fmt::format("Allows for an unmodelled effect of {}{}{} that changes over {:.3g} deg.\n",
+                                 shown_value(effect.size, "m"), effect.size_assumed ? " (auto)" : "",
+                                 effect.rotation > 0 ? " and " + shown_value(effect.rotation, "rad") : "",
+                                 effect.length * 180 / std::numbers::pi);
+  if (effect.by_noise)
+    text += fmt::format(
+        "Of the position error {} come from noise and {} from the effect; with what is left interpolated between the "
+        "poses it is {}.\n",
+        shown_value(*effect.by_noise, "m"), shown_value(*effect.by_effect, "m"),
+        shown_value(*effect.interpolated, "m"));
+  return text;
+}
+
 std::string indices_text(const Plan& plan) {
   const ObservabilityIndices& o = plan.indices;
   std::string text = fmt::format("log det {:.6f}", plan.log_det);
@@ -114,6 +131,7 @@ std::string indices_text(const Plan& plan) {
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   if (plan.turn)
     text += fmt::format("Predicted orientation error: {} (root mean square)\n", shown_value(*plan.turn, "rad"));
+  text += effect_text(plan);
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.by_test_poses && plan.test_errors.size() == 1)

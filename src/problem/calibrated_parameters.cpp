@@ -53,6 +53,11 @@ CalibratedParameters parse_calibrated_parameters(const std::string& text, const 
   parameters.variant = root.at("variant").located_text();
   if (const yaml::Value* convention = root.find("convention"))
     parameters.convention = convention->choice({"frames", "dh", "mdh"});
+  if (const yaml::Value* unmodelled = root.find("unmodelled")) {
+    const yaml::Section section(*unmodelled);
+    parameters.unmodelled = {section.at("size").number(Quantity::length, yaml::Sign::positive),
+                             section.at("length").number(Quantity::angle, yaml::Sign::positive)};
+  }
   for (const yaml::Entry& entry : yaml::Section(root.at("parameters")).entries())
     parameters.values.push_back(read_entry(entry));
   return parameters;

@@ -39,9 +39,28 @@ void read_parameters(const Value& value, VariantSpec& variant) {
   if (names.empty()) value.fail("is empty", expected);
 }
 
+/// `auto`, or {size, rotation, length}.
+UnmodelledSpec read_unmodelled(const Value& value) {
+  UnmodelledSpec unmodelled;
+  unmodelled.line = value.line();
+  if (value.is_scalar()) {
+    if (value.text("auto or {size, rotation, length} is expected") != "auto")
+      value.fail("is not a size", "auto, or {size: \"0.3 mm\", length: \"60 deg\"}");
+    return unmodelled;
+  }
+  const Section section(value);
+  section.allow({"size", "rotation", "length"});
+  if (const Value* size = section.find("size"); size != nullptr && !(size->is_scalar() && size->text() == "auto"))
+    unmodelled.size = size->number(Quantity::length, Sign::positive);
+  if (const Value* rotation = section.find("rotation"))
+    unmodelled.rotation = rotation->number(Quantity::angle, Sign::positive);
+  if (const Value* length = section.find("length")) unmodelled.length = length->number(Quantity::angle, Sign::positive);
+  return unmodelled;
+}
+
 VariantSpec read_variant(const Located<std::string>& name, const Value& value) {
   const Section section(value);
-  section.allow({"parameters", "nuisance", "fixed", "tolerance", "nominal"});
+  section.allow({"parameters", "nuisance", "fixed", "tolerance", "nominal", "unmodelled"});
   VariantSpec variant;
   variant.name = name.value;
   variant.line = name.line;
@@ -51,6 +70,7 @@ VariantSpec read_variant(const Located<std::string>& name, const Value& value) {
   if (const Value* tolerance = section.find("tolerance"))
     variant.tolerance = read_pattern_values(*tolerance, Sign::positive);
   if (const Value* nominal = section.find("nominal")) variant.nominal = read_pattern_values(*nominal, Sign::any);
+  if (const Value* unmodelled = section.find("unmodelled")) variant.unmodelled = read_unmodelled(*unmodelled);
   return variant;
 }
 

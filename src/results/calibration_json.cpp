@@ -8,6 +8,22 @@
 namespace posewright {
 namespace {
 
+/// A smooth effect that the residuals hold, and what the fit counts.
+Json smooth_json(const Calibration& c) {
+  const SmoothEffect& s = c.smooth;
+  if (!s.why_not.empty()) return {{"why_not", s.why_not}, {"counted", nullptr}};
+  return {{"why_not", nullptr},
+          {"size", s.size},
+          {"lower", s.lower},
+          {"upper", finite_or_null(s.upper)},
+          {"length", s.length},
+          {"noise", s.noise},
+          {"statistic", s.statistic},
+          {"probability", s.probability},
+          {"poses", s.poses},
+          {"counted", c.counted ? Json{{"size", c.counted->size}, {"length", c.counted->length}} : Json(nullptr)}};
+}
+
 using Json = nlohmann::ordered_json;
 
 Json numbers(const std::vector<double>& values) {
@@ -122,6 +138,7 @@ Json figures_json(const Calibration& c) {
             {"serial_correlation", test_json(c.tests.serial)},
             {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
+          {"smooth_effect", smooth_json(c)},
           {"left_out", left_out_json(c.left_out)},
           {"weakest_combination", text_or_null(c.weakest)},
           {"curvature", finite_or_null(c.curvature.largest)},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "calibration_parts.hpp"
 #include "posewright/outputs/table.hpp"
@@ -168,6 +169,18 @@ std::string whiteness_text(const Calibration& c) {
                         c.tests.serial.probability < seldom
                             ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
                             : "");
+  if (c.smooth.why_not.empty())
+    text +=
+        c.smooth.probability < seldom
+            ? fmt::format(
+                  "Smooth over poses: the tip stands off by {} (1σ, 95 % {} to {}) that changes over {:.0f} deg "
+                  "(p {}), beside {:.3g} times the stated noise{}.\n",
+                  shown_value(c.smooth.size, "m"), shown_value(c.smooth.lower, "m"), shown_value(c.smooth.upper, "m"),
+                  c.smooth.length * 180 / std::numbers::pi, chance_text(c.smooth.probability), c.smooth.noise,
+                  c.counted ? "; σ and intervals count it"
+                            : ": an effect that the model lacks; `unmodelled: auto` of a variant counts it")
+            : fmt::format("Smooth over poses: nothing that chance does not give (p {}).\n",
+                          chance_text(c.smooth.probability));
   if (c.tests.within.possible)
     text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
                         chance_text(c.tests.within.probability),

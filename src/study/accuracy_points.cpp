@@ -35,73 +35,128 @@ std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, cons
   return result;
 }
 
+namespace {
+
+/// The robot with its pose seen, and what its parameters do to a point of the tip.
+class SeenPoses {
+ public:
+  SeenPoses(const Problem& problem, const VariantSpec& variant, const IdentificationModel& model,
+            const VariantColumns& columns)
+      : model_(make_pose_seen(problem, variant, model)), columns_(Eigen::Index(columns.selected.size())) {
+    // Columns by name: the instrument's own (targets, stations, a lens) do not move the robot.
+    for (std::size_t j = std::size_t(columns.nuisance); j < columns.selected.size(); ++j) {
+      const std::string& name = model.parameters()[std::size_t(columns.selected[j])].name;
+      for (int i = 0; i < int(model_->parameters().size()); ++i)
+        if (model_->parameters()[std::size_t(i)].name == name) {
+          selected_.push_back(i);
+          where_.push_back(int(j));
+        }
+    }
+    for (int k = 0; k < 6; ++k) selected_.push_back(model_->tip_column(0, k));
+  }
+
+  const IdentificationModel& model() const { return *model_; }
+
+  bool at(const std::vector<double>& q, const Eigen::Vector3d& point, TestPoint& test, TestPlace& place) {
+    if (!model_->linearise(q, {}, selected_, scratch_)) return false;
+    test = {Eigen::MatrixXd::Zero(3, columns_), 1.0, Eigen::MatrixXd::Zero(3, columns_)};
+    const Eigen::Vector3d from_tip = model_->tool_pose(q).linear() * point;
+    for (Eigen::Index c = 0; c < scratch_.G.cols(); ++c)
+      scratch_.G.col(c).head<3>() += Eigen::Vector3d(scratch_.G.col(c).tail<3>()).cross(from_tip);
+    for (std::size_t c = 0; c < where_.size(); ++c) {
+      test.A.col(where_[c]) = scratch_.G.col(Eigen::Index(c)).head<3>();
+      test.turn.col(where_[c]) = scratch_.G.col(Eigen::Index(c)).tail<3>();
+    }
+    place = {q, scratch_.G.rightCols<6>()};
+    return true;
+  }
+
+ private:
+  std::unique_ptr<IdentificationModel> model_;
+  Eigen::Index columns_;
+  std::vector<int> selected_, where_;
+  Linearisation scratch_;
+};
+
+}  // namespace
+
 std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
                                       const IdentificationModel& model, const VariantColumns& columns,
-                                      std::uint64_t seed) {
+                                      std::uint64_t seed, std::vector<TestPlace>* test_places) {
   std::vector<TestPoint> points;
   if (!problem.design.test_poses) return points;
   if (std::holds_alternative<CompensatorGeometrySpec>(problem.robot))
     throw CannotDo("design: test_poses are those of a robot with a tip; a compensator alone has none");
   const TestPosesSpec& spec = *problem.design.test_poses;
-  const Problem seen = with_pose_seen(problem);
-  const auto position = make_pose_seen(problem, variant, model);
-  // Columns by name: the instrument's own (targets, stations, a lens) do not move the robot.
-  std::vector<int> selected, where;
-  for (std::size_t j = std::size_t(columns.nuisance); j < columns.selected.size(); ++j) {
-    const std::string& name = model.parameters()[std::size_t(columns.selected[j])].name;
-    for (int i = 0; i < int(position->parameters().size()); ++i)
-      if (position->parameters()[std::size_t(i)].name == name) {
-        selected.push_back(i);
-        where.push_back(int(j));
-      }
-  }
-  Linearisation scratch;
-  const TestConfigurations places = test_configurations(seen, *position, seed);
+  SeenPoses seen(problem, variant, model, columns);
+  const TestConfigurations places = test_configurations(with_pose_seen(problem), seen.model(), seed);
   for (const std::vector<double>& q : places.configurations) {
-    if (!position->linearise(q, {}, selected, scratch))
+    TestPoint point;
+    TestPlace place;
+    if (!seen.at(q, spec.point, point, place))
       throw InputError(problem.at(spec.line), "a test pose is out of reach", "configurations that the robot can take");
-    const auto m = Eigen::Index(columns.selected.size());
-    TestPoint point{Eigen::MatrixXd::Zero(3, m), 1.0, Eigen::MatrixXd::Zero(3, m)};
-    const Eigen::Vector3d from_tip = position->tool_pose(q).linear() * spec.point;
-    for (std::size_t c = 0; c < where.size(); ++c) {
-      const auto column = scratch.G.col(Eigen::Index(c));
-      point.A.col(where[c]) = column.head<3>() + Eigen::Vector3d(column.tail<3>()).cross(from_tip);
-      point.turn.col(where[c]) = column.tail<3>();
-    }
     if (!places.weights.empty()) point.weight = places.weights[points.size()];
     points.push_back(std::move(point));
+    if (test_places != nullptr) test_places->push_back(std::move(place));
   }
   return points;
 }
 
-double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+std::vector<TestPoint> test_points_at(const Problem& problem, const VariantSpec& variant,
+                                      const IdentificationModel& model, const VariantColumns& columns,
+                                      const std::vector<std::vector<double>>& configurations,
+                                      std::vector<TestPlace>* test_places) {
+  SeenPoses seen(problem, variant, model, columns);
+  std::vector<TestPoint> points;
+  for (const std::vector<double>& q : configurations) {
+    TestPoint point;
+    TestPlace place;
+    if (!seen.at(q, Eigen::Vector3d::Zero(), point, place)) continue;
+    points.push_back(std::move(point));
+    if (test_places != nullptr) test_places->push_back(std::move(place));
+  }
+  return points;
+}
+
+std::vector<PlaceError> place_errors(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance) {
+  std::vector<PlaceError> errors;
+  for (const TestPoint& t : points)
+    errors.push_back({t.A * covariance * t.A.transpose(), t.turn * covariance * t.turn.transpose()});
+  return errors;
+}
+
+double predicted_error(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
                        std::vector<double>& each) {
   double sum = 0, total = 0;
   each.clear();
-  for (const TestPoint& t : points) {
-    const double variance = (t.A * covariance * t.A.transpose()).trace();
+  for (std::size_t t = 0; t < points.size(); ++t) {
+    const double variance = errors[t].position.trace();
     each.push_back(std::sqrt(variance));
-    sum += t.weight * variance;
-    total += t.weight;
+    sum += points[t].weight * variance;
+    total += points[t].weight;
   }
   return std::sqrt(sum / total);
 }
 
-double predicted_turn(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+                       std::vector<double>& each) {
+  return predicted_error(points, place_errors(points, covariance), each);
+}
+
+double predicted_turn(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
                       std::vector<std::array<double, 6>>& axes) {
   double sum = 0, total = 0;
   axes.clear();
-  for (const TestPoint& t : points) {
-    const Eigen::Vector3d moved = (t.A * covariance * t.A.transpose()).diagonal();
-    const Eigen::Vector3d turned = (t.turn * covariance * t.turn.transpose()).diagonal();
+  for (std::size_t t = 0; t < points.size(); ++t) {
+    const Eigen::Vector3d moved = errors[t].position.diagonal(), turned = errors[t].turn.diagonal();
     std::array<double, 6> sigma{};
     for (std::size_t k = 0; k < 3; ++k) {
       sigma[k] = std::sqrt(moved[Eigen::Index(k)]);
       sigma[k + 3] = std::sqrt(turned[Eigen::Index(k)]);
     }
     axes.push_back(sigma);
-    sum += t.weight * turned.sum();
-    total += t.weight;
+    sum += points[t].weight * turned.sum();
+    total += points[t].weight;
   }
   return std::sqrt(sum / total);
 }

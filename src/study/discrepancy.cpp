@@ -125,7 +125,7 @@ void fill_errors(Discrepancy& result, const Variant& fitted, const Eigen::Matrix
 
 void require_a_residual(const Study& study, const Discrepancy& found, const Settings& settings) {
   const int rows = study.first().model->block_rows(found.effects.columns.selected), own = found.effects.fitted;
-  if (!find_criterion(settings.criterion)->needs_residual || settings.poses == 0 || study.first().prior.size() > 0 ||
+  if (!find_criterion(settings.criterion)->needs_residual || settings.poses == 0 || study.first().known_before ||
       settings.poses * rows > own)
     return;
   throw CannotDo(fmt::format(

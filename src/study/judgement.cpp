@@ -2,6 +2,7 @@
 
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
+#include "posewright/study/unmodelled.hpp"
 
 namespace posewright {
 namespace {
@@ -13,6 +14,11 @@ void add_effects(Judgement& judgement, const Study& study, const Configurations&
   judgement.discrimination = discrimination_of(known.truth, known.effects, fit.unfitted, fitted, poses, settings.prior);
 }
 
+void fill_errors(Judgement& judgement, const Variant& variant, const VariantWorth& worth) {
+  judgement.rho0 = predicted_error(variant.test_points, worth.errors, judgement.test_errors);
+  judgement.turn = predicted_turn(variant.test_points, worth.errors, judgement.test_axes);
+}
+
 }  // namespace
 
 Judgement judge(const Study& study, const Configurations& poses, const Settings& settings) {
@@ -20,15 +26,14 @@ Judgement judge(const Study& study, const Configurations& poses, const Settings&
   all.dimension = poses.dimension;
   all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
   Judgement judgement;
-  for (const Variant& variant : study.variants)
-    judgement.evaluations.push_back(
-        evaluate(build_blocks(*variant.model, variant.columns.selected, all, settings.planner.threads),
-                 variant.columns.parameters, settings.prior ? Prior::every : Prior::none, variant.scale));
-  const Variant& first = study.first();
-  if (!first.test_points.empty()) {
-    const Eigen::MatrixXd& covariance = judgement.evaluations.front().covariance;
-    judgement.rho0 = predicted_error(first.test_points, covariance, judgement.test_errors);
-    judgement.turn = predicted_turn(first.test_points, covariance, judgement.test_axes);
+  const Prior prior = settings.prior ? Prior::every : Prior::none;
+  for (const Variant& variant : study.variants) {
+    VariantWorth worth = worth_of(variant, all, prior, settings.planner.threads);
+    if (&variant == &study.first()) {
+      judgement.unmodelled = worth.unmodelled;
+      if (!variant.test_points.empty()) fill_errors(judgement, variant, worth);
+    }
+    judgement.evaluations.push_back(std::move(worth.evaluation));
   }
   if (study.discrepancy != nullptr) add_effects(judgement, study, all, settings);
   return judgement;

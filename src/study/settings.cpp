@@ -39,6 +39,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   const DesignSpec& design = problem.design;
   Settings s;
   s.criterion = options.criterion.empty() ? design.criterion.value : options.criterion;
+  s.criterion_stated = !options.criterion.empty() || design.criterion.line > 0;
   s.method = options.method.empty() ? design.method.value : options.method;
   require_known(s.criterion, s.method, options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{},
                 options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
@@ -62,7 +63,10 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.scaling = options.scaling.value_or(design.scaling);
   s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
   s.truth = truth_of(problem, options, s.criterion);
-  if (find_criterion(s.criterion)->needs_test_poses && !design.test_poses)
+  // Candidates of a user's list are places that count, and so are those of a variant that lacks an effect.
+  const bool places = design.test_poses || s.candidates_from || !s.candidates_file.empty() ||
+                      find_variant(problem, s.variants.front().name.value).unmodelled;
+  if (find_criterion(s.criterion)->needs_test_poses && !places)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
   s.measured = options.measured;
   if (!s.measured) s.measured_file = design.measured.value_or("");

@@ -21,10 +21,15 @@ class StudyProbe : public ConfigurationSpace::Probe {
     for (const SpacePart& part : parts) {
       first_row_.push_back(rows);
       rows += part.model->block_rows(part.selected);
+      linearised_.push_back(part.selected);
+      if (part.features == nullptr) continue;
+      const std::vector<int>& twists = part.features->effect().columns();
+      linearised_.back().insert(linearised_.back().end(), twists.begin(), twists.end());
     }
     raw_ = BlockArray::RowMatrix::Zero(rows, R.cols());
-    for (const SpacePart& part : parts)
-      own_.emplace_back(part.model->block_rows(part.selected), part.mix.size() > 0 ? part.mix.rows() : 0);
+    for (std::size_t v = 0; v < parts.size(); ++v)
+      own_.emplace_back(parts[v].model->block_rows(parts[v].selected),
+                        is_direct(parts[v]) ? 0 : Eigen::Index(linearised_[v].size()));
   }
 
   bool feasible(std::span<const double> q) override {
@@ -39,13 +44,19 @@ class StudyProbe : public ConfigurationSpace::Probe {
     Eigen::Index column = 0;
     for (std::size_t v = 0; v < parts_.size(); ++v) {
       const SpacePart& part = parts_[v];
-      const bool mixed = part.mix.size() > 0;
-      double* out = mixed ? own_[v].data() : &raw_(first_row_[v], column);
-      if (!whitened_block(*part.model, q, {}, part.selected, scratch_[v], out,
-                          int(mixed ? own_[v].cols() : raw_.cols())))
+      const bool direct = is_direct(part);
+      double* out = direct ? &raw_(first_row_[v], column) : own_[v].data();
+      if (!whitened_block(*part.model, q, {}, linearised_[v], scratch_[v], out,
+                          int(direct ? raw_.cols() : own_[v].cols())))
         return false;
-      if (mixed) raw_.block(first_row_[v], column, own_[v].rows(), part.mix.cols()).noalias() = own_[v] * part.mix;
-      column += mixed ? part.mix.cols() : Eigen::Index(part.selected.size());
+      const Eigen::Index width = part.features != nullptr
+                                     ? Eigen::Index(part.features->columns() + part.selected.size())
+                                 : direct ? Eigen::Index(part.selected.size())
+                                          : part.mix.cols();
+      if (part.features != nullptr)
+        part.features->expand(q, own_[v], raw_.block(first_row_[v], column, own_[v].rows(), width));
+      else if (!direct) raw_.block(first_row_[v], column, own_[v].rows(), width).noalias() = own_[v] * part.mix;
+      column += width;
     }
     white_ = raw_;
     R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(white_);
@@ -55,13 +66,16 @@ class StudyProbe : public ConfigurationSpace::Probe {
   }
 
  private:
+  static bool is_direct(const SpacePart& part) { return part.mix.size() == 0 && part.features == nullptr; }
+
   const std::vector<SpacePart>& parts_;
   const Configurations& measured_;
   const Spacing& spacing_;
   const Eigen::MatrixXd& R_;
   std::vector<Linearisation> scratch_;
   std::vector<int> first_row_;
-  std::vector<BlockArray::RowMatrix> own_;  // of parts that are mixed
+  std::vector<std::vector<int>> linearised_;  // columns of each part as its model gives them
+  std::vector<BlockArray::RowMatrix> own_;    // of parts that are mixed or have features
   BlockArray::RowMatrix raw_, white_;
 };
 

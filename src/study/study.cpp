@@ -10,6 +10,7 @@
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
 #include "posewright/study/space.hpp"
+#include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -80,6 +81,20 @@ Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configura
   return (effect.array() > 0).select(effect.cwiseInverse(), tolerances_of(columns));
 }
 
+/// What is known before of the columns of a search: tolerances, poses measured already, the size of an effect.
+void fill_prior(const Study& study, Variant& variant, const Settings& settings) {
+  if (!settings.prior && study.measured.count() == 0 && variant.features == nullptr) return;
+  const auto features = variant.features == nullptr ? 0 : Eigen::Index(variant.features->columns());
+  const auto m = Eigen::Index(variant.columns.selected.size());
+  variant.known_before = settings.prior || study.measured.count() > 0;
+  variant.prior = Eigen::MatrixXd::Zero(features + m, features + m);
+  variant.prior.diagonal().head(features).setOnes();
+  if (settings.prior) variant.prior.diagonal().tail(m) = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
+  if (study.measured.count() == 0) return;
+  const BlockArray blocks = search_blocks(variant, study.measured, settings.planner.threads);
+  variant.prior += blocks.all().transpose() * blocks.all();
+}
+
 void resolve(Study& study, Variant& variant, const Problem& problem, const Settings& settings) {
   const bool known_before = settings.prior || study.measured.count() > 0;
   ResolvedColumns resolved = resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known_before,
@@ -89,18 +104,12 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
   variant.reasons = std::move(resolved.reasons);
   const VariantColumns& columns = variant.columns;
   variant.scale = scale_of(variant, study.configurations, settings.scaling, settings.planner.threads);
-  variant.test_points = test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed);
-  if (!known_before) {
-    if (settings.poses > 0)
-      require_enough_poses(*variant.model, study.configurations, columns, settings.poses, settings.planner.threads);
-    return;
-  }
-  const auto m = Eigen::Index(columns.selected.size());
-  variant.prior = Eigen::MatrixXd::Zero(m, m);
-  if (settings.prior) variant.prior.diagonal() = tolerances_of(columns).cwiseAbs2().cwiseInverse();
-  if (study.measured.count() == 0) return;
-  const BlockArray blocks = build_blocks(*variant.model, columns.selected, study.measured, settings.planner.threads);
-  variant.prior += blocks.all().transpose() * blocks.all();
+  variant.test_points =
+      test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed, &variant.test_places);
+  allow_for_unmodelled(problem, study.configurations, settings.planner.threads, variant);
+  if (!known_before && settings.poses > 0)
+    require_enough_poses(*variant.model, study.configurations, columns, settings.poses, settings.planner.threads);
+  fill_prior(study, variant, settings);
 }
 
 }  // namespace
@@ -195,10 +204,12 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
   if (!study.list.empty()) return {};
   return [&study, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
-    for (const Variant& v : study.variants) parts.push_back({v.model.get(), v.workspace.get(), v.columns.selected, {}});
+    for (const Variant& v : study.variants)
+      parts.push_back({v.model.get(), v.workspace.get(), v.columns.selected, {}, v.features.get()});
     if (with_effects) {
       parts.front().selected = study.discrepancy->effects.columns.selected;
       parts.front().mix = study.discrepancy->mix;
+      parts.front().features = nullptr;
     }
     return make_configuration_space(std::move(parts), study.configurations, study.measured, study.spacing, R);
   };
@@ -206,25 +217,40 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
 
 namespace {
 
-BlockArray blocks_of(const Variant& variant, const Configurations& configurations, int threads) {
-  return build_blocks(*variant.model, variant.columns.selected, configurations, threads);
+/// Test points as the columns of a search have them.
+std::vector<TestPoint> test_points_with_features(const Variant& variant) {
+  if (variant.features == nullptr) return variant.test_points;
+  std::vector<TestPoint> points;
+  for (std::size_t t = 0; t < variant.test_places.size(); ++t) {
+    const TestPoint& own = variant.test_points[t];
+    const TestPlace& place = variant.test_places[t];
+    const Eigen::MatrixXd B =
+        variant.features->columns_at(variant.features->at(variant.effect->place(place.q)).col(0), place.twists);
+    TestPoint point{Eigen::MatrixXd(3, B.cols() + own.A.cols()), own.weight, {}};
+    point.A << B.topRows<3>(), own.A;
+    points.push_back(std::move(point));
+  }
+  return points;
 }
 
-SearchPart search_part(const Variant& variant, BlockArray blocks) {
-  return {std::move(blocks),
-          variant.columns.nuisance,
-          variant.weight,
-          variant.scale,
-          variant.test_points,
-          variant.prior,
-          {}};
+SearchPart search_part(const Variant& variant, const Configurations& configurations, int threads) {
+  const int features = variant.features == nullptr ? 0 : variant.features->columns();
+  SearchPart part;
+  part.blocks = search_blocks(variant, configurations, threads);
+  part.nuisance = features + variant.columns.nuisance;
+  part.weight = variant.weight;
+  part.scale = Eigen::VectorXd::Ones(features + variant.scale.size());
+  part.scale.tail(variant.scale.size()) = variant.scale;
+  part.test_points = test_points_with_features(variant);
+  part.prior = variant.prior;
+  return part;
 }
 
 }  // namespace
 
 std::vector<SearchPart> search_parts(const Variant& variant, const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
-  parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
+  parts.push_back(search_part(variant, configurations, threads));
   return parts;
 }
 
@@ -235,8 +261,7 @@ std::vector<SearchPart> search_parts(const Study& study, const std::string& crit
     parts.push_back(part_with_effects(study, configurations, threads));
     return parts;
   }
-  for (const Variant& variant : study.variants)
-    parts.push_back(search_part(variant, blocks_of(variant, configurations, threads)));
+  for (const Variant& variant : study.variants) parts.push_back(search_part(variant, configurations, threads));
   return parts;
 }
 

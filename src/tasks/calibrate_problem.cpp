@@ -57,14 +57,15 @@ class CalibrationRun {
     leave_at_nominal_values(all, fit_options.start);
     place_again(fit_options);
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    result_.tests = test_residuals(result_.fit);
+    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
+    allow_for_unmodelled(fit_options);
     report(1);
     result_.correction = result_.fit.correction;
     result_.weakest = weakest_combination(result_.fit, columns_);
     if (result_.fit.converged)
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     note_end();
-    result_.tests = test_residuals(result_.fit);
-    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     judge_noise();
     judge_frame();
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
@@ -200,6 +201,27 @@ class CalibrationRun {
     return poses;
   }
 
+  /// A smooth effect that the residuals show, and for a variant that lacks one the fit once more, counting it.
+  void allow_for_unmodelled(FitOptions& options) {
+    const UnmodelledSpec* spec = spec_.unmodelled ? &*spec_.unmodelled : nullptr;
+    result_.smooth = smooth_effect(*model_, columns_, fitted_, result_.fit, spec ? spec->length : std::nullopt);
+    const SmoothEffect& found = result_.smooth;
+    if (spec == nullptr || options.weighting != Weighting::weighted) return;
+    if (!spec->size && !found.why_not.empty()) {
+      result_.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals count none: " +
+                              found.why_not);
+      return;
+    }
+    // Where the readings' own noise is refused, all of the covariance counts so many times more.
+    const double size = spec->size.value_or(found.size / std::max(1.0, found.noise));
+    const double length = spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : 1.0);
+    if (!(size > 0)) return;
+    options.effect = std::make_shared<UnmodelledEffect>(*model_, UnmodelledSize{size, spec->rotation, length});
+    options.start = result_.fit.correction;
+    result_.fit = fit(*model_, columns_, fitted_, options);
+    result_.counted = {size, length};
+  }
+
   /// Why an estimate is not to be used.
   void note_end() {
     const std::string why = result_.weakest.empty() ? "" : ". Near dependence: " + result_.weakest;
@@ -305,6 +327,12 @@ const CalibratedOrientation* turned_frame(const Calibration& calibration, const 
     for (const char* angle : {".rx", ".ry", ".rz"})
       if (name == o.frame + angle) return &o;
   return nullptr;
+}
+
+std::optional<CalibratedEffect> shown_effect(const Calibration& calibration) {
+  constexpr double level = 0.05;
+  if (calibration.smooth.shown(level)) return CalibratedEffect{calibration.smooth.size, calibration.smooth.length};
+  return std::nullopt;
 }
 
 Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& options, const Monitor& monitor) {

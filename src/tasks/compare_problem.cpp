@@ -7,6 +7,7 @@
 #include "compared_plans.hpp"
 #include "extra_worth.hpp"
 #include "posewright/study/accuracy_points.hpp"
+#include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 #include "variant_alias.hpp"
 
@@ -79,14 +80,14 @@ class ComparisonRun {
         score.infeasible_because = variant.workspace->reasons()[std::size_t(reason)];
     try {
       const VariantColumns& columns = variant.columns;
-      const Evaluation& e = judged_[plan][&variant] = evaluate(
-          build_blocks(*variant.model, columns.selected, with_measured(poses_[plan]), settings_.planner.threads),
-          columns.parameters, settings_.prior ? Prior::every : Prior::none, variant.scale);
+      VariantWorth worth = worth_of(variant, with_measured(poses_[plan]), settings_.prior ? Prior::every : Prior::none,
+                                    settings_.planner.threads);
+      const Evaluation& e = judged_[plan][&variant] = std::move(worth.evaluation);
       score.log_det = e.log_det;
       score.condition = e.condition;
       fill_sigma(score, columns, e);
       std::vector<double> each;
-      if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, e.covariance, each);
+      if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, worth.errors, each);
       if (const auto bound = bound_of(variant, int(poses_[plan].count())))
         score.efficiency = std::min(
             1.0, std::exp((e.log_det - *bound) / double(columns.selected.size() - std::size_t(columns.nuisance))));

@@ -44,6 +44,7 @@ class ListEvaluation {
     }
     if (!near.empty()) notes_.push_back(margin_note(list.name, near));
     settings_.poses = int(poses_.count());
+    if (std::string note = choose_form(problem, study_, settings_); !note.empty()) notes_.push_back(std::move(note));
   }
 
   PoseListEvaluation evaluate(const Problem& problem) {

@@ -126,6 +126,7 @@ void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, 
   plan.turn = judgement.turn;
   plan.test_axes = judgement.test_axes;
   plan.discrimination = judgement.discrimination;
+  plan.unmodelled = judgement.unmodelled;
   plan.log_det = first.log_det;
   plan.log_det_full = first.log_det_full;
   plan.indices = first.indices;

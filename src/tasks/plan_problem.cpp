@@ -29,7 +29,10 @@ class PlanSearch {
       : problem_(problem),
         settings_(settings_of(problem, options)),
         monitor_(monitor),
-        study_(make_study(problem, settings_, monitor)) {}
+        study_(make_study(problem, settings_, monitor)) {
+    if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
+      study_.notes.push_back(std::move(note));
+  }
 
   const Settings& settings() const { return settings_; }
 
@@ -92,7 +95,7 @@ class PlanSearch {
   int fewest() const {
     int most = 1;
     for (const Variant& v : study_.variants) {
-      if (v.prior.size() > 0) continue;
+      if (v.known_before) continue;
       const auto number =
           smallest_number_of_poses(*v.model, study_.configurations, v.columns, settings_.planner.threads);
       if (!number) throw CannotDo("the candidates do not determine all parameters; more candidates are needed");

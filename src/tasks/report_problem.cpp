@@ -56,6 +56,7 @@ class ReportBuilder {
       if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
     settings_.measured = std::move(before);
     study_ = make_study(problem, settings_, whole_);
+    choose_form(problem, study_, settings_);
     if (whole_.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
     all_.dimension = new_.dimension = study_.configurations.dimension;
     for (std::size_t i = 0; i < list_.configurations.size(); ++i) {
@@ -69,6 +70,7 @@ class ReportBuilder {
     if (report_.title.empty()) report_.title = problem_.file.stem().string();
     const Judgement judgement = judge(study_, new_, settings_);
     note_changes(judgement);
+    note_effect(judgement);
     fill_information(judgement);
     std::vector<std::pair<int, std::vector<double>>> poses;
     for (std::size_t i = 0; i < list_.ids.size(); ++i) poses.emplace_back(list_.ids[i], list_.configurations[i]);
@@ -98,6 +100,13 @@ class ReportBuilder {
     if (study_.variants.size() > 1)
       report_.notes.push_back("The plan serves several variants; what this page recomputes is of '" +
                               study_.first().spec->name + "'.");
+  }
+
+  void note_effect(const Judgement& judgement) {
+    if (judgement.unmodelled)
+      report_.notes.push_back(
+          "The plan allows for an unmodelled effect. Its own figures count it; what this page recomputes for a part of "
+          "the poses leaves it out.");
   }
 
   void fill_information(const Judgement& judgement) {

@@ -68,6 +68,48 @@ TEST_P(RepeatabilityOf, InstrumentIsWhatADisplacedTipReads) {
   }
   EXPECT_EQ(found, 20);
 }
+TEST_P(RepeatabilityOf, InstrumentHasUnitTwistsOfTheTipAsColumns) {
+  const auto model = make_model(example(GetParam().problem));
+  std::vector<int> selected;
+  for (int k = 0; k < 6; ++k) selected.push_back(model->tip_column(0, k));
+  const auto instrument = make_measurement(example(GetParam().problem).measurement);
+  Random random(4, 1);
+  Linearisation out;
+  int found = 0;
+  for (int i = 0; i < 200 && found < 10; ++i) {
+    std::vector<double> q = random_configuration(model->coordinates(), random);
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (model->coordinates()[k].choice()) q[k] = 0;
+    if (!model->linearise(q, {}, selected, out)) continue;
+    ++found;
+    for (int k = 0; k < 6; ++k) out.G.col(k) *= k < 3 ? translation : rotation;
+    const Eigen::MatrixXd expected = covariance_by_displacing(*instrument, model->tool_pose(q));
+    EXPECT_LT((out.G * out.G.transpose() - expected).cwiseAbs().maxCoeff(),
+              GetParam().scale * expected.cwiseAbs().maxCoeff());
+  }
+  EXPECT_EQ(found, 10);
+}
+
+TEST(Repeatability, EitherEndOfADistanceHasItsOwnTwists) {
+  // What moves both ends alike changes no distance; one end alone does.
+  const auto model = make_model(example("instruments/ball_bar.yaml"));
+  ASSERT_EQ(model->tips(), 2);
+  std::vector<int> selected;
+  for (int tip = 0; tip < 2; ++tip)
+    for (int k = 0; k < 3; ++k) selected.push_back(model->tip_column(tip, k));
+  Random random(5, 1);
+  Linearisation out;
+  int found = 0;
+  for (int i = 0; i < 2000 && found < 10; ++i) {
+    const std::vector<double> q = random_configuration(model->coordinates(), random);
+    if (!model->linearise(q, {}, selected, out)) continue;
+    ++found;
+    EXPECT_LT((out.G.leftCols<3>() + out.G.rightCols<3>()).cwiseAbs().maxCoeff(), 1e-12);
+    for (Eigen::Index t = 0; t < out.G.rows(); ++t) EXPECT_NEAR(out.G.row(t).head<3>().norm(), 1, 1e-12);
+  }
+  EXPECT_GT(found, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, RepeatabilityOf,
                          testing::Values(Case{"kr270/problem.yaml", 1e-6}, Case{"telescope/problem.yaml", 1e-6},
                                          Case{"instruments/cables.yaml", 1e-5},

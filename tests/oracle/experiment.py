@@ -130,6 +130,12 @@ class Experiment:
         read = self.read_rows(visit)
         return np.linalg.solve(np.linalg.cholesky(self.covariance(visit)[np.ix_(read, read)]), G[read])
 
+    def displaced_block(self, visit, sizes):
+        """What is read along displacements of the tip of these sizes, whitened as block()."""
+        A = slopes(lambda off: self.readings(visit, self.nominal, off=off), 6) * sizes
+        read = self.read_rows(visit)
+        return np.linalg.solve(np.linalg.cholesky(self.covariance(visit)[np.ix_(read, read)]), A[read])
+
     def size(self, visit):
         """Of the readings in units of their noise, as numbers that are rounded."""
         return np.linalg.norm(self.rounded(visit) / np.sqrt(np.diag(self.noise(visit)) / self.repeats))

@@ -52,6 +52,17 @@ def visits_of(plan, experiment):
         yield experiment.visit(pose["names"], pose["configuration"], pose.get("load_case"), pose.get("station"), hidden)
 
 
+def correlated(effect, experiment, visits):
+    """Covariance of all readings, whitened pose by pose, with a smooth displacement of the tip between them: of angles alone."""
+    sizes = np.repeat([effect["size"], effect["rotation"]], 3)
+    A = [experiment.displaced_block(visit, sizes) for visit in visits]
+    q = np.array([visit.q for visit in visits])
+    squares = sum((f(q)[:, None] - f(q)[None])**2 for f in (np.cos, np.sin)).sum(axis=2)
+    k = np.exp(-squares / (2 * effect["length"]**2))
+    whole = np.block([[k[i, j] * A[i] @ A[j].T for j in range(len(A))] for i in range(len(A))])
+    return whole + np.eye(len(whole))
+
+
 class Information:
     """M = GᵀG, G the whitened blocks of all poses stacked, in units of tolerance; and what follows from it.
 
@@ -63,6 +74,8 @@ class Information:
         everything = p.used + p.dropped
         names, rules = [p.model_names[each["name"]] for each in everything], [rule_of(each) for each in everything]
         G = np.vstack([experiment.block(visit, names, rules) for visit in self.poses]) * [each["tolerance"] for each in everything]
+        if "unmodelled" in plan:
+            G = np.linalg.solve(np.linalg.cholesky(correlated(plan["unmodelled"], experiment, self.poses)), G)
         self.rows, self.dropped = np.hsplit(G, [len(p.used)])
         self.rounding = self.errors_of_differences(experiment)
         self.measured = self.rows

@@ -138,7 +138,8 @@ class ParametersSchema(unittest.TestCase):
         asked = set(re.findall(r"\.(?:at|find)\(\"(\w+)\"\)", reader))
         known = set().union(*(part["properties"] for part in objects(SCHEMAS["parameters.schema.json"])))
         self.assertEqual(asked - known, set())
-        self.assertEqual(asked, {"posewright_parameters", "variant", "convention", "parameters", "value", "unit", "nominal"})
+        self.assertEqual(asked, {"posewright_parameters", "variant", "convention", "unmodelled", "size", "length", "parameters", "value",
+                                 "unit", "nominal"})
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
+#include "posewright/model/unmodelled_effect.hpp"
 #include "posewright/model/variant.hpp"
 
 namespace posewright {
@@ -27,6 +28,9 @@ struct FitOptions {
   Prior prior = Prior::none;  ///< which tolerances count
   /// Corrections of all parameters to start from; those that are not estimated keep them. Empty: all zero.
   std::vector<double> start{};
+  /// Weighted fits: readings are correlated from pose to pose by this effect, too (generalised least squares). Null:
+  /// none.
+  std::shared_ptr<const UnmodelledEffect> effect{};
   int most_evaluations = 200;  ///< of the residuals in one run of Levenberg–Marquardt
 };
 
@@ -66,7 +70,7 @@ struct Fit {
 /// 1981, eq. 7.6.6).
 /// @param columns  what is estimated; independent over these poses (see undetermined())
 /// Throws CannotDo if a pose is out of reach at the nominal parameters, where the readings are fewer than the
-/// columns, or where the columns are dependent at the solution.
+/// columns, where the columns are dependent at the solution, or where an effect is to count and weights are others.
 Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
         const FitOptions& options);
 

@@ -36,6 +36,7 @@ struct EstimatedValue {
 /// Text of a parameters file (docs/parameters-file.md): all that were estimated or are not nominal, values to the last
 /// digit. Equal input gives equal bytes.
 std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
-                            const std::vector<EstimatedValue>& values);
+                            const std::vector<EstimatedValue>& values,
+                            const std::optional<CalibratedEffect>& unmodelled = std::nullopt);
 
 }  // namespace posewright

@@ -160,6 +160,16 @@ class IdentificationModel {
   /// Rows that one target has; 0: the instrument sees the pose as a whole.
   int rows_per_target() const { return rows_per_target_; }
 
+  /// Tips whose motion the readings tell of: two where they say how far a target travels between two configurations, 0
+  /// where no tip is seen.
+  int tips() const { return tips_; }
+  /// As an index among `selected`: what the readings do along unit twist k of a tip that is not where its parameters
+  /// say, translations along the axes of M (k = 0, 1, 2, per m), rotations about them through the tip's origin (3, 4,
+  /// 5, per rad).
+  int tip_column(int tip, int k) const { return int(parameters_.size()) + 6 * tip + k; }
+  /// Coordinates of one tip: its own, one tip after the other, choices last.
+  std::size_t tip_coordinates() const { return tip_coordinates_; }
+
   /// Twists of the tip per unit of each reading (joint or actuator), 6 × readings (see TipModel); false if q is
   /// unreachable or the model has no single tip.
   bool reading_twists(std::span<const double> q, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
@@ -186,6 +196,8 @@ class IdentificationModel {
   std::string unmeasurable_reason_;
   int rows_ = 0;
   int rows_per_target_ = 0;
+  int tips_ = 0;
+  std::size_t tip_coordinates_ = 0;
 
  private:
   virtual bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const = 0;

@@ -161,6 +161,17 @@ struct Discrimination {
   int degrees_of_freedom() const { return readings - fitted; }
 };
 
+/// An effect that the fitted variant lacks, as the plan allows for it.
+struct PlannedEffect {
+  double size = 0.0, rotation = 0.0, length = 0.0;  ///< 1σ m and rad; rad
+  bool size_assumed = false;                        ///< nobody stated it
+  int features = 0;                                 ///< that stood for it in the search
+  /// log det of the plan with the features less that with the whole effect.
+  double feature_error = 0.0;
+  /// Of rho0, if there are test poses: by noise alone, by the effect; and in all if what is left is interpolated, m.
+  std::optional<double> by_noise{}, by_effect{}, interpolated{};
+};
+
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
@@ -184,6 +195,7 @@ struct Plan {
   double condition = 0.0;
   Certificate certificate;
   std::optional<Discrimination> discrimination;  ///< if a truth is named
+  std::optional<PlannedEffect> unmodelled{};     ///< in σ, log det and predicted errors
   std::vector<VariantResult> variants{};         ///< of a plan for several
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones

@@ -17,6 +17,12 @@ struct ParameterEntry {
   std::optional<double> nominal{};  ///< of the robot that was calibrated, SI, where the file has it
 };
 
+/// A smooth effect that the residuals of the calibration showed.
+struct CalibratedEffect {
+  double size = 0.0;    ///< 1σ along each axis, m
+  double length = 0.0;  ///< rad
+};
+
 /// A parameters file (docs/parameters-file.md): where the parameters of a robot are after calibration.
 struct CalibratedParameters {
   std::filesystem::path file;
@@ -25,6 +31,7 @@ struct CalibratedParameters {
   /// Whose names they are, as VariantSpec::Convention is written: frames, dh, mdh; empty: the variant's.
   std::string convention;
   std::vector<ParameterEntry> values;
+  std::optional<CalibratedEffect> unmodelled{};
 
   SourcePlace at(int line) const { return {file.string(), line}; }
 };

@@ -16,6 +16,14 @@
 
 namespace posewright {
 
+/// A smooth effect that a variant lacks (docs/theory.md).
+struct UnmodelledSpec {
+  std::optional<double> size;    ///< 1σ along each axis, m; none: as large as the problem makes it
+  std::optional<double> length;  ///< over which it changes, rad of joints; none: as the calibration says, else 60 deg
+  double rotation = 0.0;         ///< 1σ about each axis, rad
+  int line = 0;
+};
+
 /// One robot model with the set of parameters that calibration will estimate.
 struct VariantSpec {
   std::string name;
@@ -28,6 +36,7 @@ struct VariantSpec {
   std::vector<Located<std::string>> fixed;       ///< names or globs taken out again
   std::vector<PatternValue> tolerance;           ///< later entries win
   std::vector<PatternValue> nominal;             ///< values that this variant is linearised at, in place of the robot's
+  std::optional<UnmodelledSpec> unmodelled;
   int line = 0;
 };
 

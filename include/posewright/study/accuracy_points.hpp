@@ -16,19 +16,43 @@ Problem with_pose_seen(Problem problem);
 std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
                                                     const IdentificationModel& model);
 
+/// Where and how the tip's own displacement moves the point of interest at a test pose.
+struct TestPlace {
+  std::vector<double> q;               ///< of the robot alone
+  Eigen::Matrix<double, 6, 6> twists;  ///< position and turn of the point of interest along the tip's unit twists
+};
+
 /// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
 /// does not move the robot are zero. Empty if the problem has none. Throws InputError for configurations that do not
 /// fit the robot, CannotDo for a robot without a tip.
 std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
                                       const IdentificationModel& model, const VariantColumns& columns,
-                                      std::uint64_t seed);
+                                      std::uint64_t seed, std::vector<TestPlace>* test_places = nullptr);
+
+/// The same at configurations of the robot alone, all of one weight, for the origin of the tip.
+std::vector<TestPoint> test_points_at(const Problem& problem, const VariantSpec& variant,
+                                      const IdentificationModel& model, const VariantColumns& columns,
+                                      const std::vector<std::vector<double>>& configurations,
+                                      std::vector<TestPlace>* test_places = nullptr);
+
+/// Covariance of the error at a test pose.
+struct PlaceError {
+  Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< m²
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();      ///< of the rotation vector, rad²
+};
+
+/// What errors of the parameters with this covariance do at every point.
+std::vector<PlaceError> place_errors(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance);
 
 /// Root of the weighted mean square of the predicted position error (m), and that of each point.
+double predicted_error(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
+                       std::vector<double>& each);
+/// The same of errors of the parameters with this covariance.
 double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
                        std::vector<double>& each);
 /// The same of the orientation (norm of the rotation vector, rad), and 1σ of every point along x, y, z (m) and about
 /// them (rad), in the measurement frame.
-double predicted_turn(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
+double predicted_turn(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
                       std::vector<std::array<double, 6>>& axes);
 
 }  // namespace posewright

@@ -8,6 +8,7 @@
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/study/unmodelled.hpp"
 
 namespace posewright {
 
@@ -18,6 +19,7 @@ struct Judgement {
   std::vector<double> test_errors;               ///< m
   std::optional<double> turn;                    ///< as rho0, of the orientation, rad
   std::vector<std::array<double, 6>> test_axes;  ///< 1σ at each test pose: x, y, z (m), rx, ry, rz (rad)
+  std::optional<PlannedEffect> unmodelled;       ///< if the first variant lacks an effect
   std::optional<Discrimination> discrimination;  ///< if a truth is named
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
+#include "posewright/model/unmodelled_effect.hpp"
 #include "posewright/planning/configuration_space.hpp"
 #include "posewright/problem/design_specs.hpp"
 #include "posewright/workspace/candidates.hpp"
@@ -17,7 +18,8 @@ struct SpacePart {
   const IdentificationModel* model;
   const Workspace* workspace;
   std::vector<int> selected;
-  Eigen::MatrixXd mix;  ///< blocks are J(selected) · mix; empty: J(selected)
+  Eigen::MatrixXd mix;                       ///< blocks are J(selected) · mix; empty: J(selected)
+  const EffectFeatures* features = nullptr;  ///< in front of the selected ones; null: none
 };
 
 /// The problem's workspace as planners see it. Everything referred to must outlive it.

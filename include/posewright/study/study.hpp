@@ -18,7 +18,8 @@ namespace posewright {
 /// Command line over the problem file's design block.
 struct Settings {
   std::string criterion, method;
-  int poses = 0;  ///< 0: the smallest number that suffices
+  bool criterion_stated = false;  ///< by the problem or an option; else see choose_form()
+  int poses = 0;                  ///< 0: the smallest number that suffices
   int candidates = 0;
   bool prior = false, reserve = false;
   Repeats repeats;
@@ -35,7 +36,7 @@ struct Settings {
 Settings settings_of(const Problem& problem, const PlanOptions& options);
 
 struct Discrepancy;
-
+struct Study;
 /// A problem with all that its names mean, made first and once: variants in their cell, feasible configurations, poses
 /// that are there already.
 struct Study {
@@ -57,6 +58,12 @@ struct Study {
 enum class Unidentifiable { refuse, keep };
 Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
                  Unidentifiable unidentifiable = Unidentifiable::refuse);
+
+/// For a variant that lacks an effect, if nobody named a criterion: the determinant for few poses, and from 1.5 times
+/// the smallest number on the accuracy at the test poses (without any: at 200 candidates) of a fit that estimates the
+/// effect, too. A criterion that needs test poses counts candidates if there are none, where settings_of() lets it.
+/// @return which and why, for people; empty: nothing was chosen
+std::string choose_form(const Problem& problem, Study& study, Settings& settings);
 
 /// What the settings ask of a search for so many poses, among blocks alone.
 SearchRequest search_request(const Settings& settings, int poses);

@@ -9,8 +9,10 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/model/identification_model.hpp"
+#include "posewright/model/unmodelled_effect.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/study/accuracy_points.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/workspace/workspace.hpp"
 
@@ -29,8 +31,14 @@ struct Variant {
   double weight = 1.0;                 ///< for criteria over several variants
   Eigen::VectorXd scale{};             ///< unit of every column, by the scaling asked for
   std::vector<TestPoint> test_points{};
-  Eigen::MatrixXd prior{};  ///< raw information known before (tolerances, poses measured already); empty: none
-  std::string why_not{};    ///< why its parameters cannot be identified; empty: they can
+  std::vector<TestPlace> test_places{};              ///< of the same
+  std::shared_ptr<const UnmodelledEffect> effect{};  ///< that the model lacks; null: none is stated
+  std::shared_ptr<const EffectFeatures> features{};  ///< of it, among the candidates
+  /// Raw information known before of the columns of a search (tolerances, poses measured already, the size of an
+  /// effect); empty: none.
+  Eigen::MatrixXd prior{};
+  bool known_before = false;  ///< whether it says something of the parameters
+  std::string why_not{};      ///< why its parameters cannot be identified; empty: they can
 };
 
 /// Robot and workspace of one variant, as the cell lets it be; no columns yet. Blocks of the model count visible

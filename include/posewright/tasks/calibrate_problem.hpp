@@ -13,6 +13,7 @@
 #include "posewright/calibration/orientation.hpp"
 #include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/calibration/smooth_effect.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
@@ -88,6 +89,9 @@ struct Calibration {
   LeaveOut left_out;    ///< does the estimate predict poses that it has not seen?
   std::string weakest;  ///< weakest_combination()
   ResidualTests tests;
+  SmoothEffect smooth;  ///< that the residuals of a fit hold which counts none
+  /// What the fit counts as such an effect; none: readings of different poses are independent.
+  std::optional<CalibratedEffect> counted{};
   TestResult lack_of_fit;  ///< posewright::lack_of_fit()
   Curvature curvature;
   std::vector<ResidualSet> residuals;
@@ -106,6 +110,10 @@ struct Calibration {
 
 /// The frame whose orientation this parameter is an angle of; null: it is none, or is estimated without the others.
 const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter);
+
+/// The smooth effect that the next plan is to allow for: what the residuals show
+/// at 5 %; none: nothing.
+std::optional<CalibratedEffect> shown_effect(const Calibration& calibration);
 
 /// Estimates the parameters of a variant from measured data. Columns that the data do not determine stay at their
 /// nominal values and are listed. Throws InputError (files) and CannotDo (nothing can be estimated).

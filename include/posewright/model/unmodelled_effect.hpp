@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/model/identification_model.hpp"
+
+namespace posewright {
+
+/// How large and how smooth an effect is that the model lacks.
+struct UnmodelledSize {
+  double translation = 0.0;  ///< 1σ along each axis, m
+  double rotation = 0.0;     ///< 1σ about each axis through the tip, rad
+  double length = 0.0;       ///< over which it changes, in angles of joints, rad
+};
+
+/// Every model lacks something: the tip stands off by a twist δ(q) that changes smoothly with the configuration,
+/// δ ~ GP(0, diag(τ² I, τ_r² I) ⊗ k), k(q, q') = exp(−‖f(q) − f(q')‖²/2ℓ²), f = (cos q_j, sin q_j) of angles,
+/// π q_j/range of lengths; load cases and stations do not change it. Repeatability is the same without smoothness: a
+/// twist that is drawn anew at every visit (docs/theory.md).
+class UnmodelledEffect {
+ public:
+  /// Throws CannotDo if the readings tell of no tip: joint sensors, differences between loads, a compensator's linkage.
+  UnmodelledEffect(const IdentificationModel& model, const UnmodelledSize& size);
+
+  const UnmodelledSize& size() const { return size_; }
+  int tips() const { return tips_; }
+  /// Components of the twist: 3, with a rotation 6.
+  int twists() const { return size_.rotation > 0 ? 6 : 3; }
+  /// τ or τ_r of a component.
+  double size_of(int twist) const { return twist < 3 ? size_.translation : size_.rotation; }
+  /// The readings' derivatives along the twists as indices for IdentificationModel::linearise, one tip after the other.
+  const std::vector<int>& columns() const { return columns_; }
+
+  /// f of every tip, one a column.
+  Eigen::MatrixXd places(std::span<const double> q) const;
+  /// The same of a robot that stands at q, its own coordinates alone.
+  Eigen::VectorXd place(std::span<const double> q) const;
+  /// k of two places.
+  double correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const;
+
+ private:
+  struct Axis {
+    std::size_t coordinate;
+    bool turns;
+    double unit;  // of lengths: π/range
+  };
+  UnmodelledSize size_;
+  int tips_;
+  std::size_t coordinates_;  // of one tip
+  std::vector<Axis> axes_;
+  std::vector<int> columns_;
+};
+
+/// The effect as columns of a linear model: δ(q) = Σ_j φ_j(q) u_j + what is left, u_j ~ N(0, diag(τ², τ_r²)) and the
+/// rest independent from pose to pose, so that the variance at every pose is right. φ by pivoted Cholesky (Nyström) of
+/// the correlations between given places, turned to the directions in which these differ most.
+class EffectFeatures {
+ public:
+  /// Whole between the given places, but for 1e-10 of the variance, if `most` allows.
+  /// @param places  f of given poses, one a column
+  /// @param most    places that φ is made of
+  EffectFeatures(std::shared_ptr<const UnmodelledEffect> effect, const Eigen::MatrixXd& places, int most);
+  /// The `count` that hold most of the variance at those places.
+  EffectFeatures first(int count) const;
+
+  const UnmodelledEffect& effect() const { return *effect_; }
+  int count() const { return int(weights_.rows()); }
+  /// Columns of a block that the features take: twists of the first feature, of the second, …
+  int columns() const { return count() * effect_->twists(); }
+  /// φ of every tip at these places, count() × tips.
+  Eigen::MatrixXd at(const Eigen::MatrixXd& places) const;
+
+  /// A whitened block J and the same of the twists' derivatives become the block of features and J, in this order, with
+  /// unit variance of every u; what the features leave at q counts as noise of this pose.
+  /// @param block  rows × (columns of J, then effect().columns())
+  /// @param out    rows × (columns() + columns of J)
+  void expand(std::span<const double> q, Eigen::Ref<const BlockArray::RowMatrix> block,
+              Eigen::Ref<BlockArray::RowMatrix> out) const;
+  /// Coefficients of the u, unit variance each, in the error of a tip's position and turn (6 × columns()); what the
+  /// features leave of the variance is 1 − ‖φ‖².
+  /// @param twists  6 × 6: unit twists as they move what is judged
+  Eigen::MatrixXd columns_at(const Eigen::VectorXd& phi, const Eigen::MatrixXd& twists) const;
+
+ private:
+  std::shared_ptr<const UnmodelledEffect> effect_;
+  Eigen::MatrixXd pivots_;   // their places
+  Eigen::MatrixXd weights_;  // φ = weights · correlations with the pivots
+};
+
+/// Blocks of features and parameters as blocks of the parameters alone whose rows are whitened by the covariance of all
+/// readings, J' = (I + F Fᵀ)^{−1/2} J: what evaluates a list needs to know of no effect.
+/// @param features  leading columns that are features
+/// @param also  rows × any, whitened in place likewise if not null
+BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also = nullptr);
+
+}  // namespace posewright

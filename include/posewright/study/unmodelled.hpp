@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "posewright/outputs/plan.hpp"
+#include "posewright/planning/evaluate.hpp"
+#include "posewright/study/study.hpp"
+
+namespace posewright {
+
+/// What a variant's `unmodelled` means for this problem: gives it an effect, and features of it among the candidates
+/// for searches. Does nothing for a variant without.
+///
+/// size auto: as large as what the tolerances of parameters that other variants estimate leave of the tip's position
+/// over the candidates beside those that this one does, and at least the noise of one pose's readings as a displacement
+/// of the tip. Features: the fewest, up to 32, with which the log det of random sets of candidates is within 1 % of a
+/// parameter's share of that with the whole effect, or within 1.5 times what the most of them leave.
+/// Throws InputError if the effect is so smooth over the workspace that the estimated parameters take it up, CannotDo
+/// if the readings tell of no tip.
+void allow_for_unmodelled(const Problem& problem, const Configurations& candidates, int threads, Variant& variant);
+
+/// Raw whitened blocks of a variant as a search sees them: the effect's features in front, if there is one.
+BlockArray search_blocks(const Variant& variant, const Configurations& configurations, int threads);
+
+// Beyond so many poses their own features no longer hold the whole effect: the rest counts as independent.
+inline constexpr int whole_features = 150;
+
+/// f of all configurations' tips, one a column.
+Eigen::MatrixXd effect_places(const UnmodelledEffect& effect, const Configurations& configurations);
+/// Raw whitened blocks of these features and the variant's columns.
+BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& features, const Configurations& configurations,
+                           int threads);
+
+/// What configurations are worth for a variant. With an effect by its whole covariance between them and not by features
+/// of candidates: a list says the same whatever was searched.
+struct VariantWorth {
+  Evaluation evaluation;
+  std::vector<PlaceError> errors;  ///< at every test pose, after compensation by the parameters
+  std::optional<PlannedEffect> unmodelled;
+};
+/// Throws CannotDo as evaluate().
+VariantWorth worth_of(const Variant& variant, const Configurations& configurations, Prior prior, int threads);
+
+}  // namespace posewright

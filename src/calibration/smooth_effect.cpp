@@ -1,0 +1,213 @@
+#include "posewright/calibration/smooth_effect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "posewright/model/unmodelled_effect.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/distributions.hpp"
+#include "stacked_readings.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::size_t most_poses = 150;
+constexpr int fewest_poses = 8, fewest_left = 10;
+// Lengths that are tried, rad, from 15 to 160 deg: each 1.6 times the one before, far less than data tell apart.
+constexpr double shortest = 15 * std::numbers::pi / 180;
+constexpr int lengths_tried = 6;
+constexpr double step = 1.6;
+// τ²/s² in units of the readings: from nothing to all.
+constexpr double least_ratio = 1e-8, largest_ratio = 1e8;
+constexpr double half_95 = 3.841458820694124;  // χ² of one degree
+
+/// Readings of a linearised fit: whitened residuals, their columns and the tip's twists.
+struct LinearisedFit {
+  Eigen::MatrixXd J, A;  // A: rows × (poses · twists of a pose), one pose after the other
+  Eigen::VectorXd r;
+  std::vector<int> first;  // row of each pose; one more at the end
+};
+
+LinearisedFit linearised(const IdentificationModel& model, VariantColumns columns,
+                         const std::vector<const MeasuredPose*>& poses, const std::vector<std::size_t>& which,
+                         const Fit& fit, const UnmodelledEffect& effect) {
+  const auto own = Eigen::Index(columns.selected.size()), twists = Eigen::Index(effect.columns().size());
+  columns.selected.insert(columns.selected.end(), effect.columns().begin(), effect.columns().end());
+  LinearisedFit result;
+  std::vector<MeasuredPose> list;
+  for (const MeasuredPose* pose : poses) list.push_back(*pose);
+  const BlockArray blocks = blocks_of(model, columns, list, fit.correction);
+  result.first.push_back(0);
+  for (const MeasuredPose& pose : list) result.first.push_back(result.first.back() + int(indices_read(pose.y).size()));
+  const Eigen::Index rows = result.first.back();
+  result.J.resize(rows, own);
+  result.A.resize(rows, twists);
+  result.r.resize(rows);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::vector<int> read = indices_read(list[k].y);
+    const auto block = blocks.block(k).topRows(Eigen::Index(read.size()));
+    result.J.middleRows(result.first[k], block.rows()) = block.leftCols(own);
+    result.A.middleRows(result.first[k], block.rows()) = block.rightCols(twists);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      result.r[result.first[k] + Eigen::Index(i)] = fit.whitened[which[k]][read[i]];
+  }
+  return result;
+}
+
+/// −2 ln of the restricted likelihood over γ = τ²/s², s² at its best: ν ln Q(γ) + Σ ln(1 + γ λ_k),
+/// Q = ‖r‖² − Σ y_k² γ λ_k/(1 + γ λ_k), with F the effect's columns beside what the parameters take up,
+/// FᵀF = W diag(λ) Wᵀ, y = λ^{−1/2} Wᵀ Fᵀ r.
+class Restricted {
+ public:
+  Restricted(const Eigen::MatrixXd& F, const Eigen::VectorXd& r, Eigen::Index parameters)
+      : freedom_(double(r.size() - parameters)), squares_(r.squaredNorm()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
+    lambda_ = eigen.eigenvalues().cwiseMax(0.0);
+    const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (F.transpose() * r);
+    y_squared_ = (lambda_.array() > 1e-12 * std::max(lambda_.maxCoeff(), 1e-300))
+                     .select(along.array().square() / lambda_.array().max(1e-300), 0.0);
+  }
+
+  double left(double ratio) const {
+    const Eigen::ArrayXd gained = ratio * lambda_.array();
+    return squares_ - (y_squared_.array() * gained / (1 + gained)).sum();
+  }
+  double minus_two_log(double ratio) const {
+    return freedom_ * std::log(left(ratio)) + (ratio * lambda_.array()).log1p().sum();
+  }
+  double noise(double ratio) const { return std::sqrt(left(ratio) / freedom_); }
+
+  /// Least over ratio: a grid in its logarithm, then golden section.
+  double best() const {
+    constexpr int points = 60;
+    const double low = std::log(least_ratio), width = (std::log(largest_ratio) - low) / points;
+    int at = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= points; ++i)
+      if (const double value = minus_two_log(std::exp(low + i * width)); value < least) {
+        least = value;
+        at = i;
+      }
+    double a = low + (at - 1) * width, b = low + (at + 1) * width;
+    for (int i = 0; i < 60; ++i) {
+      const double c = a + 0.381966 * (b - a), d = b - 0.381966 * (b - a);
+      (minus_two_log(std::exp(c)) < minus_two_log(std::exp(d)) ? b : a) =
+          minus_two_log(std::exp(c)) < minus_two_log(std::exp(d)) ? d : c;
+    }
+    return std::exp(0.5 * (a + b));
+  }
+
+  /// Where −2 ln L has grown to `allowed`, from `from` towards `end`.
+  double edge(double from, double end, double allowed) const {
+    if (minus_two_log(end) <= allowed) return end;
+    double inside = std::log(from), outside = std::log(end);
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (minus_two_log(std::exp(middle)) <= allowed ? inside : outside) = middle;
+    }
+    return std::exp(inside);
+  }
+
+ private:
+  double freedom_, squares_;
+  Eigen::VectorXd lambda_, y_squared_;
+};
+
+/// One length: `unit` is the τ that is as large as the noise, ratios count its square.
+struct Tried {
+  Restricted likelihood;
+  double length, unit, best, value;
+
+  double size_of(double ratio) const { return unit * std::sqrt(ratio) * likelihood.noise(ratio); }
+};
+
+}  // namespace
+
+SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const Fit& fit, std::optional<double> length) {
+  SmoothEffect result;
+  std::vector<const MeasuredPose*> list;
+  std::vector<std::size_t> which;
+  const std::size_t taken = std::min(poses.size(), most_poses);
+  int readings = 0;
+  for (std::size_t i = 0; i < taken; ++i) {
+    which.push_back(i * poses.size() / taken);
+    list.push_back(&poses[which.back()]);
+    readings += int(indices_read(list.back()->y).size());
+  }
+  result.poses = int(taken);
+  const int left = readings - int(columns.selected.size());
+  if (model.tips() == 0) result.why_not = "the readings tell of no tip";
+  else if (result.poses < fewest_poses || left < fewest_left)
+    result.why_not = fmt::format("{} poses leave {} degrees of freedom; at least {} poses and {} are needed",
+                                 result.poses, left, fewest_poses, fewest_left);
+  if (!result.why_not.empty()) return result;
+
+  std::vector<double> lengths;
+  for (int i = 0; i < lengths_tried; ++i) lengths.push_back(shortest * std::pow(step, i));
+  if (length) lengths = {*length};
+  Eigen::MatrixXd Q;
+  Eigen::VectorXd r;
+  LinearisedFit linear;
+  std::vector<Tried> tried;
+  for (const double l : lengths) {
+    const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
+    if (Q.size() == 0) {
+      linear = linearised(model, columns, list, which, fit, *effect);
+      const Eigen::VectorXd unit = linear.J.colwise().norm().cwiseMax(1e-300);
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear.J * unit.cwiseInverse().asDiagonal());
+      Q = qr.householderQ() * Eigen::MatrixXd::Identity(linear.J.rows(), linear.J.cols());
+      r = linear.r - Q * (Q.transpose() * linear.r);
+    }
+    Eigen::MatrixXd places(effect->places(list.front()->q).rows(), Eigen::Index(list.size()) * effect->tips());
+    for (std::size_t k = 0; k < list.size(); ++k)
+      places.middleCols(Eigen::Index(k) * effect->tips(), effect->tips()) = effect->places(list[k]->q);
+    const EffectFeatures features(effect, places, int(places.cols()));
+    const Eigen::MatrixXd phi = features.at(places);
+    const int twists = effect->twists();
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(linear.J.rows(), features.columns());
+    for (std::size_t k = 0; k < list.size(); ++k)
+      for (Eigen::Index j = 0; j < phi.rows(); ++j)
+        for (int tip = 0; tip < effect->tips(); ++tip)
+          F.block(linear.first[k], j * twists, linear.first[k + 1] - linear.first[k], twists) +=
+              phi(j, Eigen::Index(k) * effect->tips() + tip) *
+              linear.A.block(linear.first[k], Eigen::Index(tip) * twists, linear.first[k + 1] - linear.first[k],
+                             twists);
+    F -= Q * (Q.transpose() * F);
+    // In units in which an effect of size one is as large as the noise.
+    const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));
+    const Restricted likelihood(F * unit, r, columns.selected.empty() ? 0 : Eigen::Index(columns.selected.size()));
+    const double best = likelihood.best();
+    tried.push_back({likelihood, l, unit, best, likelihood.minus_two_log(best)});
+  }
+  const auto least =
+      std::min_element(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  const double none = least->likelihood.minus_two_log(0.0);
+  result.length = least->length;
+  result.size = least->size_of(least->best);
+  result.noise = least->likelihood.noise(least->best);
+  result.lower = result.upper = result.size;
+  const double allowed = least->value + half_95;
+  for (const Tried& t : tried) {
+    if (t.value > allowed) continue;
+    const double low = t.likelihood.edge(t.best, least_ratio, allowed),
+                 high = t.likelihood.edge(t.best, largest_ratio, allowed);
+    result.lower = std::min(result.lower, low > least_ratio ? t.size_of(low) : 0.0);
+    result.upper =
+        std::max(result.upper, high < largest_ratio ? t.size_of(high) : std::numeric_limits<double>::infinity());
+  }
+  result.statistic = std::max(0.0, none - least->value);
+  result.probability = std::min(1.0, 0.5 * double(lengths.size()) * chi_square_exceeded(result.statistic, 1));
+  if (!(result.statistic > 1e-6)) {
+    result.size = result.lower = 0.0;
+    result.noise = std::sqrt(r.squaredNorm() / left);
+    result.probability = 1.0;
+  }
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,146 @@
+#include "posewright/model/unmodelled_effect.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Variance that features leave: below this it is rounding, and no noise.
+constexpr double rounding = 1e-9;
+// The same of features that hold the whole effect.
+constexpr double whole = 1e-10;
+
+}  // namespace
+
+UnmodelledEffect::UnmodelledEffect(const IdentificationModel& model, const UnmodelledSize& size)
+    : size_(size), tips_(model.tips()), coordinates_(model.tip_coordinates()) {
+  if (tips_ == 0)
+    throw CannotDo(
+        "an unmodelled effect moves the tip, and these readings do not tell where one is (joint sensors, differences "
+        "between loads, a linkage): leave out `unmodelled`");
+  for (std::size_t i = 0; i < coordinates_; ++i) {
+    const Coordinate& c = model.coordinates()[i];
+    if (c.choice()) continue;
+    const bool turns = c.unit == "rad";
+    if (turns || c.upper > c.lower) axes_.push_back({i, turns, turns ? 1.0 : std::numbers::pi / (c.upper - c.lower)});
+  }
+  for (int tip = 0; tip < tips_; ++tip)
+    for (int k = 0; k < twists(); ++k) columns_.push_back(model.tip_column(tip, k));
+}
+
+Eigen::VectorXd UnmodelledEffect::place(std::span<const double> q) const {
+  Eigen::VectorXd f(2 * Eigen::Index(axes_.size()));
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const double x = q[axes_[a].coordinate];
+    f[2 * Eigen::Index(a)] = axes_[a].turns ? std::cos(x) : axes_[a].unit * x;
+    f[2 * Eigen::Index(a) + 1] = axes_[a].turns ? std::sin(x) : 0.0;
+  }
+  return f;
+}
+
+Eigen::MatrixXd UnmodelledEffect::places(std::span<const double> q) const {
+  Eigen::MatrixXd f(2 * Eigen::Index(axes_.size()), tips_);
+  for (int tip = 0; tip < tips_; ++tip) f.col(tip) = place(q.subspan(std::size_t(tip) * coordinates_, coordinates_));
+  return f;
+}
+
+double UnmodelledEffect::correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const {
+  return std::exp(-0.5 * (a - b).squaredNorm() / (size_.length * size_.length));
+}
+
+EffectFeatures::EffectFeatures(std::shared_ptr<const UnmodelledEffect> effect, const Eigen::MatrixXd& places, int most)
+    : effect_(std::move(effect)) {
+  const Eigen::Index n = places.cols();
+  Eigen::VectorXd rest = Eigen::VectorXd::Ones(n);
+  Eigen::MatrixXd rows(std::min<Eigen::Index>(most, n), n);  // φ of every place
+  std::vector<Eigen::Index> chosen;
+  while (Eigen::Index(chosen.size()) < rows.rows()) {
+    Eigen::Index next = 0;
+    if (!(rest.maxCoeff(&next) > whole)) break;
+    const auto k = Eigen::Index(chosen.size());
+    for (Eigen::Index i = 0; i < n; ++i)
+      rows(k, i) =
+          effect_->correlation(places.col(next), places.col(i)) - rows.col(next).head(k).dot(rows.col(i).head(k));
+    rows.row(k) /= std::sqrt(rest[next]);
+    rest -= rows.row(k).transpose().cwiseAbs2();
+    rest[next] = 0.0;
+    chosen.push_back(next);
+  }
+  const auto count = Eigen::Index(chosen.size());
+  pivots_ = places(Eigen::all, chosen);
+  // φ of the pivots is L of their correlations: φ = L⁻¹ k, turned so that the first features hold most.
+  const Eigen::MatrixXd phi = rows.topRows(count);
+  const Eigen::MatrixXd L = phi(Eigen::all, chosen).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(phi * phi.transpose()));
+  weights_ = L.transpose().triangularView<Eigen::Upper>().solve(eigen.eigenvectors().rowwise().reverse()).transpose();
+}
+
+EffectFeatures EffectFeatures::first(int count) const {
+  EffectFeatures fewer = *this;
+  fewer.weights_ = weights_.topRows(std::min<Eigen::Index>(count, weights_.rows()));
+  return fewer;
+}
+
+Eigen::MatrixXd EffectFeatures::at(const Eigen::MatrixXd& places) const {
+  Eigen::MatrixXd correlations(pivots_.cols(), places.cols());
+  for (Eigen::Index tip = 0; tip < places.cols(); ++tip)
+    for (Eigen::Index j = 0; j < pivots_.cols(); ++j)
+      correlations(j, tip) = effect_->correlation(pivots_.col(j), places.col(tip));
+  return weights_ * correlations;
+}
+
+void EffectFeatures::expand(std::span<const double> q, Eigen::Ref<const BlockArray::RowMatrix> block,
+                            Eigen::Ref<BlockArray::RowMatrix> out) const {
+  const Eigen::MatrixXd places = effect_->places(q), phi = at(places);
+  const int twists = effect_->twists(), tips = effect_->tips();
+  const Eigen::Index own = block.cols() - Eigen::Index(tips) * twists;
+  Eigen::MatrixXd Y = block.rightCols(Eigen::Index(tips) * twists);
+  for (Eigen::Index c = 0; c < Y.cols(); ++c) Y.col(c) *= effect_->size_of(int(c) % twists);
+  out.rightCols(own) = block.leftCols(own);
+  out.leftCols(columns()).setZero();
+  for (Eigen::Index j = 0; j < phi.rows(); ++j)
+    for (int tip = 0; tip < tips; ++tip)
+      out.middleCols(j * twists, twists) += phi(j, tip) * Y.middleCols(Eigen::Index(tip) * twists, twists);
+  Eigen::MatrixXd rest = -phi.transpose() * phi;
+  for (Eigen::Index a = 0; a < tips; ++a)
+    for (Eigen::Index b = 0; b < tips; ++b) rest(a, b) += effect_->correlation(places.col(a), places.col(b));
+  if (!(rest.diagonal().maxCoeff() > rounding)) return;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(block.rows(), block.rows());
+  for (Eigen::Index a = 0; a < tips; ++a)
+    for (Eigen::Index b = 0; b < tips; ++b)
+      covariance.noalias() +=
+          rest(a, b) * Y.middleCols(a * twists, twists) * Y.middleCols(b * twists, twists).transpose();
+  covariance.llt().matrixL().solveInPlace(out);
+}
+
+Eigen::MatrixXd EffectFeatures::columns_at(const Eigen::VectorXd& phi, const Eigen::MatrixXd& twists) const {
+  const int each = effect_->twists();
+  Eigen::MatrixXd result(twists.rows(), columns());
+  for (Eigen::Index j = 0; j < phi.size(); ++j)
+    for (int k = 0; k < each; ++k) result.col(j * each + k) = phi[j] * effect_->size_of(k) * twists.col(k);
+  return result;
+}
+
+BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also) {
+  const auto F = blocks.all().leftCols(features);
+  // (I + F Fᵀ)^{−1/2} = I − F V g(S) Vᵀ Fᵀ with FᵀF = V S Vᵀ, g(s) = (1 − 1/√(1 + s))/s.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
+  Eigen::VectorXd g = eigen.eigenvalues().cwiseMax(0.0);
+  for (double& s : g) {
+    const double root = std::sqrt(1 + s);
+    s = 1 / (root * (1 + root));
+  }
+  const Eigen::MatrixXd FV = F * eigen.eigenvectors();
+  BlockArray result(blocks.count(), blocks.rows(), blocks.columns() - features);
+  const auto J = blocks.all().rightCols(result.columns());
+  result.all() = J;
+  result.all() -= FV * (g.asDiagonal() * (FV.transpose() * J));
+  if (also != nullptr) *also -= FV * (g.asDiagonal() * (FV.transpose() * *also));
+  return result;
+}
+
+}  // namespace posewright

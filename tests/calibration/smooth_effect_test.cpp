@@ -1,0 +1,160 @@
+// A smooth effect of known size in drawn readings: what restricted maximum likelihood says of it, and whether intervals
+// that count it hold the truth. The effect is drawn from the kernel as its definition has it, by a dense factor.
+
+#include "posewright/calibration/smooth_effect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
+#include "tests/kit/example_problems.hpp"
+
+namespace posewright {
+namespace {
+
+const double pi = std::acos(-1.0);
+
+/// Two-axis positioner whose target's pose is read; where base and target stand is estimated, 12 parameters.
+class SmoothEffects : public testing::Test {
+ protected:
+  SmoothEffects() : problem_(example("real_data/rosi_positioner/problem.yaml")), model_(make_model(problem_)) {
+    VariantColumns all = select_columns(*model_, problem_, find_variant(problem_, "everything"));
+    std::vector<int> kept;
+    for (int j = 0; j < int(all.parameters.size()); ++j)
+      if (const std::string& name = all.parameters[std::size_t(j)].name;
+          name.starts_with("base.") || name.starts_with("tool."))
+        kept.push_back(j);
+    columns_ = subset(all, kept);
+  }
+
+  /// Readings of the nominal robot with noise `noise` times the stated one and an effect of this size (m) and length.
+  std::vector<MeasuredPose> drawn(int count, double size, double length, double noise, std::uint64_t seed) const {
+    Random random(seed, 77);
+    std::vector<MeasuredPose> poses(static_cast<std::size_t>(count));
+    for (MeasuredPose& pose : poses)
+      for (const Coordinate& c : model_->coordinates()) pose.q.push_back(random.uniform(c.lower, c.upper));
+    Eigen::MatrixXd K(count, count);
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) {
+        double squares = 0;
+        for (std::size_t a = 0; a < 2; ++a) {
+          const double p = poses[std::size_t(i)].q[a], q = poses[std::size_t(j)].q[a];
+          squares += 2 - 2 * std::cos(p - q);
+        }
+        K(i, j) = std::exp(-squares / (2 * length * length)) + (i == j ? 1e-10 : 0);
+      }
+    Eigen::MatrixXd white(count, 3);
+    for (double& w : white.reshaped()) w = random.normal();
+    const Eigen::MatrixXd effect = size * Eigen::MatrixXd(K.llt().matrixL()) * white;
+    for (int i = 0; i < count; ++i) {
+      MeasuredPose& pose = poses[std::size_t(i)];
+      pose.id = i + 1;
+      Eigen::VectorXd predicted;
+      model_->predict(pose.q, {}, predicted);
+      Eigen::VectorXd change(6);
+      for (Eigen::Index k = 0; k < 6; ++k) change[k] = noise * (k < 3 ? 0.23e-3 : 0.5e-3) * random.normal();
+      change.head<3>() += effect.row(i).transpose();
+      model_->shifted(predicted, change, pose.y);
+    }
+    return poses;
+  }
+
+  Fit fitted(const std::vector<MeasuredPose>& poses, std::shared_ptr<const UnmodelledEffect> effect = nullptr) const {
+    FitOptions options;
+    options.effect = std::move(effect);
+    return fit(*model_, columns_, poses, options);
+  }
+
+  Problem problem_;
+  std::unique_ptr<IdentificationModel> model_;
+  VariantColumns columns_;
+};
+
+TEST_F(SmoothEffects, SizeIsTheTruthsInTheMedianAndIntervalsHoldIt) {
+  constexpr int draws = 40;
+  constexpr double truth = 0.4e-3;
+  std::vector<double> sizes;
+  int held = 0, shown = 0;
+  for (int i = 0; i < draws; ++i) {
+    const auto poses = drawn(60, truth, pi / 3, 1.0, 100 + std::uint64_t(i));
+    const SmoothEffect found = smooth_effect(*model_, columns_, poses, fitted(poses));
+    ASSERT_TRUE(found.why_not.empty());
+    sizes.push_back(found.size);
+    held += found.lower <= truth && truth <= found.upper ? 1 : 0;
+    shown += found.shown(0.05) ? 1 : 0;
+  }
+  std::sort(sizes.begin(), sizes.end());
+  EXPECT_NEAR(sizes[draws / 2] / truth, 1, 0.2);
+  EXPECT_GE(held, 32);
+  EXPECT_EQ(shown, draws);
+}
+
+TEST_F(SmoothEffects, OfNoneIsSeldomShown) {
+  int shown = 0;
+  for (int i = 0; i < 60; ++i) {
+    const auto poses = drawn(30, 0.0, 1.0, 1.0, 500 + std::uint64_t(i));
+    shown += smooth_effect(*model_, columns_, poses, fitted(poses)).shown(0.05) ? 1 : 0;
+  }
+  // Not more than 5 % (and its chance), since lengths count as so many tests: 8 of 60 have a chance below 1 %.
+  EXPECT_LE(shown, 8);
+}
+
+TEST_F(SmoothEffects, NoiseBesideItIsToldApart) {
+  const auto poses = drawn(80, 0.5e-3, pi / 3, 2.0, 9);
+  const SmoothEffect found = smooth_effect(*model_, columns_, poses, fitted(poses));
+  EXPECT_NEAR(found.noise, 2.0, 0.25);
+}
+
+TEST_F(SmoothEffects, IntervalsThatCountItHoldTheTruthWherePlainOnesDoNot) {
+  constexpr int draws = 60;
+  const auto effect = std::make_shared<UnmodelledEffect>(*model_, UnmodelledSize{0.5e-3, 0.0, pi / 3});
+  int plain = 0, counted = 0, all = 0;
+  for (int i = 0; i < draws; ++i) {
+    const auto poses = drawn(40, 0.5e-3, pi / 3, 1.0, 900 + std::uint64_t(i));
+    const Fit without = fitted(poses), with = fitted(poses, effect);
+    for (Eigen::Index j = 0; j < without.change.size(); ++j) {
+      ++all;
+      plain += std::abs(without.change[j]) < 1.96 * std::sqrt(without.covariance(j, j)) ? 1 : 0;
+      counted += std::abs(with.change[j]) < 1.96 * std::sqrt(with.covariance(j, j)) ? 1 : 0;
+    }
+  }
+  EXPECT_LT(plain, 0.85 * all);
+  EXPECT_GT(counted, 0.92 * all);
+  EXPECT_LT(counted, 0.98 * all);
+}
+
+TEST_F(SmoothEffects, FitThatCountsOneIsGeneralisedLeastSquares) {
+  // By the whole covariance, inverted; the fit never forms it.
+  const auto poses = drawn(12, 0.5e-3, pi / 3, 1.0, 4);
+  const auto effect = std::make_shared<UnmodelledEffect>(*model_, UnmodelledSize{0.5e-3, 0.0, pi / 3});
+  const Fit with = fitted(poses, effect);
+  Eigen::MatrixXd J(72, columns_.selected.size()), S = Eigen::MatrixXd::Zero(72, 72);
+  Linearisation out;
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    const auto& a = poses[std::size_t(i)];
+    ASSERT_TRUE(model_->linearise(a.q, with.correction, columns_.selected, out));
+    J.middleRows(6 * i, 6) = out.G;
+    S.block<6, 6>(6 * i, 6 * i) += out.covariance;
+    for (Eigen::Index k = 0; k < 12; ++k) {
+      const auto& b = poses[std::size_t(k)];
+      const double squares = 4 - 2 * std::cos(a.q[0] - b.q[0]) - 2 * std::cos(a.q[1] - b.q[1]);
+      S.block<3, 3>(6 * i, 6 * k).diagonal().array() += 0.25e-6 * std::exp(-squares / (2 * pi * pi / 9));
+    }
+  }
+  const Eigen::MatrixXd V = (J.transpose() * S.inverse() * J).inverse() * std::pow(with.noise_factor, 2);
+  for (Eigen::Index j = 0; j < V.rows(); ++j) EXPECT_NEAR(with.covariance(j, j) / V(j, j), 1, 1e-4);
+}
+
+TEST_F(SmoothEffects, TooFewPosesAreToldInWords) {
+  const auto poses = drawn(5, 0.0, 1.0, 1.0, 3);
+  EXPECT_EQ(smooth_effect(*model_, columns_, poses, fitted(poses)).why_not,
+            "5 poses leave 18 degrees of freedom; at least 8 poses and 10 are needed");
+}
+
+}  // namespace
+}  // namespace posewright

@@ -1,0 +1,269 @@
+// A smooth effect that a variant lacks, through plan and evaluate. The second road is a planar arm whose Jacobian,
+// kernel and covariance are written down here as the definitions have them, for all readings at once.
+
+#include "posewright/study/unmodelled.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "posewright/outputs/write_plan.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/pose_lists.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::HasSubstr;
+using List = std::vector<std::vector<double>>;
+
+constexpr double sigma = 1e-4, link = 1.0, tool = 0.8;
+const double sixty_degrees = std::acos(-1.0) / 3;
+
+/// 2R arm, links 1 m and 0.8 m, x and y read with 0.1 mm.
+std::string arm(const std::string& unmodelled, const std::string& design) {
+  return "posewright: 1\nrobot: {urdf: arm.urdf}\n"
+         "measurement: {type: pose, components: [x, y], device: {type: isotropic, noise: {position: 0.1 mm, rotation: "
+         "1 deg}}}\nvariants:\n"
+         "  plain: {parameters: [q1.offset, q2.offset, tool.x]}\n"
+         "  geared: {parameters: [q1.offset, q2.offset, tool.x, q1.gear], tolerance: {'*.gear': 1e-3}}\n"
+         "  short: {parameters: [q1.offset, q2.offset, tool.x]" +
+         unmodelled + "}\ndesign: " + design + "\n";
+}
+
+constexpr const char* arm_urdf =
+    "<robot name=\"arm\"><link name=\"l0\"/><link name=\"l1\"/><link name=\"l2\"/><link name=\"tip\"/>"
+    "<joint name=\"q1\" type=\"revolute\"><parent link=\"l0\"/><child link=\"l1\"/><axis xyz=\"0 0 1\"/>"
+    "<limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
+    "<joint name=\"q2\" type=\"revolute\"><parent link=\"l1\"/><child link=\"l2\"/><origin xyz=\"1 0 0\"/>"
+    "<axis xyz=\"0 0 1\"/><limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
+    "<joint name=\"end\" type=\"fixed\"><parent link=\"l2\"/><child link=\"tip\"/><origin xyz=\"0.8 0 0\"/></joint>"
+    "</robot>";
+
+class UnmodelledEffects : public testing::Test {
+ protected:
+  Problem problem(const std::string& unmodelled, const std::string& design = "{variant: short, poses: 8}") {
+    folder_.write("arm.urdf", arm_urdf);
+    return read_problem(folder_.write("p.yaml", arm(unmodelled.empty() ? "" : ", unmodelled: " + unmodelled, design)));
+  }
+  static Plan judged(const Problem& problem, const List& list, const std::string& criterion = "o1") {
+    EvaluateOptions options;
+    options.plan.criterion = criterion;
+    options.plan.candidates = 200;
+    return evaluate_problem(problem, given_poses(problem, list), options, Monitor{}).plan;
+  }
+  TemporaryFolder folder_;
+};
+
+const List eight = {{0.2, 1.1}, {-1.3, 0.7},  {1.5, -1.2}, {-0.4, 1.8},
+                    {0.9, 0.5}, {-1.8, -0.9}, {0.25, 1.0}, {1.1, 1.6}};
+
+Eigen::Matrix<double, 2, 3> jacobian(const std::vector<double>& q) {
+  const double s1 = std::sin(q[0]), c1 = std::cos(q[0]), s12 = std::sin(q[0] + q[1]), c12 = std::cos(q[0] + q[1]);
+  Eigen::Matrix<double, 2, 3> J;
+  J << -link * s1 - tool * s12, -tool * s12, c12, link * c1 + tool * c12, tool * c12, s12;
+  return J;
+}
+
+double kernel(const std::vector<double>& a, const std::vector<double>& b, double length) {
+  double squares = 0;
+  for (int j = 0; j < 2; ++j)
+    squares += std::pow(std::cos(a[j]) - std::cos(b[j]), 2) + std::pow(std::sin(a[j]) - std::sin(b[j]), 2);
+  return std::exp(-squares / (2 * length * length));
+}
+
+/// What generalised least squares of all readings gives, from definitions.
+struct Whole {
+  Eigen::MatrixXd J, inverse, V;
+  double length, size;
+
+  Whole(const List& list, double size_, double length_) : length(length_), size(size_) {
+    const auto n = Eigen::Index(list.size());
+    Eigen::MatrixXd covariance = sigma * sigma * Eigen::MatrixXd::Identity(2 * n, 2 * n);
+    J.resize(2 * n, 3);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      J.middleRows(2 * i, 2) = jacobian(list[std::size_t(i)]);
+      for (Eigen::Index k = 0; k < n; ++k)
+        covariance.block<2, 2>(2 * i, 2 * k) +=
+            size * size * kernel(list[std::size_t(i)], list[std::size_t(k)], length) * Eigen::Matrix2d::Identity();
+    }
+    inverse = covariance.inverse();
+    V = (J.transpose() * inverse * J).inverse();
+  }
+
+  /// E‖J_x(θ̂ − θ) − δ(x)‖²; the arm's plane, and the effect across it that no parameter follows.
+  double square_at(const std::vector<double>& x, const List& list) const {
+    Eigen::MatrixXd cross(J.rows(), 2);
+    for (std::size_t i = 0; i < list.size(); ++i)
+      cross.middleRows(2 * Eigen::Index(i), 2) = size * size * kernel(list[i], x, length) * Eigen::Matrix2d::Identity();
+    const Eigen::MatrixXd A = jacobian(x), B = A * V * J.transpose() * inverse;
+    return (A * V * A.transpose()).trace() - 2 * (B * cross).trace() + 3 * size * size;
+  }
+};
+
+TEST_F(UnmodelledEffects, FiguresAreThoseOfGeneralisedLeastSquaresOfAllReadings) {
+  for (const auto& [text, length] :
+       {std::pair{"{size: 0.2 mm}", sixty_degrees}, {"{size: 0.2 mm, length: 0.4 rad}", 0.4}}) {
+    const Plan plan =
+        judged(problem(text, "{variant: short, poses: 8, test_poses: {at: [[0.5, 1], [-1, 1.4]]}}"), eight);
+    const Whole whole(eight, 2e-4, length);
+    EXPECT_NEAR(plan.log_det, -std::log(whole.V.determinant()), 1e-7);
+    for (std::size_t j = 0; j < 3; ++j)
+      EXPECT_NEAR(*plan.parameters[j].sigma / std::sqrt(whole.V(Eigen::Index(j), Eigen::Index(j))), 1, 1e-6);
+    const double a = whole.square_at({0.5, 1}, eight), b = whole.square_at({-1, 1.4}, eight);
+    ASSERT_EQ(plan.test_errors.size(), 2u);
+    EXPECT_NEAR(plan.test_errors[0] / std::sqrt(a), 1, 1e-6);
+    EXPECT_NEAR(plan.test_errors[1] / std::sqrt(b), 1, 1e-6);
+    ASSERT_TRUE(plan.unmodelled);
+    EXPECT_NEAR(std::hypot(*plan.unmodelled->by_noise, *plan.unmodelled->by_effect) / *plan.rho0, 1, 1e-9);
+    EXPECT_LT(*plan.unmodelled->interpolated, *plan.rho0);
+    double sum = 0;
+    for (const PlannedPose& pose : plan.poses) sum += pose.contribution;
+    EXPECT_NEAR(sum, 1, 1e-9);
+  }
+}
+
+TEST_F(UnmodelledEffects, InterpolationAddsNothingAtAMeasuredPoseOfANoiselessInstrumentAndMissesTheRestFarAway) {
+  // An effect a thousand times the noise: at a measured pose what is read there is known, across the plane it is not.
+  const Plan plan = judged(
+      problem("{size: 100 mm, length: 0.3 rad}", "{variant: short, poses: 8, test_poses: {at: [[0.2, 1.1]]}}"), eight);
+  EXPECT_NEAR(*plan.unmodelled->interpolated, std::sqrt(1e-2 + 2 * sigma * sigma), 1e-5);
+}
+
+TEST_F(UnmodelledEffects, OfNoSizeChangesNothing) {
+  const std::string design = "{variant: short, poses: 8, test_poses: {at: [[0.5, 1]]}}";
+  const Plan none = judged(problem("", design), eight), tiny = judged(problem("{size: 1 nm}", design), eight);
+  EXPECT_FALSE(none.unmodelled);
+  EXPECT_NEAR(tiny.log_det, none.log_det, 1e-7);
+  EXPECT_NEAR(*tiny.rho0 / *none.rho0, 1, 1e-6);
+}
+
+TEST_F(UnmodelledEffects, BoundHoldsForEverySetOfCandidates) {
+  // Seven poses of ten: all sets judged one by one, by what the search counts.
+  const Problem p = problem("{size: 0.3 mm}", "{variant: short, poses: 7}");
+  List ten = eight;
+  ten.push_back({-0.2, -1.5});
+  ten.push_back({1.9, 0.3});
+  PlanOptions options;
+  options.candidates_from = given_poses(p, ten);
+  for (const char* criterion : {"o1", "test_pose"}) {
+    options.criterion = criterion;
+    options.method = "branch_and_bound";
+    const Plan best = plan_problem(p, options, Monitor{});
+    options.method = "auto";
+    const Plan found = plan_problem(p, options, Monitor{});
+    EXPECT_TRUE(best.proved_optimal) << criterion;
+    EXPECT_NEAR(found.criterion_value / best.criterion_value, 1, 1e-6) << criterion;
+    EXPECT_TRUE(found.certificate.proved);
+    EXPECT_LE(found.certificate.efficiency, 1.0);
+  }
+}
+
+TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {
+  // Without the effect poses crowd where the parameters show best; with it the second of two near ones tells little.
+  const std::string design = "{variant: short, poses: 9, candidates: 300, restarts: 3, criterion: o1}";
+  PlanOptions options;
+  const auto nearest = [&](const Plan& plan) {
+    double sum = 0;
+    for (const PlannedPose& a : plan.poses) {
+      double least = 10;
+      for (const PlannedPose& b : plan.poses)
+        if (a.id != b.id)
+          least = std::min(least, std::hypot(a.configuration[0].value - b.configuration[0].value,
+                                             a.configuration[1].value - b.configuration[1].value));
+      sum += least;
+    }
+    return sum / double(plan.poses.size());
+  };
+  const Plan without = plan_problem(problem("", design), options, Monitor{});
+  const Plan with = plan_problem(problem("{size: 0.3 mm}", design), options, Monitor{});
+  EXPECT_GT(nearest(with), 1.5 * nearest(without));
+}
+
+TEST_F(UnmodelledEffects, FormFollowsTheNumberOfPosesUnlessACriterionIsNamed) {
+  const auto criterion_of = [&](const std::string& design, const std::string& named) {
+    PlanOptions options;
+    options.criterion = named;
+    const Plan plan = plan_problem(problem("auto", design), options, Monitor{});
+    return plan.criterion + (plan.statistics.notes.empty() ? "" : " " + plan.statistics.notes.back());
+  };
+  // Three parameters, two readings a pose: two poses determine them.
+  EXPECT_THAT(criterion_of("{variant: short, poses: 2, candidates: 200}", ""), HasSubstr("o1 Criterion o1, since 2"));
+  EXPECT_THAT(criterion_of("{variant: short, poses: 3, candidates: 200}", ""), HasSubstr("test_pose Criterion"));
+  EXPECT_EQ(criterion_of("{variant: short, poses: 3, candidates: 200}", "o1"), "o1");
+  EXPECT_EQ(criterion_of("{variant: short, poses: 3, candidates: 200, criterion: o1}", ""), "o1");
+}
+
+TEST_F(UnmodelledEffects, SizeAutoIsTheNoiseOrWhatOtherVariantsEstimate) {
+  // Of q1.gear 1e-3, what offsets and the tool leave; a file without that variant has nothing but the noise.
+  const Plan geared = judged(problem("auto"), eight);
+  EXPECT_TRUE(geared.unmodelled->size_assumed);
+  EXPECT_GT(geared.unmodelled->size, 1e-4);
+  EXPECT_LT(geared.unmodelled->size, 2e-3);
+  Problem alone = problem("auto");
+  std::erase_if(alone.variants, [](const VariantSpec& v) { return v.name == "geared"; });
+  // x and y are read, z is not: √(3/2) of the noise as a displacement in three directions.
+  EXPECT_NEAR(judged(alone, eight).unmodelled->size, std::sqrt(1.5) * sigma, 1e-12);
+}
+
+TEST_F(UnmodelledEffects, FilesStateThemAndTheEvaluationOfAPlanRepeatsThem) {
+  const Problem p = problem("{size: 0.3 mm}", "{variant: short, poses: 6, candidates: 200, restarts: 2}");
+  const Plan plan = plan_problem(p, {}, Monitor{});
+  EvaluateOptions options;
+  const Plan again = evaluate_problem(p, planned_poses(p, plan), options, Monitor{}).plan;
+  EXPECT_NEAR(again.log_det, plan.log_det, 1e-9);
+  EXPECT_NEAR(*again.rho0 / *plan.rho0, 1, 1e-9);
+  EXPECT_NEAR(again.criterion_value / plan.criterion_value, 1, 1e-9);
+  const auto json = nlohmann::json::parse(plan_json(plan));
+  EXPECT_EQ(json["unmodelled"]["size"], 3e-4);
+  EXPECT_EQ(json["unmodelled"]["features"], plan.unmodelled->features);
+}
+
+TEST_F(UnmodelledEffects, WhatCannotBeIsToldInOneLine) {
+  const auto message = [&](const std::string& unmodelled) -> std::string {
+    try {
+      judged(problem(unmodelled), eight);
+      return "";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(message("{size: 0 mm}"), HasSubstr("p.yaml:7: variants.short.unmodelled.size"));
+  EXPECT_THAT(message("{size: -1 mm}"), HasSubstr("unmodelled.size"));
+  EXPECT_THAT(message("{length: 0 deg}"), HasSubstr("unmodelled.length"));
+  EXPECT_THAT(message("{size: 0.1 deg}"), HasSubstr("unmodelled.size"));
+  EXPECT_THAT(message("smooth"), HasSubstr("auto, or {size"));
+  EXPECT_THAT(message("{width: 1 mm}"), HasSubstr("width"));
+}
+
+TEST(UnmodelledEffect, OfAllLengthsThatTheParametersTakeUpIsRefused) {
+  // Base and tool of an arm whose pose is read follow what is the same everywhere.
+  Problem problem = example("real_data/rosi_positioner/problem.yaml");
+  problem.variants.front().unmodelled = UnmodelledSpec{1e-3, 100.0, 0.0, 7};
+  EvaluateOptions options;
+  options.plan.candidates = 200;
+  try {
+    evaluate_problem(problem, given_poses(problem, list_of(problem, 10)), options, Monitor{});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("problem.yaml:7: an unmodelled effect with a length of"));
+  }
+}
+
+TEST(UnmodelledEffect, IsRefusedWhereNoTipIsSeen) {
+  Problem problem = example("kr270/compensator_geometry.yaml");
+  problem.variants.front().unmodelled = UnmodelledSpec{};
+  PlanOptions options;
+  options.candidates = 100;
+  EXPECT_THROW(plan_problem(problem, options, Monitor{}), CannotDo);
+}
+
+}  // namespace
+}  // namespace posewright

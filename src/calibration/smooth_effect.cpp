@@ -39,6 +39,7 @@ LinearisedFit linearised(const IdentificationModel& model, VariantColumns column
   columns.selected.insert(columns.selected.end(), effect.columns().begin(), effect.columns().end());
   LinearisedFit result;
   std::vector<MeasuredPose> list;
+  list.reserve(poses.size());
   for (const MeasuredPose* pose : poses) list.push_back(*pose);
   const BlockArray blocks = blocks_of(model, columns, list, fit.correction);
   result.first.push_back(0);
@@ -148,6 +149,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   if (!result.why_not.empty()) return result;
 
   std::vector<double> lengths;
+  lengths.reserve(lengths_tried);
   for (int i = 0; i < lengths_tried; ++i) lengths.push_back(shortest * std::pow(step, i));
   if (length) lengths = {*length};
   Eigen::MatrixXd Q;

@@ -8,6 +8,21 @@
 namespace posewright {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
+Json effects_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const ScoreTest& t : c.effects)
+    list.push_back({{"effect", t.name},
+                    {"gain", t.gain},
+                    {"share", t.share},
+                    {"freedom", t.freedom},
+                    {"statistic", finite_or_null(t.statistic)},
+                    {"probability", t.probability},
+                    {"corrected", t.corrected}});
+  return list;
+}
+
 /// A smooth effect that the residuals hold, and what the fit counts.
 Json smooth_json(const Calibration& c) {
   const SmoothEffect& s = c.smooth;
@@ -23,8 +38,6 @@ Json smooth_json(const Calibration& c) {
           {"poses", s.poses},
           {"counted", c.counted ? Json{{"size", c.counted->size}, {"length", c.counted->length}} : Json(nullptr)}};
 }
-
-using Json = nlohmann::ordered_json;
 
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
@@ -138,6 +151,7 @@ Json figures_json(const Calibration& c) {
             {"serial_correlation", test_json(c.tests.serial)},
             {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
+          {"effects_left_out", effects_json(c)},
           {"smooth_effect", smooth_json(c)},
           {"left_out", left_out_json(c.left_out)},
           {"weakest_combination", text_or_null(c.weakest)},

@@ -161,6 +161,28 @@ std::string noise_text(const Calibration& c) {
   return text;
 }
 
+/// Which effect is it? The best of those that are not fitted, and advice.
+std::string effects_text(const Calibration& c) {
+  constexpr std::size_t most = 5;
+  if (c.effects.empty()) return {};
+  using A = Table::Align;
+  Table table({"effect left out", "explains", "degrees of freedom", "F", "p", "p of the best of all"},
+              {A::left, A::right, A::right, A::right, A::right, A::right});
+  for (std::size_t i = 0; i < std::min(most, c.effects.size()); ++i) {
+    const ScoreTest& t = c.effects[i];
+    table.row({t.name, fmt::format("{:.1f} %", 100 * t.share), std::to_string(t.freedom),
+               fmt::format("{:.3g}", t.statistic), chance_text(t.probability), chance_text(t.corrected)});
+  }
+  const ScoreTest& best = c.effects.front();
+  return "\n" + table.text() +
+         (best.corrected < seldom
+              ? fmt::format(
+                    "{} explains {:.1f} % of the squared residuals: estimate it too, and see whether poses that "
+                    "are left out are predicted better.\n",
+                    best.name, 100 * best.share)
+              : fmt::format("None of {} effects that are not fitted explains more than chance.\n", c.effects.size()));
+}
+
 std::string whiteness_text(const Calibration& c) {
   std::string text;
   if (c.tests.serial.possible)
@@ -232,7 +254,7 @@ std::string calibration_text(const Calibration& c) {
   return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
          (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
          predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) +
-         left_out_text(c) + outliers_text(c);
+         effects_text(c) + left_out_text(c) + outliers_text(c);
 }
 
 }  // namespace posewright

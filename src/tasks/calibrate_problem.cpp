@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "calibration_accuracy.hpp"
+#include "effects_left_out.hpp"
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/placement.hpp"
@@ -59,6 +60,7 @@ class CalibrationRun {
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
+    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit);
     allow_for_unmodelled(fit_options);
     report(1);
     result_.correction = result_.fit.correction;

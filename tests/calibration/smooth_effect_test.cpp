@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/calibration/score_tests.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
@@ -148,6 +149,45 @@ TEST_F(SmoothEffects, FitThatCountsOneIsGeneralisedLeastSquares) {
   }
   const Eigen::MatrixXd V = (J.transpose() * S.inverse() * J).inverse() * std::pow(with.noise_factor, 2);
   for (Eigen::Index j = 0; j < V.rows(); ++j) EXPECT_NEAR(with.covariance(j, j) / V(j, j), 1, 1e-4);
+}
+
+TEST_F(SmoothEffects, ScoreTestsOfWhatIsNotThereAreRightAtFivePercent) {
+  // Noise 1.4 times the stated one: F does not rest on what is stated.
+  std::vector<EffectToTest> effects;
+  for (int i = 0; i < int(model_->parameters().size()); ++i)
+    if (const std::string& name = model_->parameters()[std::size_t(i)].name; name.ends_with(".gear"))
+      effects.push_back({name, {i}});
+  ASSERT_EQ(effects.size(), 2u);
+  constexpr int draws = 500;
+  int small = 0, corrected = 0;
+  for (int i = 0; i < draws; ++i) {
+    const auto poses = drawn(10, 0.0, 1.0, 1.4, 2000 + std::uint64_t(i));
+    const Fit plain = fitted(poses);
+    const auto tests = score_tests(*model_, columns_, poses, plain.correction, plain, effects);
+    ASSERT_EQ(tests.size(), 2u);
+    for (const ScoreTest& test : tests) small += test.probability < 0.05 ? 1 : 0;
+    corrected += tests.front().corrected < 0.05 ? 1 : 0;
+  }
+  // 50 of 1000 and 25 of 500 are expected; a chance below 1 in 1000 to be farther off.
+  EXPECT_NEAR(small, 50, 24);
+  EXPECT_NEAR(corrected, 24, 17);
+  RecordProperty("share_below_5_percent", std::to_string(small / (2.0 * draws)));
+}
+
+TEST_F(SmoothEffects, GainOfAScoreTestIsWhatFittingTheEffectTakesOffTheSquares) {
+  const auto poses = drawn(20, 0.3e-3, 1.0, 1.0, 31);
+  const Fit plain = fitted(poses);
+  VariantColumns more = columns_;
+  const auto& all = model_->parameters();
+  const auto gear = std::find_if(all.begin(), all.end(), [](const Parameter& p) { return p.name == "joint_1.gear"; });
+  more.selected.push_back(int(gear - all.begin()));
+  more.parameters.push_back(*gear);
+  more.tiers.push_back(0);
+  const auto tests =
+      score_tests(*model_, columns_, poses, plain.correction, plain, {{"gear", {int(gear - all.begin())}}});
+  const Fit wider = fit(*model_, more, poses, {});
+  ASSERT_EQ(tests.size(), 1u);
+  EXPECT_NEAR(tests.front().gain / (plain.chi_square - wider.chi_square), 1, 0.01);
 }
 
 TEST_F(SmoothEffects, TooFewPosesAreToldInWords) {

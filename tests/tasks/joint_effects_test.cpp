@@ -167,6 +167,16 @@ TEST(JointEffects, EccentricityAndHarmonicGearAreFoundInReadingsOfAnArmThatHasTh
   // Without them the residuals say that something is missing.
   const Calibration plain_fit = calibrate_problem(plain, options, Monitor{});
   EXPECT_GT(plain_fit.fit.noise_factor, 1.3 * found.fit.noise_factor);
+  // … and which: the larger one first, with nothing said of joints in the file; then, where that is fitted, the gear.
+  ASSERT_FALSE(plain_fit.effects.empty());
+  EXPECT_EQ(plain_fit.effects.front().name, "joint_a2.cos1, joint_a2.sin1");
+  EXPECT_LT(plain_fit.effects.front().corrected, 1e-6);
+  for (int k = 0; k < 2; ++k) fitted.parameters.pop_back();
+  const Calibration without_gear = calibrate_problem(problem, options, Monitor{});
+  EXPECT_EQ(without_gear.effects.front().name, "joint_a2.cos_g, joint_a2.sin_g");
+  EXPECT_LT(without_gear.effects.front().corrected, 1e-6);
+  // What fitting both leaves is noise.
+  EXPECT_GT(found.effects.front().corrected, 0.01);
 }
 
 std::string refusal(const std::string& effects) {

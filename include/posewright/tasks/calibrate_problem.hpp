@@ -13,6 +13,7 @@
 #include "posewright/calibration/orientation.hpp"
 #include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/calibration/score_tests.hpp"
 #include "posewright/calibration/smooth_effect.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/problem/problem.hpp"
@@ -89,7 +90,8 @@ struct Calibration {
   LeaveOut left_out;    ///< does the estimate predict poses that it has not seen?
   std::string weakest;  ///< weakest_combination()
   ResidualTests tests;
-  SmoothEffect smooth;  ///< that the residuals of a fit hold which counts none
+  std::vector<ScoreTest> effects;  ///< not fitted, beside the fit that counts no smooth effect; best first
+  SmoothEffect smooth;             ///< that the residuals of a fit hold which counts none
   /// What the fit counts as such an effect; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
   TestResult lack_of_fit;  ///< posewright::lack_of_fit()

@@ -1,0 +1,86 @@
+#include "posewright/calibration/score_tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/support/dense.hpp"
+#include "posewright/support/distributions.hpp"
+#include "stacked_readings.hpp"
+
+namespace posewright {
+namespace {
+
+// Of a column's squared length: what the fitted parameters leave of one that they imitate.
+constexpr double imitated = 1e-8;
+
+/// Whitened rows of what was read, and its residuals.
+struct Rows {
+  Eigen::MatrixXd J;
+  Eigen::VectorXd r;
+};
+
+Rows rows_of(const IdentificationModel& model, const std::vector<int>& selected, const std::vector<MeasuredPose>& poses,
+             const std::vector<double>& correction, const Fit& fit) {
+  VariantColumns columns;
+  columns.selected = selected;
+  const BlockArray blocks = blocks_of(model, columns, poses, correction);
+  Rows rows{Eigen::MatrixXd(fit.readings, blocks.columns()), Eigen::VectorXd(fit.readings)};
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::vector<int> read = indices_read(poses[k].y);
+    for (std::size_t i = 0; i < read.size(); ++i, ++next) {
+      rows.J.row(next) = blocks.block(k).row(Eigen::Index(i));
+      rows.r[next] = fit.whitened[k][read[i]];
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<ScoreTest> score_tests(const IdentificationModel& model, const VariantColumns& columns,
+                                   const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
+                                   const Fit& fit, const std::vector<EffectToTest>& effects) {
+  std::vector<int> selected = columns.selected;
+  for (const EffectToTest& effect : effects)
+    for (const int i : effect.parameters)
+      if (std::find(selected.begin(), selected.end(), i) == selected.end()) selected.push_back(i);
+  const auto own = Eigen::Index(columns.selected.size());
+  Rows rows = rows_of(model, selected, poses, correction, fit);
+  const Eigen::VectorXd length = rows.J.colwise().norm().cwiseMax(1e-300);
+  rows.J *= length.cwiseInverse().asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows.J.leftCols(own));
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.J.rows(), own);
+  rows.r -= Q * (Q.transpose() * rows.r);
+  const double squares = rows.r.squaredNorm();
+  const int left = int(rows.J.rows() - own);
+
+  std::vector<ScoreTest> tests;
+  for (const EffectToTest& effect : effects) {
+    Eigen::MatrixXd X(rows.J.rows(), Eigen::Index(effect.parameters.size()));
+    for (std::size_t c = 0; c < effect.parameters.size(); ++c)
+      X.col(Eigen::Index(c)) =
+          rows.J.col(std::find(selected.begin(), selected.end(), effect.parameters[c]) - selected.begin());
+    X -= Q * (Q.transpose() * X);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(X.transpose() * X));
+    ScoreTest test;
+    test.name = effect.name;
+    for (Eigen::Index k = 0; k < X.cols(); ++k) {
+      if (!(eigen.eigenvalues()[k] > imitated)) continue;
+      ++test.freedom;
+      test.gain += std::pow(eigen.eigenvectors().col(k).dot(X.transpose() * rows.r), 2) / eigen.eigenvalues()[k];
+    }
+    if (test.freedom == 0 || left <= test.freedom || !(squares > 0)) continue;
+    test.share = test.gain / squares;
+    test.statistic = test.gain / test.freedom / (std::max(squares - test.gain, 1e-300) / (left - test.freedom));
+    test.probability = fisher_exceeded(test.statistic, test.freedom, left - test.freedom);
+    tests.push_back(std::move(test));
+  }
+  for (ScoreTest& test : tests) test.corrected = std::min(1.0, test.probability * double(tests.size()));
+  std::stable_sort(tests.begin(), tests.end(), [](const ScoreTest& a, const ScoreTest& b) {
+    return a.probability != b.probability ? a.probability < b.probability : a.statistic > b.statistic;
+  });
+  return tests;
+}
+
+}  // namespace posewright

@@ -1,0 +1,76 @@
+#include "effects_left_out.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "posewright/model/model_factory.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+/// The problem with eccentricity among the parameters of every joint, where the file says nothing of joints' effects.
+Problem with_eccentricity(Problem problem) {
+  auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return problem;
+  if (arm->joint_effects.empty()) arm->joint_effects.push_back({{"*", 0}, true, std::nullopt, {}});
+  else
+    for (JointEffectsSpec& spec : arm->joint_effects) spec.eccentricity = true;
+  return problem;
+}
+
+/// Both parameters of a harmonic are one effect: "q1.cos1" and "q1.sin1" belong to "q1.cos1, q1.sin1".
+std::string effect_of(const std::string& name) {
+  const auto dot = name.rfind('.');
+  if (dot == std::string::npos) return name;
+  const std::string joint = name.substr(0, dot + 1), kind = name.substr(dot + 1);
+  for (const char* harmonic : {"1", "2", "_g"})
+    for (const char* part : {"cos", "sin"})
+      if (kind == std::string(part) + harmonic) return joint + "cos" + harmonic + ", " + joint + "sin" + harmonic;
+  return name;
+}
+
+int index_of(const IdentificationModel& model, const std::string& name) {
+  const auto& all = model.parameters();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
+  return at == all.end() ? -1 : int(at - all.begin());
+}
+
+}  // namespace
+
+std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,
+                                        const IdentificationModel& fitted_model, const VariantColumns& fitted,
+                                        const std::vector<MeasuredPose>& poses, const Fit& fit) {
+  if (!fit.scale_known || !fit.converged) return {};
+  const Problem wider = with_eccentricity(problem);
+  const auto model = make_model(wider, variant);
+  std::vector<double> correction(model->parameters().size(), 0.0);
+  for (std::size_t i = 0; i < fit.correction.size(); ++i)
+    correction[std::size_t(index_of(*model, fitted_model.parameters()[i].name))] = fit.correction[i];
+  model->take_loads_at(correction);
+  VariantColumns own = fitted;
+  for (int& i : own.selected) i = index_of(*model, fitted_model.parameters()[std::size_t(i)].name);
+  const auto is_own = [&](int i) {
+    return std::find(own.selected.begin(), own.selected.end(), i) != own.selected.end();
+  };
+
+  std::vector<EffectToTest> effects;
+  std::map<std::string, std::size_t> known;
+  for (int i = 0; i < int(model->parameters().size()); ++i) {
+    if (is_own(i)) continue;
+    const std::string name = effect_of(model->parameters()[std::size_t(i)].name);
+    const auto [at, added] = known.emplace(name, effects.size());
+    if (added) effects.push_back({name, {}});
+    effects[at->second].parameters.push_back(i);
+  }
+  for (const VariantSpec& other : wider.variants) {
+    if (other.name == variant.name || other.convention != variant.convention) continue;
+    EffectToTest effect{"variant " + other.name, {}};
+    for (const int i : select_columns(*model, wider, other).selected)
+      if (!is_own(i)) effect.parameters.push_back(i);
+    if (effect.parameters.size() > 1) effects.push_back(std::move(effect));
+  }
+  return score_tests(*model, own, poses, correction, fit, effects);
+}
+
+}  // namespace posewright

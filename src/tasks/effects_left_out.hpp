@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/calibration/score_tests.hpp"
+#include "posewright/problem/problem.hpp"
+
+namespace posewright {
+
+/// What the residuals of a fit say of effects that it leaves out: every other parameter of the robot's catalogue,
+/// eccentricity of every joint of a serial arm, and what other variants of the file estimate beyond this one. Empty for
+/// fits that do not weigh readings by their covariance.
+std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,
+                                        const IdentificationModel& fitted_model, const VariantColumns& fitted,
+                                        const std::vector<MeasuredPose>& poses, const Fit& fit);
+
+}  // namespace posewright

@@ -64,7 +64,9 @@ std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpe
     effects[at->second].parameters.push_back(i);
   }
   for (const VariantSpec& other : wider.variants) {
-    if (other.name == variant.name || other.convention != variant.convention) continue;
+    // Two automatic ones come down to the same parameters; what they leave out nearly depends on them.
+    if (other.name == variant.name || other.convention != variant.convention || (other.automatic && variant.automatic))
+      continue;
     EffectToTest effect{"variant " + other.name, {}};
     for (const int i : select_columns(*model, wider, other).selected)
       if (!is_own(i)) effect.parameters.push_back(i);

@@ -179,14 +179,14 @@ def write_svg(path, rows, floors):
               for i, title in enumerate(titles)]
     width = 218 * len(titles) + 20
     legend = ('<circle cx="54" cy="318" r="4" fill="#1f6f8b"/><text x="64" y="322" fill="#222">plan</text>'
-              '<path d="M524 313l5 5l-5 5l-5 -5z" fill="#5b8c2a"/><text x="534" y="322" fill="#222">plan, unmodelled: auto</text>'
+              '<path d="M504 313l5 5l-5 5l-5 -5z" fill="#5b8c2a"/><text x="514" y="322" fill="#222">plan, unmodelled: auto</text>'
               '<rect x="110" y="311" width="14" height="14" fill="#b3541e" fill-opacity="0.3"/>'
               '<line x1="110" x2="124" y1="318" y2="318" stroke="#b3541e" stroke-width="2"/>'
               '<text x="130" y="322" fill="#222">random: quartiles, median</text>'
               '<path d="M308 314l8 8m0 -8l-8 8" stroke="#444" stroke-width="1.5"/>'
               '<text x="322" y="322" fill="#222">first N</text>'
               '<line x1="384" x2="404" y1="318" y2="318" stroke="#444" stroke-dasharray="4 3"/>'
-              '<text x="410" y="322" fill="#222">all fitted; mm over N</text>')
+              '<text x="410" y="322" fill="#222">all fitted</text>')
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {max(width, 700)} 340" '
                     f'font-family="sans-serif" font-size="13"><rect width="{max(width, 700)}" height="340" '
                     'fill="#ffffff"/>\n' + "\n".join(panels) + "\n" + legend + "</svg>\n", encoding="utf-8")

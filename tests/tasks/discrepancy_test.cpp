@@ -13,6 +13,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -35,19 +36,10 @@ std::string arm(const std::string& design, const std::string& more = "") {
          more + "design: " + design + "\n";
 }
 
-constexpr const char* arm_urdf =
-    "<robot name=\"arm\"><link name=\"l0\"/><link name=\"l1\"/><link name=\"l2\"/><link name=\"tip\"/>"
-    "<joint name=\"q1\" type=\"revolute\"><parent link=\"l0\"/><child link=\"l1\"/><axis xyz=\"0 0 1\"/>"
-    "<limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
-    "<joint name=\"q2\" type=\"revolute\"><parent link=\"l1\"/><child link=\"l2\"/><origin xyz=\"1 0 0\"/>"
-    "<axis xyz=\"0 0 1\"/><limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
-    "<joint name=\"end\" type=\"fixed\"><parent link=\"l2\"/><child link=\"tip\"/><origin xyz=\"0.8 0 0\"/></joint>"
-    "</robot>";
-
 class Discrepancies : public testing::Test {
  protected:
   Problem problem(const std::string& design, const std::string& more = "") {
-    folder_.write("arm.urdf", arm_urdf);
+    folder_.write("arm.urdf", planar_arm_urdf);
     return read_problem(folder_.write("p.yaml", arm(design, more)));
   }
   static Plan plan(const Problem& problem, const std::string& criterion, const std::string& truth) {

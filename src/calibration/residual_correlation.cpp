@@ -25,19 +25,13 @@ class FittedReadings {
   FittedReadings(const IdentificationModel& model, const VariantColumns& columns,
                  const std::vector<MeasuredPose>& poses, const Fit& result)
       : result_(result) {
-    const BlockArray blocks = blocks_of(model, columns, poses, result.correction);
-    residual_.resize(result.readings);
-    J_.resize(result.readings, blocks.columns());
-    Eigen::Index next = 0;
+    FittedRows rows = fitted_rows(model, columns.selected, poses, result.correction, result);
+    residual_ = std::move(rows.r);
+    J_ = std::move(rows.J);
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      // Rows of what was not read are at the end of a block.
-      Eigen::Index row = Eigen::Index(k) * model.rows();
+      int row = rows.first[k];
       row_of_.emplace_back(std::size_t(model.rows()), -1);
-      for (const int i : indices_read(poses[k].y)) {
-        residual_[next] = result.whitened[k][i];
-        J_.row(next) = blocks.all().row(row++);
-        row_of_.back()[std::size_t(i)] = int(next++);
-      }
+      for (const int i : indices_read(poses[k].y)) row_of_.back()[std::size_t(i)] = row++;
     }
   }
 

@@ -13,29 +13,6 @@ namespace {
 // Of a column's squared length: what the fitted parameters leave of one that they imitate.
 constexpr double imitated = 1e-8;
 
-/// Whitened rows of what was read, and its residuals.
-struct Rows {
-  Eigen::MatrixXd J;
-  Eigen::VectorXd r;
-};
-
-Rows rows_of(const IdentificationModel& model, const std::vector<int>& selected, const std::vector<MeasuredPose>& poses,
-             const std::vector<double>& correction, const Fit& fit) {
-  VariantColumns columns;
-  columns.selected = selected;
-  const BlockArray blocks = blocks_of(model, columns, poses, correction);
-  Rows rows{Eigen::MatrixXd(fit.readings, blocks.columns()), Eigen::VectorXd(fit.readings)};
-  Eigen::Index next = 0;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const std::vector<int> read = indices_read(poses[k].y);
-    for (std::size_t i = 0; i < read.size(); ++i, ++next) {
-      rows.J.row(next) = blocks.block(k).row(Eigen::Index(i));
-      rows.r[next] = fit.whitened[k][read[i]];
-    }
-  }
-  return rows;
-}
-
 }  // namespace
 
 std::vector<ScoreTest> score_tests(const IdentificationModel& model, const VariantColumns& columns,
@@ -46,12 +23,11 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
     for (const int i : effect.parameters)
       if (std::find(selected.begin(), selected.end(), i) == selected.end()) selected.push_back(i);
   const auto own = Eigen::Index(columns.selected.size());
-  Rows rows = rows_of(model, selected, poses, correction, fit);
+  FittedRows rows = fitted_rows(model, selected, poses, correction, fit);
+  const Beside fitted(rows.J.leftCols(own));
+  rows.r = fitted.left(rows.r);
   const Eigen::VectorXd length = rows.J.colwise().norm().cwiseMax(1e-300);
   rows.J *= length.cwiseInverse().asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows.J.leftCols(own));
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.J.rows(), own);
-  rows.r -= Q * (Q.transpose() * rows.r);
   const double squares = rows.r.squaredNorm();
   const int left = int(rows.J.rows() - own);
 
@@ -61,7 +37,7 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
     for (std::size_t c = 0; c < effect.parameters.size(); ++c)
       X.col(Eigen::Index(c)) =
           rows.J.col(std::find(selected.begin(), selected.end(), effect.parameters[c]) - selected.begin());
-    X -= Q * (Q.transpose() * X);
+    X = fitted.left(X);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(X.transpose() * X));
     ScoreTest test;
     test.name = effect.name;

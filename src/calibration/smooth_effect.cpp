@@ -25,40 +25,6 @@ constexpr double step = 1.6;
 constexpr double least_ratio = 1e-8, largest_ratio = 1e8;
 constexpr double half_95 = 3.841458820694124;  // χ² of one degree
 
-/// Readings of a linearised fit: whitened residuals, their columns and the tip's twists.
-struct LinearisedFit {
-  Eigen::MatrixXd J, A;  // A: rows × (poses · twists of a pose), one pose after the other
-  Eigen::VectorXd r;
-  std::vector<int> first;  // row of each pose; one more at the end
-};
-
-LinearisedFit linearised(const IdentificationModel& model, VariantColumns columns,
-                         const std::vector<const MeasuredPose*>& poses, const std::vector<std::size_t>& which,
-                         const Fit& fit, const UnmodelledEffect& effect) {
-  const auto own = Eigen::Index(columns.selected.size()), twists = Eigen::Index(effect.columns().size());
-  columns.selected.insert(columns.selected.end(), effect.columns().begin(), effect.columns().end());
-  LinearisedFit result;
-  std::vector<MeasuredPose> list;
-  list.reserve(poses.size());
-  for (const MeasuredPose* pose : poses) list.push_back(*pose);
-  const BlockArray blocks = blocks_of(model, columns, list, fit.correction);
-  result.first.push_back(0);
-  for (const MeasuredPose& pose : list) result.first.push_back(result.first.back() + int(indices_read(pose.y).size()));
-  const Eigen::Index rows = result.first.back();
-  result.J.resize(rows, own);
-  result.A.resize(rows, twists);
-  result.r.resize(rows);
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::vector<int> read = indices_read(list[k].y);
-    const auto block = blocks.block(k).topRows(Eigen::Index(read.size()));
-    result.J.middleRows(result.first[k], block.rows()) = block.leftCols(own);
-    result.A.middleRows(result.first[k], block.rows()) = block.rightCols(twists);
-    for (std::size_t i = 0; i < read.size(); ++i)
-      result.r[result.first[k] + Eigen::Index(i)] = fit.whitened[which[k]][read[i]];
-  }
-  return result;
-}
-
 /// −2 ln of the restricted likelihood over γ = τ²/s², s² at its best: ν ln Q(γ) + Σ ln(1 + γ λ_k),
 /// Q = ‖r‖² − Σ y_k² γ λ_k/(1 + γ λ_k), with F the effect's columns beside what the parameters take up,
 /// FᵀF = W diag(λ) Wᵀ, y = λ^{−1/2} Wᵀ Fᵀ r.
@@ -131,17 +97,19 @@ struct Tried {
 SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const Fit& fit, std::optional<double> length) {
   SmoothEffect result;
-  std::vector<const MeasuredPose*> list;
-  std::vector<std::size_t> which;
+  // Some of very many, as a fit of these alone.
+  std::vector<MeasuredPose> list;
+  Fit some;
+  some.readings = 0;
   const std::size_t taken = std::min(poses.size(), most_poses);
-  int readings = 0;
   for (std::size_t i = 0; i < taken; ++i) {
-    which.push_back(i * poses.size() / taken);
-    list.push_back(&poses[which.back()]);
-    readings += int(indices_read(list.back()->y).size());
+    const std::size_t k = i * poses.size() / taken;
+    list.push_back(poses[k]);
+    some.whitened.push_back(fit.whitened[k]);
+    some.readings += int(indices_read(poses[k].y).size());
   }
   result.poses = int(taken);
-  const int left = readings - int(columns.selected.size());
+  const int left = some.readings - int(columns.selected.size());
   if (model.tips() == 0) result.why_not = "the readings tell of no tip";
   else if (result.poses < fewest_poses || left < fewest_left)
     result.why_not = fmt::format("{} poses leave {} degrees of freedom; at least {} poses and {} are needed",
@@ -152,37 +120,34 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   lengths.reserve(lengths_tried);
   for (int i = 0; i < lengths_tried; ++i) lengths.push_back(shortest * std::pow(step, i));
   if (length) lengths = {*length};
-  Eigen::MatrixXd Q;
-  Eigen::VectorXd r;
-  LinearisedFit linear;
+  std::vector<int> selected = columns.selected;
+  for (int tip = 0; tip < model.tips(); ++tip)
+    for (int k = 0; k < 3; ++k) selected.push_back(model.tip_column(tip, k));
+  const FittedRows linear = fitted_rows(model, selected, list, fit.correction, some);
+  const auto own = Eigen::Index(columns.selected.size());
+  const Beside fitted(linear.J.leftCols(own));
+  const Eigen::MatrixXd A = linear.J.rightCols(linear.J.cols() - own);
+  const Eigen::VectorXd r = fitted.left(linear.r);
   std::vector<Tried> tried;
   for (const double l : lengths) {
     const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
-    if (Q.size() == 0) {
-      linear = linearised(model, columns, list, which, fit, *effect);
-      const Eigen::VectorXd unit = linear.J.colwise().norm().cwiseMax(1e-300);
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear.J * unit.cwiseInverse().asDiagonal());
-      Q = qr.householderQ() * Eigen::MatrixXd::Identity(linear.J.rows(), linear.J.cols());
-      r = linear.r - Q * (Q.transpose() * linear.r);
-    }
-    Eigen::MatrixXd places(effect->places(list.front()->q).rows(), Eigen::Index(list.size()) * effect->tips());
+    Eigen::MatrixXd places(effect->places(list.front().q).rows(), Eigen::Index(list.size()) * effect->tips());
     for (std::size_t k = 0; k < list.size(); ++k)
-      places.middleCols(Eigen::Index(k) * effect->tips(), effect->tips()) = effect->places(list[k]->q);
+      places.middleCols(Eigen::Index(k) * effect->tips(), effect->tips()) = effect->places(list[k].q);
     const EffectFeatures features(effect, places, int(places.cols()));
     const Eigen::MatrixXd phi = features.at(places);
     const int twists = effect->twists();
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(linear.J.rows(), features.columns());
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(A.rows(), features.columns());
     for (std::size_t k = 0; k < list.size(); ++k)
       for (Eigen::Index j = 0; j < phi.rows(); ++j)
         for (int tip = 0; tip < effect->tips(); ++tip)
           F.block(linear.first[k], j * twists, linear.first[k + 1] - linear.first[k], twists) +=
               phi(j, Eigen::Index(k) * effect->tips() + tip) *
-              linear.A.block(linear.first[k], Eigen::Index(tip) * twists, linear.first[k + 1] - linear.first[k],
-                             twists);
-    F -= Q * (Q.transpose() * F);
+              A.block(linear.first[k], Eigen::Index(tip) * twists, linear.first[k + 1] - linear.first[k], twists);
+    F = fitted.left(F);
     // In units in which an effect of size one is as large as the noise.
     const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));
-    const Restricted likelihood(F * unit, r, columns.selected.empty() ? 0 : Eigen::Index(columns.selected.size()));
+    const Restricted likelihood(F * unit, r, own);
     const double best = likelihood.best();
     tried.push_back({likelihood, l, unit, best, likelihood.minus_two_log(best)});
   }

@@ -29,6 +29,29 @@ bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, co
   return model.predict_and_linearise(pose.q, correction, selected, out, y);
 }
 
+FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,
+                       const std::vector<MeasuredPose>& poses, const std::vector<double>& correction, const Fit& fit) {
+  VariantColumns columns;
+  columns.selected = selected;
+  const BlockArray blocks = blocks_of(model, columns, poses, correction);
+  FittedRows rows{Eigen::MatrixXd(fit.readings, blocks.columns()), Eigen::VectorXd(fit.readings), {0}};
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    // Rows of what was not read are at the end of a block.
+    const std::vector<int> read = indices_read(poses[k].y);
+    const int first = rows.first.back(), count = int(read.size());
+    rows.J.middleRows(first, count) = blocks.block(k).topRows(count);
+    rows.r.segment(first, count) = fit.whitened[k](read);
+    rows.first.push_back(first + count);
+  }
+  return rows;
+}
+
+Beside::Beside(const Eigen::MatrixXd& fitted) {
+  const Eigen::VectorXd length = fitted.colwise().norm().cwiseMax(1e-300);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fitted * length.cwiseInverse().asDiagonal());
+  Q_ = qr.householderQ() * Eigen::MatrixXd::Identity(fitted.rows(), fitted.cols());
+}
+
 StackedReadings::StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
                                  const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start)
     : model_(model), columns_(columns), poses_(poses), correction_(start) {

@@ -13,6 +13,27 @@ std::vector<int> indices_read(const Eigen::VectorXd& y);
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y);
 
+/// What a fit read as one linear problem, whitened: columns of `selected`, residuals.
+struct FittedRows {
+  Eigen::MatrixXd J;
+  Eigen::VectorXd r;
+  std::vector<int> first;  ///< row of each pose; one more at the end
+};
+/// @param poses  those of the fit
+/// @param correction  of all parameters of `model`
+FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,
+                       const std::vector<MeasuredPose>& poses, const std::vector<double>& correction, const Fit& fit);
+
+/// What fitted columns leave of others, all whitened: X − Q Qᵀ X.
+class Beside {
+ public:
+  explicit Beside(const Eigen::MatrixXd& fitted);
+  Eigen::MatrixXd left(const Eigen::MatrixXd& X) const { return X - Q_ * (Q_.transpose() * X); }
+
+ private:
+  Eigen::MatrixXd Q_;
+};
+
 /// All readings of a calibration as one vector of whitened residuals of the parameters x in units of tolerance.
 class StackedReadings {
  public:

@@ -1,6 +1,6 @@
 import os
 from collections.abc import Mapping
-from typing import Any, Callable, Optional, Union, overload
+from typing import Any, Callable, Optional, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -567,7 +567,7 @@ class Report:
 
 def calibrate(
     problem: Problem,
-    data: _Path,
+    data: Union[_Path, Sequence[_Path]],
     variant: str = "",
     *,
     weights: Optional[str] = None,
@@ -575,6 +575,7 @@ def calibrate(
     validate: Optional[_Path] = None,
     hold_back: int = 0,
     in_steps: bool = False,
+    interpolate: bool = False,
     progress: _Report = None,
 ) -> Calibration: ...
 def simulate(

@@ -71,17 +71,24 @@ Weighting weighting_named(const py::object& word) {
   return weighting_of(choice(word, "weights", {"ols", "wls", "robust"}));
 }
 
-MadeCalibration calibrate(const Shared& problem, const std::filesystem::path& data, const std::string& variant,
+MadeCalibration calibrate(const Shared& problem, const py::object& data, const std::string& variant,
                           const py::object& weights, bool prior, const py::object& validate, long long hold_back,
-                          bool in_steps, py::object progress) {
+                          bool in_steps, bool interpolate, py::object progress) {
   CalibrateOptions options;
-  options.data = data;
+  std::vector<std::filesystem::path> files;
+  if (py::isinstance<py::list>(data) || py::isinstance<py::tuple>(data))
+    files = data.cast<std::vector<std::filesystem::path>>();
+  else files.push_back(data.cast<std::filesystem::path>());
+  if (files.empty()) throw py::value_error("data: at least one file is expected");
+  options.data = files.front();
+  options.campaigns.assign(files.begin() + 1, files.end());
   options.variant = variant;
   options.weighting = weighting_named(weights);
   options.prior = prior ? Prior::manufactured : Prior::none;
   if (!validate.is_none()) options.validate = validate.cast<std::filesystem::path>();
   options.hold_back = hold_back == 0 ? 0 : checked("hold_back", hold_back, 2, most_poses);
   options.in_steps = in_steps;
+  options.interpolate = interpolate;
   return MadeCalibration::of(problem, options, {}, std::move(progress), calibrate_problem);
 }
 
@@ -241,12 +248,12 @@ void bind_tasks(py::module_& m) {
   const py::none none;
   m.def("calibrate", &calibrate, py::arg("problem"), py::arg("data"), py::arg("variant") = "", py::kw_only(),
         py::arg("weights") = none, py::arg("prior") = true, py::arg("validate") = none, py::arg("hold_back") = 0,
-        py::arg("in_steps") = false, py::arg("progress") = none,
+        py::arg("in_steps") = false, py::arg("interpolate") = false, py::arg("progress") = none,
         R"(Estimates a variant's parameters from a file of measured data (docs/calibrate.md).
 
-weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
+data: a file, or a list of files: campaigns, each with a base of its own; weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
 that are not fitted; hold_back: every so many-th pose is not fitted; in_steps: also base and tool, geometry, stiffness
-one after the other.)");
+one after the other; interpolate: predict with what the parameters leave as well (a variant with `unmodelled`).)");
   m.def("simulate", &simulate, py::arg("problem"), py::arg("poses"), py::arg("variant") = "", py::kw_only(),
         py::arg("truth") = "", py::arg("draws") = 1000, py::arg("exact") = false, py::arg("missing") = 0.0,
         py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("validation") = 50,

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -60,18 +61,16 @@ double summary(std::vector<double> squares, Weighting weighting) {
 /// predict the same but for rounding there is no gain.
 double gain_of(const std::vector<double>& estimated, const std::vector<double>& placed, Weighting weighting) {
   const auto n = double(estimated.size());
-  double mean = 0, squares = 0, better = 0;
+  double better = 0;
   std::vector<double> gains;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     const double gain = placed[k] - estimated[k];
     if (!std::isfinite(gain)) return -std::numeric_limits<double>::infinity();
     gains.push_back(std::abs(gain) > rounding_of_squares * (placed[k] + estimated[k]) ? gain : 0.0);
     better += gains.back() > 0 ? 1 : 0;
-    mean += gains.back() / n;
   }
   if (weighting == Weighting::robust) return (better - n / 2) / std::sqrt(n / 4);
-  for (const double gain : gains) squares += std::pow(gain - mean, 2);
-  return squares > 0 ? mean / std::sqrt(squares / (n - 1) / n) : 0.0;
+  return mean_in_standard_errors(gains);
 }
 
 /// Estimates from `rest` and adds how far the others are off; false, and why, if there is no estimate.
@@ -133,6 +132,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
   result.estimated = summary(estimated, options.weighting);
   result.placed = summary(placed, options.weighting);
   result.gain = gain_of(estimated, placed, options.weighting);
+  result.squares = std::move(estimated);
   return result;
 }
 

@@ -7,12 +7,13 @@
 #include <numbers>
 
 #include "posewright/blocks/identifiability.hpp"
+#include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr std::array<const char*, 3> turns = {"base.rx", "base.ry", "base.rz"};
+constexpr std::array<const char*, 3> turns = {".rx", ".ry", ".rz"};
 // Root mean square of whitened residuals that a robot before its calibration may leave: millimetres at micrometres.
 constexpr double plausible = 1000.0;
 // The placing fit is a start for another: a few steps show which orientation is right.
@@ -46,21 +47,24 @@ std::vector<std::array<double, 3>> cube_rotations() {
 }
 
 /// The best of the starts, by the stated noise.
+/// @param frame  that may be turned any way: base, base@NAME
+/// @param from   corrections of what is not placed
 std::vector<double> placed_from_any_side(const IdentificationModel& model, const VariantColumns& place,
-                                         const std::vector<MeasuredPose>& poses, const FitOptions& quick) {
-  std::vector<double> best(model.parameters().size(), 0.0), found;
+                                         const std::vector<MeasuredPose>& poses, const FitOptions& quick,
+                                         const std::string& frame, const std::vector<double>& from) {
+  std::vector<double> best = from, found;
   double least = cost_from(model, place, poses, quick, best, found);
   if (std::isfinite(least)) best = found;
   std::array<std::size_t, 3> at{};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto turn = std::find_if(place.selected.begin(), place.selected.end(),
-                                   [&](int i) { return model.parameters()[std::size_t(i)].name == turns[k]; });
+                                   [&](int i) { return model.parameters()[std::size_t(i)].name == frame + turns[k]; });
     if (turn == place.selected.end()) return best;
     at[k] = std::size_t(*turn);
   }
   if (least < plausible * plausible) return best;
   for (const std::array<double, 3>& rotation : cube_rotations()) {
-    std::vector<double> start(model.parameters().size(), 0.0);
+    std::vector<double> start = from;
     for (std::size_t k = 0; k < 3; ++k) start[at[k]] = rotation[k];
     const double cost = cost_from(model, place, poses, quick, start, found);
     if (!(cost < 0.999 * least)) continue;
@@ -106,7 +110,8 @@ std::vector<double> placed(const IdentificationModel& model, const VariantColumn
   if (place.selected.empty()) return std::vector<double>(model.parameters().size(), 0.0);
   FitOptions quick = options;
   quick.most_evaluations = few_evaluations;
-  const std::vector<double> best = placed_from_any_side(model, place, poses, quick);
+  const std::vector<double> best =
+      placed_from_any_side(model, place, poses, quick, "base", std::vector<double>(model.parameters().size(), 0.0));
   if (options.weighting == Weighting::weighted) return best;
   // What readings count by decides where things come to stand.
   try {
@@ -115,6 +120,31 @@ std::vector<double> placed(const IdentificationModel& model, const VariantColumn
   } catch (const CannotDo&) {
     return best;
   }
+}
+
+std::vector<double> placed_base(const IdentificationModel& model, const VariantColumns& base,
+                                const std::vector<MeasuredPose>& poses, const FitOptions& options,
+                                const std::vector<double>& from) {
+  const std::string& name = base.parameters.front().name;
+  FitOptions quick = options;
+  quick.most_evaluations = few_evaluations;
+  const VariantColumns place = determined(model, base, poses, from, options.prior);
+  if (place.selected.empty()) return from;
+  return placed_from_any_side(model, place, poses, quick, name.substr(0, name.rfind('.')), from);
+}
+
+void take_canonical_angles(const IdentificationModel& model, const std::string& frame,
+                           std::vector<double>& correction) {
+  std::array<std::size_t, 3> at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto turn = std::find_if(model.parameters().begin(), model.parameters().end(),
+                                   [&](const Parameter& p) { return p.name == frame + turns[k]; });
+    // Angles beyond nominal ones other than zero are no rotation of their own.
+    if (turn == model.parameters().end() || turn->nominal != 0.0) return;
+    at[k] = std::size_t(turn - model.parameters().begin());
+  }
+  const Eigen::Vector3d angles = rpy_of(rotation_of_rpy({correction[at[0]], correction[at[1]], correction[at[2]]}));
+  for (std::size_t k = 0; k < 3; ++k) correction[at[k]] = angles[Eigen::Index(k)];
 }
 
 }  // namespace posewright

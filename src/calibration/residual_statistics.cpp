@@ -99,6 +99,14 @@ std::vector<ResidualSummary> summarise(const IdentificationModel& model, const s
   return result;
 }
 
+double mean_in_standard_errors(const std::vector<double>& sample) {
+  const auto n = double(sample.size());
+  double mean = 0, squares = 0;
+  for (const double value : sample) mean += value / n;
+  for (const double value : sample) squares += std::pow(value - mean, 2);
+  return squares > 0 ? mean / std::sqrt(squares / (n - 1) / n) : 0.0;
+}
+
 double interval_factor(double probability, bool scale_known, int freedom) {
   const double tail = 0.5 * (1 - probability);
   if (scale_known || freedom < 1) return normal_upper_quantile(tail);

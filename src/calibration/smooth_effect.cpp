@@ -131,19 +131,9 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   std::vector<Tried> tried;
   for (const double l : lengths) {
     const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
-    Eigen::MatrixXd places(effect->places(list.front().q).rows(), Eigen::Index(list.size()) * effect->tips());
-    for (std::size_t k = 0; k < list.size(); ++k)
-      places.middleCols(Eigen::Index(k) * effect->tips(), effect->tips()) = effect->places(list[k].q);
+    const Eigen::MatrixXd places = places_of(*effect, list);
     const EffectFeatures features(effect, places, int(places.cols()));
-    const Eigen::MatrixXd phi = features.at(places);
-    const int twists = effect->twists();
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(A.rows(), features.columns());
-    for (std::size_t k = 0; k < list.size(); ++k)
-      for (Eigen::Index j = 0; j < phi.rows(); ++j)
-        for (int tip = 0; tip < effect->tips(); ++tip)
-          F.block(linear.first[k], j * twists, linear.first[k + 1] - linear.first[k], twists) +=
-              phi(j, Eigen::Index(k) * effect->tips() + tip) *
-              A.block(linear.first[k], Eigen::Index(tip) * twists, linear.first[k + 1] - linear.first[k], twists);
+    Eigen::MatrixXd F = effect_columns(features, places, A, linear.first);
     F = fitted.left(F);
     // In units in which an effect of size one is as large as the noise.
     const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));

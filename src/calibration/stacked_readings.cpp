@@ -9,13 +9,6 @@
 #include "posewright/support/error.hpp"
 
 namespace posewright {
-namespace {
-
-// Beyond so many features of an effect the rest hardly counts between poses.
-constexpr int most_features = 200;
-
-}  // namespace
-
 std::vector<int> indices_read(const Eigen::VectorXd& y) {
   std::vector<int> read;
   for (int i = 0; i < int(y.size()); ++i)
@@ -44,6 +37,29 @@ FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>&
     rows.first.push_back(first + count);
   }
   return rows;
+}
+
+Eigen::MatrixXd places_of(const UnmodelledEffect& effect, const std::vector<MeasuredPose>& poses) {
+  Eigen::MatrixXd places;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::MatrixXd f = effect.places(poses[k].q);
+    if (k == 0) places.resize(f.rows(), Eigen::Index(poses.size()) * f.cols());
+    places.middleCols(Eigen::Index(k) * f.cols(), f.cols()) = f;
+  }
+  return places;
+}
+
+Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::MatrixXd& places,
+                               const Eigen::MatrixXd& along, const std::vector<int>& first) {
+  const int tips = features.effect().tips();
+  const Eigen::MatrixXd phi = features.at(places);
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(along.rows(), features.columns());
+  for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+    const int count = first[k + 1] - first[k];
+    features.add_columns(phi.middleCols(Eigen::Index(k) * tips, tips), along.middleRows(first[k], count),
+                         F.middleRows(first[k], count));
+  }
+  return F;
 }
 
 Beside::Beside(const Eigen::MatrixXd& fitted) {
@@ -112,39 +128,19 @@ void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
 }
 
 void StackedReadings::find_features() {
-  const int tips = effect_->tips(), twists = effect_->twists();
-  Eigen::MatrixXd places;
+  const Eigen::MatrixXd places = places_of(*effect_, poses_);
+  const EffectFeatures features(effect_, places, features_of_a_fit);
+  Eigen::MatrixXd along(readings_, Eigen::Index(effect_->columns().size()));
+  std::vector<int> first{0};
   for (std::size_t k = 0; k < poses_.size(); ++k) {
-    const Eigen::MatrixXd f = effect_->places(poses_[k].q);
-    if (k == 0) places.resize(f.rows(), Eigen::Index(poses_.size()) * tips);
-    places.middleCols(Eigen::Index(k) * tips, tips) = f;
-  }
-  const EffectFeatures features(effect_, places, most_features);
-  const Eigen::MatrixXd phi = features.at(places);
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(readings_, features.columns());
-  Eigen::Index row = 0;
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    const auto count = Eigen::Index(read_[k].size());
     if (!linearise_at(model_, poses_[k], correction_, effect_->columns(), linearisation_, y_)) refuse(k);
-    Eigen::MatrixXd A = linearisation_.G(read_[k], Eigen::all);
-    root_[k].matrixL().solveInPlace(A);
-    for (Eigen::Index j = 0; j < phi.rows(); ++j)
-      for (int tip = 0; tip < tips; ++tip)
-        for (int c = 0; c < twists; ++c)
-          F.block(row, j * twists + c, count, 1) +=
-              phi(j, Eigen::Index(k) * tips + tip) * effect_->size_of(c) * A.col(tip * twists + c);
-    row += count;
+    rows_ = linearisation_.G(read_[k], Eigen::all);
+    root_[k].matrixL().solveInPlace(rows_);
+    along.middleRows(first.back(), rows_.rows()) = rows_;
+    first.push_back(first.back() + int(rows_.rows()));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
-  along_ = F * eigen.eigenvectors();
-  shrink_ = eigen.eigenvalues().cwiseMax(0.0);
-  for (double& s : shrink_) s = 1 / (std::sqrt(1 + s) * (1 + std::sqrt(1 + s)));
-}
-
-void StackedReadings::decorrelate(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  if (along_.size() == 0) return;
-  const Eigen::MatrixXd taken = shrink_.asDiagonal() * (along_.transpose() * rows);
-  rows -= along_ * taken;
+  effect_->take_sizes(along);
+  independent_ = IndependentRows(effect_columns(features, places, along, first));
 }
 
 /// The mean over all readings of the unit; what they are worth to each other within it is one.
@@ -184,7 +180,7 @@ bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
     root_[k].matrixL().solveInPlace(part_);
     for (Eigen::Index i = 0; i < part_.size(); ++i, ++row) f[row] = part_[i] * root_weight(int(row));
   }
-  decorrelate(f.head(readings_));
+  if (!independent_.empty()) independent_.apply(f.head(readings_));
   for (const int j : known_) f[row++] = -x[j];
   return f.allFinite();
 }
@@ -201,7 +197,7 @@ bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
     for (Eigen::Index i = 0; i < rows_.rows(); ++i, ++row)
       J.row(row) = -root_weight(int(row)) * rows_.row(i).cwiseProduct(tolerances_.transpose());
   }
-  if (along_.size() > 0) decorrelate(J.topRows(readings_));
+  if (!independent_.empty()) independent_.apply(J.topRows(readings_));
   J.bottomRows(Eigen::Index(known_.size())).setZero();
   for (const int j : known_) J(row++, j) = -1.0;
   return true;

@@ -24,6 +24,19 @@ struct FittedRows {
 FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,
                        const std::vector<MeasuredPose>& poses, const std::vector<double>& correction, const Fit& fit);
 
+// Beyond so many features of an effect the rest hardly counts between poses.
+inline constexpr int features_of_a_fit = 200;
+
+/// Places of the tips of these poses, UnmodelledEffect::places() one beside the other.
+Eigen::MatrixXd places_of(const UnmodelledEffect& effect, const std::vector<MeasuredPose>& poses);
+
+/// Columns of the effect's features, one pose's rows below the other's.
+/// @param along  whitened derivatives along the effect's columns(), their sizes taken
+/// @param first  row of each pose; one more at the end
+/// @param places  places_of() these poses
+Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::MatrixXd& places,
+                               const Eigen::MatrixXd& along, const std::vector<int>& first);
+
 /// What fitted columns leave of others, all whitened: X − Q Qᵀ X.
 class Beside {
  public:
@@ -84,8 +97,6 @@ class StackedReadings {
   void use_one_variance_per_unit();
   double root_weight(int row) const;
   void find_features();
-  /// Rows of the readings as independent ones.
-  void decorrelate(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   const IdentificationModel& model_;
   const VariantColumns& columns_;
@@ -99,8 +110,7 @@ class StackedReadings {
   Eigen::VectorXd group_weights_;
   int readings_ = 0;
   std::shared_ptr<const UnmodelledEffect> effect_;
-  Eigen::MatrixXd along_;   ///< F V of the correlated readings; empty: they are independent
-  Eigen::VectorXd shrink_;  ///< (1 − 1/√(1 + s))/s of FᵀF = V diag(s) Vᵀ
+  IndependentRows independent_;
 
   std::vector<double> correction_;
   Linearisation linearisation_;

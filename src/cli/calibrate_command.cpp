@@ -26,11 +26,14 @@ po::options_description calibrate_command_options() {
        "which variant is calibrated (design: variant, or the first); a list A,B: all of them, in one table")  //
       ("weights", text("KIND"),
        "ols: all readings of a unit alike; wls: by the instrument's noise; robust: gross errors lose their weight "
-       "(wls)")                                                                              //
-      ("no-prior", "plain least squares: tolerances of what was manufactured do not count")  //
-      ("validate", text("FILE"), "more data, not fitted, to judge the result by")            //
-      ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")         //
-      ("in-steps", "identify base and tool, geometry and stiffness one after the other, too");
+       "(wls)")                                                                                //
+      ("no-prior", "plain least squares: tolerances of what was manufactured do not count")    //
+      ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
+      ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")           //
+      ("in-steps", "identify base and tool, geometry and stiffness one after the other, too")  //
+      ("interpolate",
+       "predict with what the parameters leave, too, interpolated between the poses (variant with `unmodelled`); "
+       "refused if poses left out gain nothing");
   options.add_options()                                                                                           //
       ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")     //
       ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, if the data have them")  //
@@ -55,6 +58,7 @@ struct Results {
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
     std::vector<std::filesystem::path> inputs = files_of(problem);
     inputs.push_back(calibrate.data);
+    inputs.insert(inputs.end(), calibrate.campaigns.begin(), calibrate.campaigns.end());
     if (!calibrate.validate.empty()) inputs.push_back(calibrate.validate);
     check_output_files(values, {parameters, urdf, deformation}, inputs);
   }
@@ -93,9 +97,9 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   if (positional.size() < 2)
     throw InputError({}, positional.empty() ? "PROBLEM is missing" : "DATA.csv is missing",
                      "see posewright help calibrate");
-  if (positional.size() > 2) throw InputError({}, "unexpected argument '" + positional[2] + "'", "PROBLEM DATA.csv");
   CalibrateOptions calibrate;
   calibrate.data = positional[1];
+  calibrate.campaigns.assign(positional.begin() + 2, positional.end());
   if (const std::vector<std::string> variants = variants_of(values); variants.size() == 1)
     calibrate.variant = variants.front();
   calibrate.weighting = weighting_of(values);
@@ -103,6 +107,7 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   calibrate.validate = text_of(values, "validate");
   calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);
   calibrate.in_steps = values.count("in-steps") > 0;
+  calibrate.interpolate = values.count("interpolate") > 0;
   return calibrate;
 }
 
@@ -187,12 +192,14 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
 }  // namespace
 
 Command calibrate_command() {
-  return {"calibrate",
-          "PROBLEM DATA.csv",
-          "Estimates a variant's parameters from measured data: values, intervals, residuals, tests of the model.",
-          calibrate_command_options,
-          "posewright calibrate problem.yaml measured.csv --validate more.csv",
-          run_calibrate};
+  return {
+      "calibrate",
+      "PROBLEM DATA.csv [MORE.csv…]",
+      "Estimates a variant's parameters from measured data: values, intervals, residuals, tests of the model. Several "
+      "files are campaigns: one robot, and for each file a base of its own.",
+      calibrate_command_options,
+      "posewright calibrate problem.yaml measured.csv --validate more.csv",
+      run_calibrate};
 }
 
 }  // namespace posewright::cli

@@ -45,19 +45,31 @@ void MeasuredColumns::index_columns() {
   }
 }
 
+void MeasuredColumns::find_orientation() {
+  std::vector<std::string> names, ways;
+  for (const auto& [name, at] : column_) names.push_back(name);
+  if (has("pose.rx")) ways.emplace_back("pose.rx");
+  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
+  if (quaternions_) ways.emplace_back(quaternion_names.front());
+  for (EulerAngles& angles : euler_angles_of(names)) {
+    ways.push_back(angles.columns.front());
+    euler_ = std::move(angles);
+  }
+  if (ways.size() > 1)
+    throw InputError(header(), "has an orientation twice, " + ways[0] + " and " + ways[1], "one of them");
+}
+
 void MeasuredColumns::find_readings() {
   int found = 0;
   std::string names;
-  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
+  find_orientation();
   const auto given = [&](const Reading& reading) {
-    return has(reading.name) || (quaternions_ && reading.name.starts_with("pose.r"));
+    return has(reading.name) || (turned() && reading.name.starts_with("pose.r"));
   };
   for (const Reading& reading : model_.readings()) {
     found += given(reading) ? 1 : 0;
     if (names.size() < 200) names += (names.empty() ? "" : ", ") + reading.name;
   }
-  if (quaternions_ && has("pose.rx"))
-    throw InputError(header(), "has an orientation twice, pose.rx and pose.qx", "one of them");
   const bool by_points =
       !markers_.empty() && found == 0 && std::all_of(markers_.begin(), markers_.end(), [&](const TargetSpec& m) {
         return has(m.name + ".x") && has(m.name + ".y") && has(m.name + ".z");
@@ -145,6 +157,12 @@ double MeasuredColumns::value(int row, const std::string& column, const std::str
 
 Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
   Eigen::Vector4d q;
+  if (euler_) {
+    Eigen::Vector3d angles;
+    for (std::size_t k = 0; k < 3; ++k) angles[Eigen::Index(k)] = value(row, euler_->columns[k], "rad");
+    if (!angles.allFinite()) return Eigen::Vector3d::Constant(not_read);
+    return posewright::rotation_vector(euler_->rotation(angles));
+  }
   for (std::size_t k = 0; k < 4; ++k) q[Eigen::Index(k)] = value(row, quaternion_names[k], "1");
   if (!q.allFinite()) return Eigen::Vector3d::Constant(not_read);
   if (std::abs(q.norm() - 1) > unit_slack)
@@ -188,7 +206,7 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
   const auto count = Eigen::Index(model_.readings().size());
   Eigen::VectorXd all(6);
   if (!markers_.empty()) all = pose_of_points(row);
-  else if (quaternions_) all << Eigen::Vector3d::Constant(not_read), rotation_vector(row);
+  else if (turned()) all << Eigen::Vector3d::Constant(not_read), rotation_vector(row);
   const bool whole = !markers_.empty();
   static constexpr std::array<const char*, 6> pose_names = {"pose.x",  "pose.y",  "pose.z",
                                                             "pose.rx", "pose.ry", "pose.rz"};
@@ -196,7 +214,7 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
   for (Eigen::Index i = 0; i < count; ++i) {
     const Reading& reading = model_.readings()[std::size_t(i)];
     const auto at = std::find(pose_names.begin(), pose_names.end(), reading.name) - pose_names.begin();
-    if (at < 6 && (whole || (quaternions_ && at > 2))) y[i] = all[at];
+    if (at < 6 && (whole || (turned() && at > 2))) y[i] = all[at];
     else y[i] = value(row, reading.name, reading.unit);
   }
   // A rotation vector is one reading of three numbers.

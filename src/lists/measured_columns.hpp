@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "euler_angles.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/problem.hpp"
@@ -35,7 +37,10 @@ class MeasuredColumns {
   bool has(const std::string& name) const { return column_.count(name) > 0; }
   /// NaN for an empty cell.
   double value(int row, const std::string& column, const std::string& unit) const;
+  /// Of an orientation that is not given as one.
   Eigen::Vector3d rotation_vector(int row) const;
+  bool turned() const { return quaternions_ || euler_; }
+  void find_orientation();
   Eigen::VectorXd pose_of_points(int row) const;
   SourcePlace header() const { return {file_, table_.header}; }
 
@@ -46,6 +51,7 @@ class MeasuredColumns {
   std::vector<std::vector<double>> configurations_;
   std::vector<TargetSpec> markers_;  ///< of a photogrammetric pose that is given by its points; else empty
   bool quaternions_ = false;
+  std::optional<EulerAngles> euler_;  ///< orientations that are given so
   std::vector<std::string> notes_;
 };
 

@@ -25,6 +25,17 @@ struct Row {
   Eigen::VectorXd y;
 };
 
+// Encoders jitter: rad and m that one configuration's rows differ by, and those of one that is called by its id.
+constexpr double jitter = 1e-5, jitter_of_one_id = 1e-3;
+
+/// Whether rows are readings of one configuration.
+bool repeats(const std::vector<Coordinate>& coordinates, const Row& a, const Row& b) {
+  const double allowed = a.id > 0 && a.id == b.id ? jitter_of_one_id : jitter;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (std::abs(a.q[i] - b.q[i]) > (coordinates[i].discrete() ? 0.0 : allowed)) return false;
+  return a.held_back == b.held_back;
+}
+
 /// Rows of one configuration that follow each other become one pose with their mean.
 class ReadingAverages {
  public:
@@ -36,7 +47,7 @@ class ReadingAverages {
   }
 
   void add(Row row) {
-    if (!group_.empty() && (group_.front().q != row.q || group_.front().held_back != row.held_back)) close();
+    if (!group_.empty() && !repeats(model_.coordinates(), group_.front(), row)) close();
     group_.push_back(std::move(row));
   }
 
@@ -58,11 +69,19 @@ class ReadingAverages {
     if (data_.poses.empty()) first_rows_ = group_.size();
     data_.same_repeats = data_.same_repeats && group_.size() == first_rows_;
     const int id = group_.front().id > 0 ? group_.front().id : int(data_.poses.size()) + 1;
-    MeasuredPose pose{id, group_.front().q, group_.size() == 1 ? group_.front().y : mean()};
+    MeasuredPose pose{id, mean_configuration(), group_.size() == 1 ? group_.front().y : mean()};
     share_readings(pose);
     data_.poses.push_back(std::move(pose));
     data_.held_back.push_back(group_.front().held_back);
     group_.clear();
+  }
+
+  /// Of rows whose readings are averaged, so that encoders' jitter does not count as the robot's error.
+  std::vector<double> mean_configuration() const {
+    std::vector<double> q = group_.front().q;
+    for (const Row& row : group_)
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] += (row.q[i] - group_.front().q[i]) / double(group_.size());
+    return q;
   }
 
   /// A row of which all was read, so that orientations have something to be relative to; else the first.
@@ -92,7 +111,7 @@ class ReadingAverages {
 
   void add_spread(const Eigen::VectorXd& mean) {
     Eigen::VectorXd change, number = Eigen::VectorXd::Zero(mean.size());
-    RepeatedReadings visit{group_.front().q, Eigen::MatrixXd(mean.size(), Eigen::Index(group_.size()))};
+    RepeatedReadings visit{mean_configuration(), Eigen::MatrixXd(mean.size(), Eigen::Index(group_.size()))};
     for (const Row& row : group_) {
       model_.difference(row.y, mean, change);
       visit.deviations.col(&row - group_.data()) = change;

@@ -8,20 +8,13 @@
 #include <map>
 #include <optional>
 
+#include "posewright/model/placement.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "urdf_document.hpp"
 #include "xml_tags.hpp"
 
 namespace posewright {
 namespace {
-
-/// Fixed-axis roll, pitch, yaw. Roll and pitch are what is left of R without that yaw, so that they stay right where
-/// pitch is a right angle and yaw could be any.
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const Eigen::Matrix3d rest = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R;
-  return {std::atan2(-rest(1, 2), rest(1, 1)), std::atan2(-rest(2, 0), rest(0, 0)), yaw};
-}
 
 /// Shortest digits that read back as the same doubles; no negative zero.
 std::string three(const Eigen::Vector3d& v) { return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0); }

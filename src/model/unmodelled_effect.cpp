@@ -99,12 +99,10 @@ void EffectFeatures::expand(std::span<const double> q, Eigen::Ref<const BlockArr
   const int twists = effect_->twists(), tips = effect_->tips();
   const Eigen::Index own = block.cols() - Eigen::Index(tips) * twists;
   Eigen::MatrixXd Y = block.rightCols(Eigen::Index(tips) * twists);
-  for (Eigen::Index c = 0; c < Y.cols(); ++c) Y.col(c) *= effect_->size_of(int(c) % twists);
+  effect_->take_sizes(Y);
   out.rightCols(own) = block.leftCols(own);
   out.leftCols(columns()).setZero();
-  for (Eigen::Index j = 0; j < phi.rows(); ++j)
-    for (int tip = 0; tip < tips; ++tip)
-      out.middleCols(j * twists, twists) += phi(j, tip) * Y.middleCols(Eigen::Index(tip) * twists, twists);
+  add_columns(phi, Y, out.leftCols(columns()));
   Eigen::MatrixXd rest = -phi.transpose() * phi;
   for (Eigen::Index a = 0; a < tips; ++a)
     for (Eigen::Index b = 0; b < tips; ++b) rest(a, b) += effect_->correlation(places.col(a), places.col(b));
@@ -125,21 +123,23 @@ Eigen::MatrixXd EffectFeatures::columns_at(const Eigen::VectorXd& phi, const Eig
   return result;
 }
 
-BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also) {
-  const auto F = blocks.all().leftCols(features);
+IndependentRows::IndependentRows(const Eigen::MatrixXd& F) {
   // (I + F Fᵀ)^{−1/2} = I − F V g(S) Vᵀ Fᵀ with FᵀF = V S Vᵀ, g(s) = (1 − 1/√(1 + s))/s.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
-  Eigen::VectorXd g = eigen.eigenvalues().cwiseMax(0.0);
-  for (double& s : g) {
+  along_ = F * eigen.eigenvectors();
+  shrink_ = eigen.eigenvalues().cwiseMax(0.0);
+  for (double& s : shrink_) {
     const double root = std::sqrt(1 + s);
     s = 1 / (root * (1 + root));
   }
-  const Eigen::MatrixXd FV = F * eigen.eigenvectors();
+}
+
+BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also) {
+  const IndependentRows independent{Eigen::MatrixXd(blocks.all().leftCols(features))};
   BlockArray result(blocks.count(), blocks.rows(), blocks.columns() - features);
-  const auto J = blocks.all().rightCols(result.columns());
-  result.all() = J;
-  result.all() -= FV * (g.asDiagonal() * (FV.transpose() * J));
-  if (also != nullptr) *also -= FV * (g.asDiagonal() * (FV.transpose() * *also));
+  result.all() = blocks.all().rightCols(result.columns());
+  independent.apply(result.all());
+  if (also != nullptr) independent.apply(*also);
   return result;
 }
 

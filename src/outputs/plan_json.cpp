@@ -1,5 +1,5 @@
-
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/reliance.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
@@ -226,6 +226,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   json["certificate"] = certificate_json(plan);
   if (plan.discrimination) json["discrimination"] = discrimination_json(*plan.discrimination);
   if (plan.unmodelled) json["unmodelled"] = unmodelled_json(*plan.unmodelled);
+  if (plan.reliance) json["reliance"] = reliance_json(*plan.reliance);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();

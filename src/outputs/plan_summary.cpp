@@ -6,6 +6,7 @@
 
 #include "nearest.hpp"
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/reliance.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
@@ -131,7 +132,7 @@ std::string indices_text(const Plan& plan) {
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   if (plan.turn)
     text += fmt::format("Predicted orientation error: {} (root mean square)\n", shown_value(*plan.turn, "rad"));
-  text += effect_text(plan);
+  text += effect_text(plan) + (plan.reliance ? reliance_text(*plan.reliance) : "");
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.by_test_poses && plan.test_errors.size() == 1)

@@ -4,6 +4,7 @@
 
 #include "calibration_parts.hpp"
 #include "posewright/outputs/table.hpp"
+#include "posewright/tasks/model_choice.hpp"
 
 namespace posewright {
 namespace {
@@ -26,13 +27,24 @@ std::string models_text(const std::vector<Calibration>& models) {
   const bool validated = models.front().held_back > 0;
   std::string text = fmt::format("{} models fitted to the same {} poses", models.size(), models.front().poses);
   if (validated) text += fmt::format(" and judged at {} that were not fitted", models.front().held_back);
-  Table fits({"model", "parameters", "residuals / noise", "left out / noise", "with base and tool alone", ""},
-             {Align::left, Align::right, Align::right, Align::right, Align::right, Align::left});
-  for (const Calibration& c : models)
+  const ModelChoice choice = choose_model(models);
+  Table fits({"model", "parameters", "residuals / noise", "left out / noise", "with base and tool alone", "AICc",
+              "F against", "p", ""},
+             {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left,
+              Align::right, Align::left});
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Calibration& c = models[i];
+    const JudgedModel& m = choice.models[i];
     fits.row({c.variant, std::to_string(c.columns.size()), fmt::format("{:.3g}", c.fit.scale),
               c.left_out.groups > 0 ? shown_share(c.left_out.estimated) : "",
-              c.left_out.groups > 0 ? shown_share(c.left_out.placed) : "", verdict_of(c)});
-  text += "\n\n" + fits.text();
+              c.left_out.groups > 0 ? shown_share(c.left_out.placed) : "", m.aicc ? fmt::format("{:.1f}", *m.aicc) : "",
+              m.f ? fmt::format("{:.3g} {}", *m.f, m.against) : m.against,
+              m.probability ? (*m.probability < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", *m.probability)) : "",
+              verdict_of(c)});
+  }
+  text += "\n\n" + fits.text() +
+          (choice.recommended.empty() ? "\nNo model is recommended: " + choice.why + ".\n"
+                                      : "\nRecommended: " + choice.recommended + ", which " + choice.why + ".\n");
   std::vector<std::string> header = improvement_columns();
   header.insert(header.begin(), {"error", "model"});
   std::vector<Align> align(header.size(), Align::right);

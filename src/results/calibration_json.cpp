@@ -4,6 +4,7 @@
 #include "document.hpp"
 #include "posewright/outputs/json_values.hpp"
 #include "posewright/results/dh_table.hpp"
+#include "posewright/tasks/model_choice.hpp"
 
 namespace posewright {
 namespace {
@@ -37,6 +38,25 @@ Json smooth_json(const Calibration& c) {
           {"probability", s.probability},
           {"poses", s.poses},
           {"counted", c.counted ? Json{{"size", c.counted->size}, {"length", c.counted->length}} : Json(nullptr)}};
+}
+
+Json revisits_json(const Revisits& r) {
+  if (!r.larger.possible) return nullptr;
+  Json moved = Json::array();
+  for (const Revisits::Moved& m : r.moved) moved.push_back({{"reading", m.reading}, {"change", m.change}});
+  return {{"places", r.places},
+          {"visits", r.visits},
+          {"noise", r.noise},
+          {"probability", r.larger.probability},
+          {"drift_probability", r.drift.possible ? Json(r.drift.probability) : Json(nullptr)},
+          {"drift", moved}};
+}
+
+Json interpolation_json(const std::optional<Interpolation>& i) {
+  if (!i) return nullptr;
+  if (!i->why_not.empty()) return {{"why_not", i->why_not}};
+  return {{"why_not", nullptr}, {"unit", i->unit},       {"alone", i->alone}, {"interpolated", i->interpolated},
+          {"gain", i->gain},    {"refused", !i->gains()}};
 }
 
 Json numbers(const std::vector<double>& values) {
@@ -117,6 +137,8 @@ Json covariance_json(const Calibration& c) {
 Json begin_calibration(const char* schema, const Problem& problem, const CalibrateOptions& options) {
   Json json = begin_document(schema, problem);
   json["data"] = options.data.string();
+  json["campaigns"] = Json::array();
+  for (const std::filesystem::path& file : options.campaigns) json["campaigns"].push_back(file.string());
   return json;
 }
 
@@ -153,6 +175,9 @@ Json figures_json(const Calibration& c) {
             {"normality", test_json(c.tests.normality)}}},
           {"effects_left_out", effects_json(c)},
           {"smooth_effect", smooth_json(c)},
+          {"revisits", revisits_json(c.revisits)},
+          {"not_in_auto", c.not_in_auto},
+          {"interpolation", interpolation_json(c.interpolation)},
           {"left_out", left_out_json(c.left_out)},
           {"weakest_combination", text_or_null(c.weakest)},
           {"curvature", finite_or_null(c.curvature.largest)},
@@ -190,6 +215,19 @@ Json calibration_json(const Problem& problem, const CalibrateOptions& options, c
 
 Json models_json(const Problem& problem, const CalibrateOptions& options, const std::vector<Calibration>& models) {
   Json json = begin_calibration("posewright/calibrations/1", problem, options);
+  const ModelChoice choice = choose_model(models);
+  json["recommended"] = choice.recommended.empty() ? Json(nullptr) : Json(choice.recommended);
+  json["why"] = choice.why;
+  const auto value = [](const std::optional<double>& v) { return v ? finite_or_null(*v) : Json(nullptr); };
+  json["choice"] = Json::array();
+  for (const JudgedModel& m : choice.models)
+    json["choice"].push_back({{"variant", m.variant},
+                              {"parameters", m.parameters},
+                              {"left_out", finite_or_null(m.left_out)},
+                              {"aicc", value(m.aicc)},
+                              {"against", m.against.empty() ? Json(nullptr) : Json(m.against)},
+                              {"f", value(m.f)},
+                              {"probability", value(m.probability)}});
   json["models"] = Json::array();
   for (const Calibration& model : models) json["models"].push_back(calibration_json(problem, options, model));
   return json;

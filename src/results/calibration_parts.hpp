@@ -25,6 +25,10 @@ nlohmann::ordered_json axes_json(const Calibration& calibration);
 nlohmann::ordered_json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy);
 nlohmann::ordered_json steps_json(const Calibration& calibration);
 nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);
+/// Whiteness, a smooth effect, its interpolation, normality.
+std::string whiteness_text(const Calibration& calibration);
+std::string revisits_text(const Calibration& calibration);
+std::string not_in_auto_text(const Calibration& calibration);
 std::string platform_text(const PlatformDeformation& platform);
 nlohmann::ordered_json platform_json(const PlatformDeformation& platform);
 

@@ -183,47 +183,6 @@ std::string effects_text(const Calibration& c) {
               : fmt::format("None of {} effects that are not fitted explains more than chance.\n", c.effects.size()));
 }
 
-std::string whiteness_text(const Calibration& c) {
-  std::string text;
-  if (c.tests.serial.possible)
-    text += fmt::format("Correlation from pose to pose {:+.2f} (p {}){}.\n", c.tests.serial.statistic,
-                        chance_text(c.tests.serial.probability),
-                        c.tests.serial.probability < seldom
-                            ? ": residuals are not white: drift, temperature, or an effect that the model lacks"
-                            : "");
-  if (c.smooth.why_not.empty())
-    text +=
-        c.smooth.probability < seldom
-            ? fmt::format(
-                  "Smooth over poses: the tip stands off by {} (1σ, 95 % {} to {}) that changes over {:.0f} deg "
-                  "(p {}), beside {:.3g} times the stated noise{}.\n",
-                  shown_value(c.smooth.size, "m"), shown_value(c.smooth.lower, "m"), shown_value(c.smooth.upper, "m"),
-                  c.smooth.length * 180 / std::numbers::pi, chance_text(c.smooth.probability), c.smooth.noise,
-                  c.counted ? "; σ and intervals count it"
-                            : ": an effect that the model lacks; `unmodelled: auto` of a variant counts it")
-            : fmt::format("Smooth over poses: nothing that chance does not give (p {}).\n",
-                          chance_text(c.smooth.probability));
-  if (c.tests.within.possible)
-    text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
-                        chance_text(c.tests.within.probability),
-                        c.tests.within.probability < seldom
-                            ? ": readings of a pose err together: the robot stood farther off than stated? State more "
-                              "repeatability, of its orientation too; σ and intervals are too small without it"
-                            : "");
-  if (c.tests.normality.possible)
-    text +=
-        fmt::format("Normality (Jarque and Bera) {:.3g} (p {}){}.\n", c.tests.normality.statistic,
-                    chance_text(c.tests.normality.probability),
-                    c.tests.normality.probability < seldom ? ": not normal: gross errors? try --weights robust" : "");
-  if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
-    const auto at = std::size_t(c.curvature.parameter);
-    text += fmt::format(
-        "Not linear within its own uncertainty (curvature {:.2g} at one σ, most in {}): intervals are rough.\n",
-        c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
-  }
-  return text;
-}
-
 std::string left_out_text(const Calibration& c) {
   if (c.left_out.groups == 0) return "";
   if (!std::isfinite(c.left_out.estimated)) return "Poses left out cannot be predicted: " + c.left_out.why_not + "\n";
@@ -254,7 +213,7 @@ std::string calibration_text(const Calibration& c) {
   return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
          (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
          predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) +
-         effects_text(c) + left_out_text(c) + outliers_text(c);
+         revisits_text(c) + effects_text(c) + left_out_text(c) + not_in_auto_text(c) + outliers_text(c);
 }
 
 }  // namespace posewright

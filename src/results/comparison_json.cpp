@@ -1,6 +1,7 @@
 #include "document.hpp"
 #include "posewright/outputs/discrimination.hpp"
 #include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/reliance.hpp"
 #include "posewright/results/comparison.hpp"
 
 namespace posewright {
@@ -30,7 +31,8 @@ Json score_json(const PlanScore& s) {
           {"largest_sigma_per_tolerance", figure(s.worst)},
           {"largest_sigma_of", text_or_null(s.worst_parameter)},
           {"mean_sigma_per_tolerance", figure(s.mean)},
-          {"rho0", value_or_null(s.rho0)}};
+          {"rho0", value_or_null(s.rho0)},
+          {"reliance", s.reliance ? reliance_json(*s.reliance) : Json(nullptr)}};
 }
 
 Json alias_json(const VariantAlias& a) {

@@ -89,6 +89,27 @@ std::string scores_text(const Comparison& c) {
   return table.text();
 }
 
+/// What the plans are worth if a variant is not complete.
+std::string reliance_text(const Comparison& c) {
+  Table table({"plan", "variant", "complete", "1 time", "2 times", "4 times"},
+              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
+  const Reliance* any = nullptr;
+  for (const PlanScore& s : c.scores) {
+    if (!s.reliance) continue;
+    any = &*s.reliance;
+    std::vector<std::string> cells{s.plan, s.variant, shown_value(any->error, "m")};
+    for (const double error : any->with) cells.push_back(shown_value(error, "m"));
+    table.row(cells);
+  }
+  if (any == nullptr) return "";
+  return fmt::format(
+             "\nPosition error at {} {} if the variant is complete, and with a smooth effect that it lacks of 1, 2 and "
+             "4 "
+             "times the noise of a pose\n",
+             any->places, any->at_test_poses ? "test poses" : "candidates") +
+         table.text();
+}
+
 bool has_shift(const VariantAlias& a) {
   return std::any_of(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.shift != 0; });
 }
@@ -170,7 +191,8 @@ std::string worth_text(const ExtraWorth& w) {
 }
 
 std::string comparison_text(const Comparison& c, bool aliases_in_full) {
-  std::string text = headline(c) + "\n" + variants_text(c) + "\n" + efficiency_text(c) + "\n" + scores_text(c);
+  std::string text =
+      headline(c) + "\n" + variants_text(c) + "\n" + efficiency_text(c) + "\n" + scores_text(c) + reliance_text(c);
   if (aliases_in_full)
     for (const VariantAlias& a : c.aliases) text += alias_in_full(a);
   else text += alias_lines(c);

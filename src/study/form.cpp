@@ -2,6 +2,7 @@
 
 #include "posewright/criterion/registry.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/study/unmodelled.hpp"
 
 namespace posewright {
 namespace {
@@ -10,17 +11,16 @@ namespace {
 constexpr double enough_to_predict = 1.5;
 constexpr std::size_t places_at_candidates = 200;
 
-/// Where accuracy counts if nobody says so: at candidates.
-void count_accuracy_at_candidates(const Problem& problem, const Configurations& candidates, Variant& variant) {
+}  // namespace
+
+std::vector<TestPoint> test_points_at_candidates(const Problem& problem, const Configurations& candidates,
+                                                 const Variant& variant, std::vector<TestPlace>& test_places) {
   const Configurations some = thinned(candidates, places_at_candidates);
   std::vector<std::vector<double>> places;
   for (std::size_t i = 0; i < some.count(); ++i)
     places.emplace_back(some[i].begin(), some[i].begin() + std::ptrdiff_t(variant.model->tip_coordinates()));
-  variant.test_points =
-      test_points_at(problem, *variant.spec, *variant.model, variant.columns, places, &variant.test_places);
+  return test_points_at(problem, *variant.spec, *variant.model, variant.columns, places, &test_places);
 }
-
-}  // namespace
 
 std::string choose_form(const Problem& problem, Study& study, Settings& settings) {
   Variant& variant = study.first();
@@ -28,7 +28,7 @@ std::string choose_form(const Problem& problem, Study& study, Settings& settings
   const std::string where = stated ? "test poses" : "of the candidates";
   if (settings.criterion_stated || variant.effect == nullptr) {
     if (!find_criterion(settings.criterion)->needs_test_poses || stated) return {};
-    count_accuracy_at_candidates(problem, study.configurations, variant);
+    variant.test_points = test_points_at_candidates(problem, study.configurations, variant, variant.test_places);
     return fmt::format("Accuracy counts at {} {}.", variant.test_points.size(), where);
   }
   if (settings.poses == 0) return {};
@@ -44,7 +44,8 @@ std::string choose_form(const Problem& problem, Study& study, Settings& settings
   // Two tips of one reading stand at no single place.
   if (!stated && variant.effect->tips() > 1) return {};
   settings.criterion = "test_pose";
-  if (!stated) count_accuracy_at_candidates(problem, study.configurations, variant);
+  if (!stated)
+    variant.test_points = test_points_at_candidates(problem, study.configurations, variant, variant.test_places);
   return fmt::format("Criterion test_pose, since {}: accuracy at {} {}, the effect estimated, too.", why,
                      variant.test_points.size(), where);
 }

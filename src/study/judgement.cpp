@@ -22,9 +22,7 @@ void fill_errors(Judgement& judgement, const Variant& variant, const VariantWort
 }  // namespace
 
 Judgement judge(const Study& study, const Configurations& poses, const Settings& settings) {
-  Configurations all = study.measured;
-  all.dimension = poses.dimension;
-  all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
+  const Configurations all = with_measured(study, poses);
   Judgement judgement;
   const Prior prior = settings.prior ? Prior::every : Prior::none;
   for (const Variant& variant : study.variants) {

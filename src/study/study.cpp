@@ -118,6 +118,13 @@ void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
 }
 
+Configurations with_measured(const Study& study, const Configurations& poses) {
+  Configurations all = study.measured;
+  all.dimension = poses.dimension;
+  all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
+  return all;
+}
+
 void append(Configurations& list, const Configurations& from, std::size_t i) {
   append(list, from[i]);
   if (!from.rows.empty()) list.rows.push_back(from.rows[i]);
@@ -237,7 +244,7 @@ SearchPart search_part(const Variant& variant, const Configurations& configurati
   const int features = variant.features == nullptr ? 0 : variant.features->columns();
   SearchPart part;
   part.blocks = search_blocks(variant, configurations, threads);
-  part.nuisance = features + variant.columns.nuisance;
+  part.nuisance = variant.everything_counts ? 0 : features + variant.columns.nuisance;
   part.weight = variant.weight;
   part.scale = Eigen::VectorXd::Ones(features + variant.scale.size());
   part.scale.tail(variant.scale.size()) = variant.scale;

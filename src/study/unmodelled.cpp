@@ -16,8 +16,6 @@
 namespace posewright {
 namespace {
 
-// Joints that differ by as much see about the same of what a model lacks.
-constexpr double default_length = 60 * std::numbers::pi / 180;
 constexpr int fewest_features = 2, most_features = 32, pivots = 120;
 // Loss of efficiency by features in place of the whole effect that does not matter.
 constexpr double feature_loss = 0.01;
@@ -71,8 +69,7 @@ double size_by_tolerances(const Problem& problem, const Variant& variant, const 
   for (int k = 0; k < 3; ++k) selected.push_back(variant.model->tip_column(0, k));
   const BlockArray blocks = build_blocks(*variant.model, selected, sample, threads);
   const auto Y = blocks.all().rightCols<3>();
-  // (tr(Σ AᵀA)/3n)^{−1/2}: the noise of a displacement of the tip as one pose's readings tell of it.
-  const double noise = std::sqrt(3.0 * double(blocks.count()) / Y.squaredNorm());
+  const double noise = noise_of_a_pose(Y, blocks.count());
   if (rest.empty()) return noise;
   Eigen::MatrixXd caused = blocks.all().middleCols(own, Eigen::Index(rest.size()));
   for (std::size_t j = 0; j < rest.size(); ++j) caused.col(Eigen::Index(j)) *= rest[j].tolerance;
@@ -151,6 +148,10 @@ std::shared_ptr<const EffectFeatures> enough_features(const Variant& variant, co
 
 }  // namespace
 
+double noise_of_a_pose(const Eigen::Ref<const Eigen::MatrixXd>& A, std::size_t n) {
+  return std::sqrt(3.0 * double(n) / A.squaredNorm());
+}
+
 Eigen::MatrixXd effect_places(const UnmodelledEffect& effect, const Configurations& configurations) {
   Eigen::MatrixXd all;
   for (std::size_t i = 0; i < configurations.count(); ++i) {
@@ -183,7 +184,8 @@ void allow_for_unmodelled(const Problem& problem, const Configurations& candidat
   const CalibratedEffect* found =
       problem.parameters && problem.parameters->unmodelled ? &*problem.parameters->unmodelled : nullptr;
   const Configurations sample = thinned(candidates, size_sample);
-  UnmodelledSize size{1.0, spec.rotation, spec.length.value_or(found != nullptr ? found->length : default_length)};
+  UnmodelledSize size{1.0, spec.rotation,
+                      spec.length.value_or(found != nullptr ? found->length : UnmodelledSize::assumed_length)};
   variant.effect = std::make_shared<UnmodelledEffect>(*variant.model, size);
   require_told_apart(problem, variant, sample, threads);
   size.translation = spec.size          ? *spec.size

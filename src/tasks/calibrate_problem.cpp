@@ -7,12 +7,13 @@
 #include <numbers>
 
 #include "calibration_accuracy.hpp"
+#include "calibration_data.hpp"
 #include "effects_left_out.hpp"
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/placement.hpp"
-#include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/platform_images.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/outputs/table.hpp"
@@ -38,7 +39,8 @@ class CalibrationRun {
         options_(options),
         monitor_(monitor),
         spec_(find_variant(problem_, options.variant)),
-        model_(make_model(problem_, spec_)) {
+        campaigns_(campaigns_of(options)),
+        model_(model_of(problem_)) {
     result_.variant = spec_.name;
     result_.weighting = options.weighting;
     result_.prior = options.prior;
@@ -52,7 +54,8 @@ class CalibrationRun {
     FitOptions fit_options;
     fit_options.weighting = options_.weighting;
     fit_options.prior = result_.prior;
-    const VariantColumns all = select_columns(*model_, problem_, spec_);
+    VariantColumns all = select_columns(*model_, problem_, spec_);
+    if (!campaigns_.empty()) all = with_campaign_bases(*model_, all);
     place(all, fit_options);
     choose_columns(all);
     leave_at_nominal_values(all, fit_options.start);
@@ -60,13 +63,16 @@ class CalibrationRun {
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
-    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit);
+    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
+                                       [this](const Problem& wider) { return model_of(wider); });
+    result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
     allow_for_unmodelled(fit_options);
     report(1);
     result_.correction = result_.fit.correction;
     result_.weakest = weakest_combination(result_.fit, columns_);
     if (result_.fit.converged)
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
+    if (options_.interpolate) interpolate(fit_options);
     note_end();
     judge_noise();
     judge_frame();
@@ -85,35 +91,50 @@ class CalibrationRun {
 
  private:
   void read() {
-    MeasuredData data = read_measured_data(options_.data, problem_, *model_);
-    result_.notes = data.notes;
-    result_.rows = data.rows;
-    result_.repeats = data.repeats;
-    result_.spread = data.spread;
-    result_.readings = model_->readings();
+    CalibrationData data = read_calibration_data(problem_, options_, *make_model(problem_, spec_), result_);
+    fitted_ = std::move(data.fitted);
+    held_back_ = std::move(data.held_back);
+    validation_ = std::move(data.validation);
     repeated_ = std::move(data.repeated);
     if (!data.images.empty()) judge_platform(data.images);
-    note_repeats(data);
-    for (std::size_t k = 0; k < data.poses.size(); ++k) {
-      const bool back = data.held_back[k] || (options_.hold_back > 0 && (k + 1) % std::size_t(options_.hold_back) == 0);
-      (back ? held_back_ : fitted_).push_back(std::move(data.poses[k]));
-    }
-    if (!options_.validate.empty()) {
-      MeasuredData more = read_measured_data(options_.validate, problem_, *model_);
-      for (const std::string& note : more.notes) result_.notes.push_back(options_.validate.string() + ": " + note);
-      validation_ = more.poses;
-      for (MeasuredPose& pose : more.poses) held_back_.push_back(std::move(pose));
-    }
-    if (fitted_.empty()) throw InputError({options_.data.string(), 0}, "has no pose to fit", "use: fit");
-    result_.poses = int(fitted_.size());
-    result_.held_back = int(held_back_.size());
+  }
+
+  /// With a base for every campaign if there are several.
+  std::unique_ptr<IdentificationModel> model_of(const Problem& problem) const {
+    auto model = make_model(problem, spec_);
+    return campaigns_.empty() ? std::move(model) : with_campaigns(std::move(model), campaigns_);
   }
 
   /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there; how little
   /// that moves it is found by place_again().
   void place(const VariantColumns& all, FitOptions& fit_options) {
-    placed_ = fit_options.start = placed(*model_, all, fitted_, fit_options);
+    placed_ = placed(*model_, all, of_campaign(0), fit_options);
+    for (std::size_t c = 1; c < campaigns_.size(); ++c) place_campaign(c, all, fit_options);
+    take_canonical_angles(*model_, "base", placed_);
+    for (std::size_t c = 1; c < campaigns_.size(); ++c)
+      take_canonical_angles(*model_, "base@" + campaigns_[c], placed_);
+    fit_options.start = placed_;
     model_->take_loads_at(placed_);
+  }
+
+  std::vector<MeasuredPose> of_campaign(std::size_t campaign) const {
+    if (campaigns_.empty()) return fitted_;
+    std::vector<MeasuredPose> poses;
+    for (const MeasuredPose& pose : fitted_)
+      if (std::size_t(pose.q.back()) == campaign) poses.push_back(pose);
+    return poses;
+  }
+
+  /// The base of another campaign, with everything else where the first one says that it stands.
+  void place_campaign(std::size_t campaign, const VariantColumns& all, const FitOptions& fit_options) {
+    std::vector<int> kept;
+    const std::vector<int> base = base_parameters(*model_, campaigns_[campaign]);
+    for (std::size_t j = 0; j < all.selected.size(); ++j)
+      if (std::find(base.begin(), base.end(), all.selected[j]) != base.end()) kept.push_back(int(j));
+    if (kept.empty()) return;
+    const std::vector<double> found =
+        placed_base(*model_, subset(all, kept), of_campaign(campaign), fit_options, placed_);
+    for (const int i : base) placed_[std::size_t(i)] = found[std::size_t(i)];
   }
 
   /// What the estimate is judged against has its columns of where things stand and no others.
@@ -134,24 +155,16 @@ class CalibrationRun {
     }
   }
 
-  /// Rows that were averaged are the repeats, whatever the problem planned.
-  void note_repeats(const MeasuredData& data) {
-    if (data.repeated.empty()) return;
-    if (!data.same_repeats)
-      result_.notes.push_back(fmt::format(
-          "poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own",
-          data.repeats));
-    else if (data.repeats != problem_.measurement.repeats)
-      result_.notes.push_back(fmt::format("{:.0f} readings a pose are averaged, not {} as the problem says",
-                                          data.repeats, problem_.measurement.repeats));
-  }
-
   void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }
 
   /// Columns that these poses determine, judged where things stand: at the origin of the flange a target would say
   /// nothing of the wrist.
   void choose_columns(const VariantColumns& all) {
     result_.automatic = all.automatic;
+    if (all.automatic)
+      for (int i = 0; i < int(model_->parameters().size()); ++i)
+        if (std::find(all.selected.begin(), all.selected.end(), i) == all.selected.end())
+          result_.not_in_auto.push_back(model_->parameters()[std::size_t(i)].name);
     std::vector<Dependency> dependent;
     if (result_.prior == Prior::none) {
       columns_ =
@@ -206,9 +219,13 @@ class CalibrationRun {
   /// A smooth effect that the residuals show, and for a variant that lacks one the fit once more, counting it.
   void allow_for_unmodelled(FitOptions& options) {
     const UnmodelledSpec* spec = spec_.unmodelled ? &*spec_.unmodelled : nullptr;
+    if (options.weighting != Weighting::weighted) {
+      result_.smooth.why_not = "weights are not those of the noise";
+      return;
+    }
     result_.smooth = smooth_effect(*model_, columns_, fitted_, result_.fit, spec ? spec->length : std::nullopt);
     const SmoothEffect& found = result_.smooth;
-    if (spec == nullptr || options.weighting != Weighting::weighted) return;
+    if (spec == nullptr) return;
     if (!spec->size && !found.why_not.empty()) {
       result_.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals count none: " +
                               found.why_not);
@@ -216,7 +233,8 @@ class CalibrationRun {
     }
     // Where the readings' own noise is refused, all of the covariance counts so many times more.
     const double size = spec->size.value_or(found.size / std::max(1.0, found.noise));
-    const double length = spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : 1.0);
+    const double length =
+        spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : UnmodelledSize::assumed_length);
     if (!(size > 0)) return;
     options.effect = std::make_shared<UnmodelledEffect>(*model_, UnmodelledSize{size, spec->rotation, length});
     options.start = result_.fit.correction;
@@ -224,11 +242,26 @@ class CalibrationRun {
     result_.counted = {size, length};
   }
 
+  /// What the parameters leave, interpolated between the poses.
+  void interpolate(const FitOptions& options) {
+    if (options.effect == nullptr) {
+      result_.interpolation = Interpolation{};
+      result_.interpolation->why_not = options_.weighting != Weighting::weighted ? "weights are not those of the noise"
+                                       : spec_.unmodelled
+                                           ? "the residuals hold no smooth effect"
+                                           : "variant '" + spec_.name + "' counts no effect: state `unmodelled: auto`";
+      return;
+    }
+    result_.interpolation =
+        posewright::interpolate(*model_, columns_, fitted_, held_back_, result_.fit, options.effect);
+  }
+
   /// Why an estimate is not to be used.
   void note_end() {
     const std::string why = result_.weakest.empty() ? "" : ". Near dependence: " + result_.weakest;
-    const char* const remedy =
-        "; measure more or other poses (plan), estimate fewer parameters (observe), or state tolerances";
+    const std::string remedy =
+        std::string("; measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
+        (result_.prior == Prior::none ? "let tolerances count (without --no-prior)" : "state tolerances");
     if (!result_.fit.converged)
       result_.notes.push_back(result_.weakest.empty()
                                   ? "the estimate did not converge: are nominal base, tool and units right?"
@@ -259,8 +292,8 @@ class CalibrationRun {
   void judge_noise() {
     const Fit& fit = result_.fit;
     if (!repeated_.empty()) {
-      result_.lack_of_fit = lack_of_fit(*model_, *make_model(without_pose_errors(problem_), spec_),
-                                        problem_.measurement.repeats, fitted_, repeated_, fit);
+      result_.lack_of_fit = lack_of_fit(*model_, *model_of(without_pose_errors(problem_)), problem_.measurement.repeats,
+                                        fitted_, repeated_, fit);
     }
     if (fit.scale > absurd)
       result_.notes.push_back(fmt::format(
@@ -284,11 +317,16 @@ class CalibrationRun {
       p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share : 1.0);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
-    for (CalibratedValue& value : calibrated_values(problem_, spec_, *model_, result_.correction))
+    // Bases of other campaigns are the instrument's, and none of the robot's values.
+    const auto robot = make_model(problem_, spec_);
+    const std::vector<double> own(result_.correction.begin(),
+                                  result_.correction.begin() + std::ptrdiff_t(robot->parameters().size()));
+    for (CalibratedValue& value : calibrated_values(problem_, spec_, *robot, own))
       result_.values.push_back({std::move(value), {}});
     for (std::size_t j = 0; j < columns_.selected.size(); ++j)
-      result_.values[std::size_t(columns_.selected[j])].sigma =
-          std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
+      if (columns_.selected[j] < int(result_.values.size()))
+        result_.values[std::size_t(columns_.selected[j])].sigma =
+            std::sqrt(result_.fit.covariance(Eigen::Index(j), Eigen::Index(j)));
     for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
     for (auto* more : {&nuisance, &left_out_})
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
@@ -312,6 +350,7 @@ class CalibrationRun {
   const CalibrateOptions& options_;
   const Monitor& monitor_;
   const VariantSpec& spec_;
+  std::vector<std::string> campaigns_;  ///< none: one file
   std::unique_ptr<IdentificationModel> model_;
   VariantColumns columns_;
   std::vector<MeasuredPose> fitted_, held_back_, validation_;

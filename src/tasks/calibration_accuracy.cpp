@@ -66,6 +66,8 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
     }
     const Residuals after = residuals_of(model, result.correction, *list);
     add("calibrated", after);
+    if (list == &poses.held_back && result.interpolation && result.interpolation->gains())
+      add("interpolated", result.interpolation->others);
     add_axes(which, errors_by_axis(model, *list, before), errors_by_axis(model, *list, after), require, result.axes);
     if (list == &poses.held_back) beyond = after;
   }

@@ -7,6 +7,7 @@
 #include "compared_plans.hpp"
 #include "extra_worth.hpp"
 #include "posewright/study/accuracy_points.hpp"
+#include "posewright/study/reliance.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 #include "variant_alias.hpp"
@@ -62,13 +63,6 @@ class ComparisonRun {
     }
   }
 
-  Configurations with_measured(const Configurations& poses) const {
-    Configurations all = study_.measured;
-    all.dimension = poses.dimension;
-    all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
-    return all;
-  }
-
   PlanScore score(std::size_t plan, const Variant& variant) {
     PlanScore score;
     score.variant = variant.spec->name;
@@ -80,11 +74,13 @@ class ComparisonRun {
         score.infeasible_because = variant.workspace->reasons()[std::size_t(reason)];
     try {
       const VariantColumns& columns = variant.columns;
-      VariantWorth worth = worth_of(variant, with_measured(poses_[plan]), settings_.prior ? Prior::every : Prior::none,
-                                    settings_.planner.threads);
+      const Configurations all = with_measured(study_, poses_[plan]);
+      VariantWorth worth =
+          worth_of(variant, all, settings_.prior ? Prior::every : Prior::none, settings_.planner.threads);
       const Evaluation& e = judged_[plan][&variant] = std::move(worth.evaluation);
       score.log_det = e.log_det;
       score.condition = e.condition;
+      score.reliance = reliance_of(problem_, study_, variant, all, e, settings_.planner.threads);
       fill_sigma(score, columns, e);
       std::vector<double> each;
       if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, worth.errors, each);
@@ -135,7 +131,7 @@ class ComparisonRun {
         if (&truth == &fitted || !truth.why_not.empty()) continue;
         if (!options_.truth.empty() && options_.truth != truth.spec->name) continue;
         VariantAlias found =
-            variant_alias(problem_, fitted, truth, with_measured(poses_[plan]), evaluation->second, settings_);
+            variant_alias(problem_, fitted, truth, with_measured(study_, poses_[plan]), evaluation->second, settings_);
         found.plan = result_.plans[plan].name;
         add_worth(truth, {&fitted, &evaluation->second, found.plan}, found, plan);
         result_.aliases.push_back(std::move(found));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -40,10 +39,11 @@ int index_of(const IdentificationModel& model, const std::string& name) {
 
 std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,
                                         const IdentificationModel& fitted_model, const VariantColumns& fitted,
-                                        const std::vector<MeasuredPose>& poses, const Fit& fit) {
+                                        const std::vector<MeasuredPose>& poses, const Fit& fit,
+                                        const ModelMaker& model_of) {
   if (!fit.scale_known || !fit.converged) return {};
   const Problem wider = with_eccentricity(problem);
-  const auto model = make_model(wider, variant);
+  const auto model = model_of(wider);
   std::vector<double> correction(model->parameters().size(), 0.0);
   for (std::size_t i = 0; i < fit.correction.size(); ++i)
     correction[std::size_t(index_of(*model, fitted_model.parameters()[i].name))] = fit.correction[i];

@@ -12,6 +12,7 @@
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/study/discrepancy.hpp"
 #include "posewright/study/judgement.hpp"
+#include "posewright/study/reliance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 
@@ -58,6 +59,8 @@ class ListEvaluation {
     plan.parameters_file = parameters_of(problem);
     plan.method = "given";
     fill_judgement(plan, judgement, study_, settings_);
+    plan.reliance = reliance_of(problem, study_, study_.first(), with_measured(study_, poses_),
+                                judgement.evaluations.front(), settings_.planner.threads);
     const std::vector<double> references = score_all(result, judgement);
     const double phi = phi_of(*measure_, settings_.criterion, study_, poses_, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);

@@ -29,11 +29,6 @@ void require_stations(const Problem& problem) {
                      "trackers and cameras that measure points do");
 }
 
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
-  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
-}
-
 /// The body of the instrument stands where the instrument does. With one place it keeps its name; with several there is
 /// one at each.
 void move_bodies(Problem& problem, const std::vector<StationSpec>& before, const std::vector<StationSpec>& chosen) {

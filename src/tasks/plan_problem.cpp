@@ -11,6 +11,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/judgement.hpp"
+#include "posewright/study/reliance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 
@@ -30,6 +31,7 @@ class PlanSearch {
         settings_(settings_of(problem, options)),
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
+    study_.first().everything_counts = options.everything_counts;
     if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
       study_.notes.push_back(std::move(note));
   }
@@ -166,11 +168,14 @@ class PlanSearch {
     plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
     fill_judgement(plan, judgement, study_, settings_);
+    plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, chosen),
+                                judgement.evaluations.front(), settings_.planner.threads);
     const double phi = phi_of(*found.measure, settings_.criterion, study_, chosen, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     plan.certificate = found.certificate;
     certify(plan.certificate, phi, found.degree);
-    fill_variants(plan, judgement, study_, found.references);
+    // References of everything are none of the parameters'.
+    if (!study_.first().everything_counts) fill_variants(plan, judgement, study_, found.references);
     fill_poses(plan, study_, chosen, found, judgement);
     fill_candidates(plan.statistics, study_);
     plan.statistics.cell = cell_notes(*study_.cell);
@@ -201,7 +206,10 @@ Plan plan_problem(const Problem& problem, const PlanOptions& options, const Moni
 
 Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& plan, int poses, const Monitor& monitor) {
   const bool told_apart = !options.truth.empty() || problem.design.truth.has_value();
-  options.criterion = told_apart ? "discriminate" : "o1";
+  const bool effect = find_variant(problem, options.variant).unmodelled.has_value();
+  options.criterion = told_apart ? "discriminate" : effect ? "ds" : "o1";
+  // Of poses whose readings tell most of effect and parameters together, the plan tells least (maximum entropy).
+  options.everything_counts = effect && !told_apart;
   options.poses = poses;
   options.smallest = options.reserve = false;
   options.measured = poses_of(plan, pose_coordinates(problem, options.variant));

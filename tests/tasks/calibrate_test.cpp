@@ -16,40 +16,13 @@
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/mutate.hpp"
 #include "tests/kit/temporary_folder.hpp"
-#include "tests/kit/virtual_data.hpp"
+#include "tests/kit/virtual_file.hpp"
 
 namespace posewright {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-/// Readings of an example's robot as a file.
-struct VirtualFile {
-  TemporaryFolder folder;
-  Problem problem;
-  std::unique_ptr<IdentificationModel> model;
-  VariantColumns columns;
-  std::vector<MeasuredPose> poses;
-  std::vector<double> truth;
-  Random random{5, 1};
-
-  VirtualFile(const std::string& file, int count, double noise = 1.0) : problem(example(file)) {
-    const VariantSpec& spec = find_variant(problem, "");
-    model = make_model(problem, spec);
-    columns = select_columns(*model, problem, spec);
-    poses = random_poses(*model, count, random);
-    truth = random_truth(*model, columns, 0.3, random);
-    read_poses_of(*model, truth, noise, random, poses);
-  }
-  fs::path write(const std::string& text) { return folder.write("data.csv", text); }
-  fs::path write() { return write(measured_data_csv(*model, poses)); }
-  CalibrateOptions options() {
-    CalibrateOptions options;
-    options.data = folder.path() / "data.csv";
-    return options;
-  }
-};
 
 TEST(MeasuredData, ReadsBackWhatItWroteBitForBit) {
   for (const char* file : {"kr270/problem.yaml", "kr270/elastostatic.yaml", "telescope/problem.yaml",

@@ -13,6 +13,7 @@
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/random.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/planar_arm.hpp"
@@ -127,6 +128,91 @@ TEST_F(UnmodelledEffects, InterpolationAddsNothingAtAMeasuredPoseOfANoiselessIns
   const Plan plan = judged(
       problem("{size: 100 mm, length: 0.3 rad}", "{variant: short, poses: 8, test_poses: {at: [[0.2, 1.1]]}}"), eight);
   EXPECT_NEAR(*plan.unmodelled->interpolated, std::sqrt(1e-2 + 2 * sigma * sigma), 1e-5);
+}
+
+/// E‖J_x(θ̂ − θ) − δ(x)‖² of plain least squares with this effect there.
+double plain_square_at(const std::vector<double>& x, const List& list, double size) {
+  const Whole whole(list, size, sixty_degrees);
+  const Eigen::MatrixXd& J = whole.J;
+  Eigen::MatrixXd cross(J.rows(), 2);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    cross.middleRows(2 * Eigen::Index(i), 2) =
+        size * size * kernel(list[i], x, sixty_degrees) * Eigen::Matrix2d::Identity();
+  const Eigen::MatrixXd B = jacobian(x) * (J.transpose() * J).inverse() * J.transpose();
+  return (B * whole.inverse.inverse() * B.transpose()).trace() - 2 * (B * cross).trace() + 3 * size * size;
+}
+
+TEST_F(UnmodelledEffects, PlanWithoutOneTellsWhatAPlainFitWouldMakeOfOne) {
+  const std::string places = "test_poses: {at: [[0.5, 1], [-1, 1.4]]}}";
+  const Plan plan = judged(problem("", "{variant: short, poses: 8, " + places), eight);
+  ASSERT_TRUE(plan.reliance);
+  const Reliance& r = *plan.reliance;
+  EXPECT_TRUE(r.at_test_poses);
+  EXPECT_EQ(r.places, 2);
+  EXPECT_NEAR(r.error / *plan.rho0, 1, 1e-12);
+  // x and y are read, z is not: as little as three axes read with √1.5 times the noise.
+  EXPECT_NEAR(r.noise / (sigma * std::sqrt(1.5)), 1, 1e-9);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double size = Reliance::times[i] * r.noise;
+    const double square = plain_square_at({0.5, 1}, eight, size) + plain_square_at({-1, 1.4}, eight, size);
+    EXPECT_NEAR(r.with[i] / std::sqrt(square / 2), 1, 1e-6);
+  }
+  EXPECT_FALSE(judged(problem("{size: 0.2 mm}", "{variant: short, poses: 8, " + places), eight).reliance);
+}
+
+TEST_F(UnmodelledEffects, PlanOfFewPosesSaysThatItReliesOnTheModel) {
+  // Two poses that nearly look alike determine three parameters, badly.
+  const Problem p = problem("", "{variant: short, poses: 2}");
+  const Plan plan = judged(p, {{0.2, 1.1}, {0.3, 1.2}});
+  ASSERT_TRUE(plan.reliance);
+  EXPECT_FALSE(plan.reliance->at_test_poses);
+  EXPECT_GT(plan.reliance->amplification(), 1.5);
+  EXPECT_THAT(plan_summary(plan), HasSubstr("relies on the model being complete"));
+  EXPECT_THAT(plan_summary(judged(p, eight)), testing::Not(HasSubstr("relies on the model being complete")));
+}
+
+/// log det of the covariance that readings at `at` are predicted with from those of `list`.
+double predictive_log_det(const List& at, const List& list, double size, double length) {
+  const Whole known(list, size, length), there(at, size, length);
+  Eigen::MatrixXd cross(there.J.rows(), known.J.rows());
+  for (std::size_t i = 0; i < at.size(); ++i)
+    for (std::size_t k = 0; k < list.size(); ++k)
+      cross.block<2, 2>(2 * Eigen::Index(i), 2 * Eigen::Index(k)) =
+          size * size * kernel(at[i], list[k], length) * Eigen::Matrix2d::Identity();
+  const Eigen::MatrixXd A = there.J - cross * known.inverse * known.J;
+  return std::log((there.inverse.inverse() - cross * known.inverse * cross.transpose() + A * known.V * A.transpose())
+                      .determinant());
+}
+
+TEST_F(UnmodelledEffects, ValidationPosesLieWhereTheFieldIsLeastCertain) {
+  // An effect much larger than the noise, measured in one corner: what the plan says nothing of is elsewhere.
+  const Problem p = problem("{size: 2 mm, length: 0.5 rad}", "{variant: short, poses: 8, candidates: 300}");
+  List corner;
+  for (int i = 0; i < 8; ++i) corner.push_back({1.0 + 0.12 * i, 1.9 - 0.1 * i});
+  const Plan plan = judged(p, corner);
+  const Plan validation = plan_validation(p, {}, plan, 3, Monitor{});
+  int chosen = 0;
+  double least_of_all = 10;
+  for (const PlannedPose& pose : validation.poses) {
+    if (pose.measured) continue;
+    ++chosen;
+    for (const std::vector<double>& q : corner)
+      least_of_all =
+          std::min(least_of_all, std::hypot(pose.configuration[0].value - q[0], pose.configuration[1].value - q[1]));
+  }
+  EXPECT_EQ(chosen, 3);
+  EXPECT_GT(least_of_all, 1.0);
+  EXPECT_EQ(validation.criterion, "ds");
+  List found;
+  for (const PlannedPose& pose : validation.poses)
+    if (!pose.measured) found.push_back({pose.configuration[0].value, pose.configuration[1].value});
+  const double best = predictive_log_det(found, corner, 2e-3, 0.5);
+  Random random(3, 1);
+  for (int i = 0; i < 300; ++i) {
+    List any;
+    for (int k = 0; k < 3; ++k) any.push_back({random.uniform(-2, 2), random.uniform(-2, 2)});
+    EXPECT_GT(best, predictive_log_det(any, corner, 2e-3, 0.5) - 0.3);
+  }
 }
 
 TEST_F(UnmodelledEffects, OfNoSizeChangesNothing) {

@@ -16,7 +16,8 @@ struct LeaveOut {
   /// Mean gain of the estimate over all poses left out, paired, in its own standard errors: above 2 it is not an
   /// accident.
   double gain = 0.0;
-  std::string why_not;  ///< not judged, or: why the estimate cannot predict (infinite)
+  std::vector<double> squares;  ///< mean square of every pose left out, by the estimate; in the order they were
+  std::string why_not;          ///< not judged, or: why the estimate cannot predict (infinite)
 
   /// Nothing shows that the estimate predicts better than knowing where things stand does.
   bool refused() const { return groups > 0 && !(gain > 2.0); }

@@ -22,4 +22,15 @@ VariantColumns determined(const IdentificationModel& model, const VariantColumns
 std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const FitOptions& options);
 
+/// The same for one base alone, everything else as `from` says: where the instrument of another campaign stands.
+/// @param base  columns of one base
+std::vector<double> placed_base(const IdentificationModel& model, const VariantColumns& base,
+                                const std::vector<MeasuredPose>& poses, const FitOptions& options,
+                                const std::vector<double>& from);
+
+/// The same orientation of a frame by rx and rz from −180 to 180 deg, ry from −90 to 90 deg, where its nominal angles
+/// are zero: an estimate from another side would state it by other angles.
+/// @param frame  "base"
+void take_canonical_angles(const IdentificationModel& model, const std::string& frame, std::vector<double>& correction);
+
 }  // namespace posewright

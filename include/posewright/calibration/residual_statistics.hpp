@@ -47,6 +47,9 @@ ResidualTests test_residuals(const Fit& result);
 void test_correlations(const IdentificationModel& model, const VariantColumns& columns,
                        const std::vector<MeasuredPose>& poses, const Fit& result, ResidualTests& tests);
 
+/// Mean of a sample in its own standard errors; 0 where all are the same.
+double mean_in_standard_errors(const std::vector<double>& sample);
+
 /// What every stated interval holds the truth with.
 inline constexpr double interval_probability = 0.95;
 

@@ -26,12 +26,12 @@ struct MeasuredData {
 
 /// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every
 /// reading of the model (`P1.x [mm]`); an empty cell was not read. Columns `id` (or `pose`) and `use` (fit | validate)
-/// may be there; others are passed over. Rows in a row with one configuration are repeats and are averaged: their
-/// `reading_share` says of how many, against the problem's repeats. Without such rows every row is the mean of the
-/// problem's repeats. Actuators may stand for the coordinates of a parallel robot. Orientations as rotation vectors
-/// (pose.rx, …) or unit quaternions (pose.qx, pose.qy, pose.qz, pose.qw); photogrammetric points of a pose (NAME.x, …)
-/// become the pose by rigid fit. Joint centres of a platform (leg_1.x, …) beside its points make images of how it
-/// deforms. Throws InputError with file and line.
+/// may be there; others are passed over. Rows in a row with one configuration (to 1e-5 rad or m; under one id to 1e-3)
+/// are repeats and are averaged: their `reading_share` says of how many, against the problem's repeats. Without such
+/// rows every row is the mean of the problem's repeats. Actuators may stand for the coordinates of a parallel robot.
+/// Orientations as rotation vectors (pose.rx, …), unit quaternions (pose.qx, pose.qy, pose.qz, pose.qw) or three angles
+/// (EulerAngles); photogrammetric points of a pose (NAME.x, …) become the pose by rigid fit. Joint centres of a
+/// platform (leg_1.x, …) beside its points make images of how it deforms. Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);
 

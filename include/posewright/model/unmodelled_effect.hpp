@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct UnmodelledSize {
   double translation = 0.0;  ///< 1σ along each axis, m
   double rotation = 0.0;     ///< 1σ about each axis through the tip, rad
   double length = 0.0;       ///< over which it changes, in angles of joints, rad
+  /// Where nobody says: joints that differ by as much see about the same of what a model lacks.
+  static constexpr double assumed_length = std::numbers::pi / 3;
 };
 
 /// Every model lacks something: the tip stands off by a twist δ(q) that changes smoothly with the configuration,
@@ -34,6 +37,13 @@ class UnmodelledEffect {
   double size_of(int twist) const { return twist < 3 ? size_.translation : size_.rotation; }
   /// The readings' derivatives along the twists as indices for IdentificationModel::linearise, one tip after the other.
   const std::vector<int>& columns() const { return columns_; }
+
+  /// Derivatives along unit twists become those along twists of their size.
+  /// @param along  rows × columns().size()
+  template <class Matrix>
+  void take_sizes(Eigen::MatrixBase<Matrix>& along) const {
+    for (Eigen::Index c = 0; c < along.cols(); ++c) along.col(c) *= size_of(int(c) % twists());
+  }
 
   /// f of every tip, one a column.
   Eigen::MatrixXd places(std::span<const double> q) const;
@@ -74,6 +84,19 @@ class EffectFeatures {
   /// φ of every tip at these places, count() × tips.
   Eigen::MatrixXd at(const Eigen::MatrixXd& places) const;
 
+  /// Columns of the u at one configuration: out += Σ φ_j(tip) ∂y/∂δ_tip.
+  /// @param phi    count() × tips
+  /// @param along  readings' derivatives along the twists, their sizes taken, rows × (tips × twists)
+  /// @param out    rows × columns()
+  template <class Along, class Out>
+  void add_columns(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::MatrixBase<Along>& along,
+                   Eigen::MatrixBase<Out>&& out) const {
+    const int each = effect_->twists();
+    for (Eigen::Index j = 0; j < phi.rows(); ++j)
+      for (Eigen::Index tip = 0; tip < phi.cols(); ++tip)
+        out.middleCols(j * each, each) += phi(j, tip) * along.middleCols(tip * each, each);
+  }
+
   /// A whitened block J and the same of the twists' derivatives become the block of features and J, in this order, with
   /// unit variance of every u; what the features leave at q counts as noise of this pose.
   /// @param block  rows × (columns of J, then effect().columns())
@@ -89,6 +112,24 @@ class EffectFeatures {
   std::shared_ptr<const UnmodelledEffect> effect_;
   Eigen::MatrixXd pivots_;   // their places
   Eigen::MatrixXd weights_;  // φ = weights · correlations with the pivots
+};
+
+/// Whitened rows of correlated readings as those of independent ones, X' = (I + F Fᵀ)^{−1/2} X.
+class IndependentRows {
+ public:
+  IndependentRows() = default;
+  explicit IndependentRows(const Eigen::MatrixXd& F);
+  /// Nothing is correlated.
+  bool empty() const { return along_.size() == 0; }
+  template <class Matrix>
+  void apply(Matrix&& rows) const {
+    const Eigen::MatrixXd taken = shrink_.asDiagonal() * (along_.transpose() * rows);
+    rows.noalias() -= along_ * taken;
+  }
+
+ private:
+  Eigen::MatrixXd along_;   // F V, FᵀF = V diag(s) Vᵀ
+  Eigen::VectorXd shrink_;  // (1 − 1/√(1 + s))/s
 };
 
 /// Blocks of features and parameters as blocks of the parameters alone whose rows are whitened by the covariance of all

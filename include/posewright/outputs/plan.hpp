@@ -172,6 +172,21 @@ struct PlannedEffect {
   std::optional<double> by_noise{}, by_effect{}, interpolated{};
 };
 
+/// How much the accuracy of a plan relies on the model being complete: a smooth effect that it lacks moves the tip by
+/// so many times the noise of one pose, and the fit counts none.
+struct Reliance {
+  static constexpr std::array<double, 3> times = {1, 2, 4};
+  double noise = 0.0;            ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
+  double length = 0.0;           ///< over which the effect changes, rad
+  bool at_test_poses = false;    ///< else at candidates
+  int places = 0;                ///< how many of them
+  double error = 0.0;            ///< predicted position error with a complete model, root mean square, m
+  std::array<double, 3> with{};  ///< the same with an effect of `times` the noise
+
+  /// What the estimate makes of the effect, 1: as large an error as the effect itself where it is not fitted at all.
+  double amplification() const { return std::sqrt((with[0] * with[0] - error * error) / 3) / noise; }
+};
+
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
@@ -196,6 +211,7 @@ struct Plan {
   Certificate certificate;
   std::optional<Discrimination> discrimination;  ///< if a truth is named
   std::optional<PlannedEffect> unmodelled{};     ///< in σ, log det and predicted errors
+  std::optional<Reliance> reliance{};            ///< if the first variant counts no effect
   std::vector<VariantResult> variants{};         ///< of a plan for several
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones

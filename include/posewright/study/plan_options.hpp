@@ -17,8 +17,11 @@ struct PlanOptions {
   bool smallest = false;  ///< the smallest number of poses that reaches design: require
   std::optional<Repeats> repeats;
   std::optional<Scaling> scaling;
-  std::optional<bool> prior;           ///< count tolerances as prior knowledge
-  bool reserve = false;                ///< maximise what is left when the pose that hurts most is lost
+  std::optional<bool> prior;  ///< count tolerances as prior knowledge
+  bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
+  /// Nuisance parameters and an unmodelled effect count as those of interest do, with ds: poses whose readings are
+  /// least certain.
+  bool everything_counts = false;
   std::optional<PoseList> measured{};  ///< poses that are measured already; none: as in the file
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
   /// many to draw.

@@ -86,6 +86,9 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
 /// forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
 void keep_away_from_measured(Study& study, Repeats repeats);
 
+/// The configurations that are measured already, then these.
+Configurations with_measured(const Study& study, const Configurations& poses);
+
 /// One configuration more.
 void append(Configurations& list, std::span<const double> q);
 /// The i-th of `from` with its row.

@@ -9,10 +9,12 @@
 #include "posewright/calibration/compensator_constants.hpp"
 #include "posewright/calibration/curvature.hpp"
 #include "posewright/calibration/in_steps.hpp"
+#include "posewright/calibration/interpolation.hpp"
 #include "posewright/calibration/leave_out.hpp"
 #include "posewright/calibration/orientation.hpp"
 #include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/calibration/revisits.hpp"
 #include "posewright/calibration/score_tests.hpp"
 #include "posewright/calibration/smooth_effect.hpp"
 #include "posewright/lists/parameters_file.hpp"
@@ -23,6 +25,8 @@ namespace posewright {
 
 struct CalibrateOptions {
   std::filesystem::path data;
+  /// More files of the same robot, each a campaign with a base of its own: the instrument was moved between them.
+  std::vector<std::filesystem::path> campaigns{};
   std::string variant;  ///< empty: as in the file
   Weighting weighting = Weighting::weighted;
   /// Tolerances of what was manufactured count, and those that were stated; none: plain least squares.
@@ -30,6 +34,7 @@ struct CalibrateOptions {
   std::filesystem::path validate;  ///< more data that are not fitted; empty: none
   int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
   bool in_steps = false;           ///< identify base and tool, geometry, stiffness one after the other, too
+  bool interpolate = false;        ///< predict with what the parameters leave as well: a variant with `unmodelled`
 };
 
 /// One parameter of a calibrated variant.
@@ -94,7 +99,10 @@ struct Calibration {
   SmoothEffect smooth;             ///< that the residuals of a fit hold which counts none
   /// What the fit counts as such an effect; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
-  TestResult lack_of_fit;  ///< posewright::lack_of_fit()
+  Revisits revisits;                             ///< configurations measured again after others
+  std::vector<std::string> not_in_auto{};        ///< parameters of the model that an automatic variant leaves out
+  std::optional<Interpolation> interpolation{};  ///< if it was asked for
+  TestResult lack_of_fit;                        ///< posewright::lack_of_fit()
   Curvature curvature;
   std::vector<ResidualSet> residuals;
   bool placed = false;                ///< there are residuals with base, tool and nuisance alone

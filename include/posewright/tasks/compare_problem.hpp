@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/study/effects.hpp"
 #include "posewright/study/plan_options.hpp"
@@ -50,6 +51,7 @@ struct PlanScore {
   double worst = 0.0, mean = 0.0;    ///< σ/tolerance of interest parameters: largest, geometric mean
   double condition = 0.0;            ///< σ1/σm
   std::optional<double> rho0;        ///< predicted error at the test poses, m
+  std::optional<Reliance> reliance;  ///< on the variant being complete; none: it counts an effect itself
 };
 
 /// What a parameter of the fitted variant takes up of effects that it does not know.

@@ -45,6 +45,36 @@ export function testPosePlot(list) {
   return plot.element;
 }
 
+/** What a smooth effect that the model lacks would do. @param {any} reliance of plan.json */
+export function reliancePlot(reliance) {
+  const squared = (reliance.with[0].error ** 2 - reliance.error ** 2) / reliance.with[0].times ** 2;
+  const most = Math.max(...reliance.with.map((w) => w.times));
+  const x = Array.from({ length: 8 * most + 1 }, (_, k) => k / 8);
+  const given = new Map([[0, reliance.error], ...reliance.with.map((w) => [w.times, w.error])]);
+  const plot = figure({
+    id: 'plot-reliance',
+    title: 'If the model is not complete',
+    caption:
+      `Every model lacks something. The line shows the position error to expect at ${reliance.places} ${reliance.at} if a smooth ` +
+      `effect that no parameter describes moves the tip: by so many times ${number(mm(reliance.noise))} mm, the noise of one pose. ` +
+      'Where it rises steeply, the accuracy relies on the model being complete.',
+    options: {
+      series: [{ label: 'times the noise' }, curve('position error, mm', 'plan'), dots('as stated in the plan, mm', 'accent')],
+      scales: { x: { time: false }, y: { range: (u, low, high) => [0, 1.1 * high] } },
+      axes: [
+        { label: 'effect, times the noise of one pose', incrs: [0.5, 1] },
+        { label: 'position error, mm', size: 62 },
+      ],
+    },
+    data: [x, x.map((t) => mm(Math.sqrt(reliance.error ** 2 + squared * t * t))), x.map((t) => mm(given.get(t)))],
+    numbers: () => ({
+      header: ['#effect, times the noise', '#position error, mm'],
+      rows: [...given].map(([times, error]) => [times, number(mm(error))]),
+    }),
+  });
+  return plot.element;
+}
+
 /** @type {Object<string, {title: string, axis: string, of: (p: any) => number|null, log: boolean}>} */
 const quantities = {
   rho0: { title: 'position error', axis: 'position error, mm', of: (p) => mm(p.rho0), log: true },

@@ -1,12 +1,15 @@
 import { h, section } from '../dom.js';
-import { curvePlot, testPosePlot } from '../plots/accuracy.js';
+import { curvePlot, reliancePlot, testPosePlot } from '../plots/accuracy.js';
 import { contributionPlot, sensitivityPlot, spectrumPlot } from '../plots/information.js';
 
 /** @param {import('../pose_list.js').PoseList} list */
 export function accuracySection(list) {
-  const plots = [list.report.plan.accuracy.test_poses.length > 0 ? testPosePlot(list) : null, curvePlot(list)].filter(
-    Boolean,
-  );
+  const { plan } = list.report;
+  const plots = [
+    plan.accuracy.test_poses.length > 0 ? testPosePlot(list) : null,
+    curvePlot(list),
+    plan.reliance ? reliancePlot(plan.reliance) : null,
+  ].filter(Boolean);
   if (plots.length === 0) return null;
   return section(
     'accuracy',

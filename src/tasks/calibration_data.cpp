@@ -1,0 +1,107 @@
+#include "calibration_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+std::vector<std::filesystem::path> files_of(const CalibrateOptions& options) {
+  std::vector<std::filesystem::path> files{options.data};
+  files.insert(files.end(), options.campaigns.begin(), options.campaigns.end());
+  return files;
+}
+
+/// Rows that were averaged are the repeats, whatever the problem planned.
+void note_repeats(const MeasuredData& data, int planned, const std::string& before, std::vector<std::string>& notes) {
+  if (data.repeated.empty()) return;
+  if (!data.same_repeats)
+    notes.push_back(fmt::format(
+        "{}poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own", before,
+        data.repeats));
+  else if (data.repeats != planned)
+    notes.push_back(fmt::format("{}{:.0f} readings a pose are averaged, not {} as the problem says", before,
+                                data.repeats, planned));
+}
+
+/// Standard deviation of every reading within poses of all files.
+void add_spread(const MeasuredData& data, std::vector<double>& squares, std::vector<double>& files) {
+  squares.resize(std::max(squares.size(), data.spread.size()), 0.0);
+  files.resize(squares.size(), 0.0);
+  for (std::size_t i = 0; i < data.spread.size(); ++i)
+    if (std::isfinite(data.spread[i])) {
+      squares[i] += std::pow(data.spread[i], 2) * data.rows;
+      files[i] += data.rows;
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> campaigns_of(const CalibrateOptions& options) {
+  std::vector<std::string> names;
+  if (options.campaigns.empty()) return names;
+  for (const std::filesystem::path& file : files_of(options)) {
+    std::string name = file.stem().string();
+    if (std::find(names.begin(), names.end(), name) != names.end()) name += "_" + std::to_string(names.size() + 1);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+CalibrationData read_calibration_data(const Problem& problem, const CalibrateOptions& options,
+                                      const IdentificationModel& model, Calibration& result) {
+  CalibrationData all;
+  const std::vector<std::filesystem::path> files = files_of(options);
+  const bool several = files.size() > 1;
+  const auto of_campaign = [&](std::vector<double>& q, std::size_t campaign) {
+    if (several) q.push_back(double(campaign));
+  };
+  double inverse_repeats = 0;
+  std::size_t poses = 0;
+  std::vector<double> squares, counted;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    MeasuredData data = read_measured_data(files[f], problem, model);
+    const std::string before = several ? files[f].string() + ": " : "";
+    for (const std::string& note : data.notes) result.notes.push_back(before + note);
+    note_repeats(data, problem.measurement.repeats, before, result.notes);
+    result.rows += data.rows;
+    poses += data.poses.size();
+    inverse_repeats += double(data.poses.size()) / data.repeats;
+    add_spread(data, squares, counted);
+    for (RepeatedReadings& visit : data.repeated) {
+      of_campaign(visit.q, f);
+      all.repeated.push_back(std::move(visit));
+    }
+    std::move(data.images.begin(), data.images.end(), std::back_inserter(all.images));
+    const std::size_t fitted_before = all.fitted.size();
+    for (std::size_t k = 0; k < data.poses.size(); ++k) {
+      of_campaign(data.poses[k].q, f);
+      const bool back = data.held_back[k] || (options.hold_back > 0 && (k + 1) % std::size_t(options.hold_back) == 0);
+      (back ? all.held_back : all.fitted).push_back(std::move(data.poses[k]));
+    }
+    if (all.fitted.size() == fitted_before) throw InputError({files[f].string(), 0}, "has no pose to fit", "use: fit");
+  }
+  result.repeats = double(poses) / inverse_repeats;
+  for (std::size_t i = 0; i < squares.size(); ++i)
+    result.spread.push_back(counted[i] > 0 ? std::sqrt(squares[i] / counted[i])
+                                           : std::numeric_limits<double>::quiet_NaN());
+  if (!options.validate.empty()) {
+    MeasuredData more = read_measured_data(options.validate, problem, model);
+    for (const std::string& note : more.notes) result.notes.push_back(options.validate.string() + ": " + note);
+    for (MeasuredPose& pose : more.poses) {
+      of_campaign(pose.q, 0);
+      all.validation.push_back(pose);
+      all.held_back.push_back(std::move(pose));
+    }
+  }
+  result.readings = model.readings();
+  result.poses = int(all.fitted.size());
+  result.held_back = int(all.held_back.size());
+  return all;
+}
+
+}  // namespace posewright

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "posewright/lists/measured_data.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
+
+namespace posewright {
+
+/// All that a calibration is given to read. Where there are several files, each is a campaign: the last coordinate of
+/// every configuration says which (with_campaigns()).
+struct CalibrationData {
+  std::vector<MeasuredPose> fitted, held_back;  ///< campaigns one after the other
+  std::vector<MeasuredPose> validation;         ///< those held back that come from a file of their own
+  std::vector<RepeatedReadings> repeated;
+  std::vector<PlatformImage> images;
+};
+
+/// Names of the campaigns: the files' without folder and ending, numbered where two are alike; empty: one file.
+std::vector<std::string> campaigns_of(const CalibrateOptions& options);
+
+/// Reads the files and says in `result` how many rows and poses there are and what the user must know of them.
+/// @param model  of one campaign
+/// Throws InputError with file and line.
+CalibrationData read_calibration_data(const Problem& problem, const CalibrateOptions& options,
+                                      const IdentificationModel& model, Calibration& result);
+
+}  // namespace posewright

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "continuous.hpp"
 #include "exchange.hpp"
+#include "extended_task.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/support/parallel.hpp"
 #include "reduced_task.hpp"
@@ -20,13 +22,20 @@ using Clock = std::chrono::steady_clock;
 // Shares of the time that is left, for the stages that could take any time.
 constexpr double exchange_share = 0.5, tabu_share = 0.5;
 constexpr std::size_t tabu_starts = 4;
+// Starts that are settled among candidates, and of their results those whose poses are moved.
+constexpr std::size_t settled_starts = 12, moved_starts = 6;
+// From the moved poses, and from the weights among candidates old and new.
+constexpr int new_candidate_starts = 2, new_candidate_kicks = 0;
+// Rounds of new candidates go on while one gains this share of the best plan.
+constexpr double candidate_round_gain = 1e-4;
+constexpr std::uint64_t most_candidate_rounds = 8;
 
 /// The caller's monitor with an earlier deadline.
 class Part {
  public:
-  Part(const Monitor& whole, double share) {
+  Part(const Monitor& whole, double share, bool silent = false) {
     monitor_.interrupted = whole.interrupted;
-    monitor_.on_progress = [&whole](const Progress& progress) { whole.report(progress); };
+    if (!silent) monitor_.on_progress = [&whole](const Progress& progress) { whole.report(progress); };
     if (!whole.deadline) return;
     const auto now = Clock::now();
     monitor_.deadline = now + std::chrono::duration_cast<Clock::duration>(share * (*whole.deadline - now));
@@ -35,55 +44,6 @@ class Part {
 
  private:
   Monitor monitor_;
-};
-
-/// Candidates of a smaller pool together with configurations that are none.
-class ExtendedTask {
- public:
-  ExtendedTask(const DesignTask& task, std::vector<int> kept, std::vector<std::vector<double>> added)
-      : task_(task), kept_(std::move(kept)), added_(std::move(added)), spacing_(task.space->spacing()) {
-    const BlockArray part = task.candidates.blocks->subset(kept_);
-    blocks_ = BlockArray(kept_.size() + added_.size(), part.rows(), part.columns());
-    std::copy_n(part.data(), part.count() * std::size_t(part.rows() * part.stride()), blocks_.data());
-    const auto probe = task.space->probe();
-    for (std::size_t i = 0; i < added_.size(); ++i)
-      probe->block(added_[i], blocks_.row(kept_.size() + i, 0), blocks_.stride());
-    task_.candidates.blocks = &blocks_;
-    task_.approximate = nullptr;
-    task_.space = nullptr;
-    task_.workspace = nullptr;
-    if (spacing_.unit.size() == 0) return;
-    spacing_.points.resize(Eigen::Index(blocks_.count()), spacing_.unit.size());
-    for (std::size_t i = 0; i < blocks_.count(); ++i) {
-      const auto q = configuration(*task.space, int(i));
-      std::copy(q.begin(), q.end(), spacing_.points.row(Eigen::Index(i)).data());
-    }
-    task_.candidates.spacing = &spacing_;
-  }
-
-  const DesignTask& task() const { return task_; }
-  PoseSet pose_set(const DesignTask& whole, const std::vector<int>& members) const {
-    PoseSet poses;
-    poses.blocks = blocks_.subset(members);
-    for (const int i : members) {
-      const auto q = configuration(*whole.space, i);
-      poses.configurations.emplace_back(q.begin(), q.end());
-      poses.candidates.push_back(std::size_t(i) < kept_.size() ? kept_[std::size_t(i)] : -1);
-    }
-    return poses;
-  }
-
- private:
-  std::span<const double> configuration(const ConfigurationSpace& space, int i) const {
-    const auto at = std::size_t(i);
-    return at < kept_.size() ? space.candidate(kept_[at]) : std::span<const double>(added_[at - kept_.size()]);
-  }
-
-  DesignTask task_;
-  std::vector<int> kept_;
-  std::vector<std::vector<double>> added_;
-  BlockArray blocks_;
-  Spacing spacing_;
 };
 
 class Run {
@@ -95,15 +55,29 @@ class Run {
 
   Design carry_out() {
     greedy();
-    // A limit is there to be used; without one the work is what the options say.
-    for (std::uint64_t round = 0; round == 0 || (options_.use_all_time && monitor_.deadline && !monitor_.should_stop());
-         ++round) {
+    // Moves between the candidates see Φ of the whole design only: not what is left without a pose.
+    const bool moves = task_.space != nullptr && task_.criterion->of_information_alone();
+    const bool all_time = options_.use_all_time && monitor_.deadline;
+    if (moves) {
+      move_starts();
+      const double enough = candidate_round_gain * task_.criterion->function().degree();
+      for (std::uint64_t round = 0; round < most_candidate_rounds && !monitor_.should_stop(); ++round) {
+        const double before = moved_->value;
+        beyond(options_.seed + (round << 40), new_candidate_starts, new_candidate_kicks);
+        if (!(moved_->value - before > enough)) break;
+      }
+      best_.stopped = monitor_.should_stop();
+    }
+    // A limit is there to be used. Without one the work is what the options say, where candidates are all there is.
+    for (std::uint64_t round = 0; (round == 0 && !moves) || (all_time && !monitor_.should_stop()); ++round) {
       exchange(options_.seed + (round << 32));
       tabu(options_.seed + (round << 32));
-      // Moves between the candidates see Φ of the whole design only: not what is left without a pose.
-      if (task_.space != nullptr && task_.criterion->of_information_alone()) beyond(options_.seed + (round << 32));
+      if (moves) {
+        improve_from(pose_set_of(task_, best_.members));
+        beyond(options_.seed + (round << 32), std::max(1, options_.restarts / 2), options_.kicks);
+      }
       // Rounds after the first are a gift of the time limit: to be stopped in one of them cuts nothing short.
-      if (round == 0) best_.stopped = monitor_.should_stop();
+      if (round == 0 && !moves) best_.stopped = monitor_.should_stop();
     }
     if (moved_ && moved_->value > best_.value) write_to(best_, *moved_, task_.candidates.blocks->count());
     return std::move(best_);
@@ -169,35 +143,110 @@ class Run {
     record("tabu");
   }
 
+  /// Local optima from the greedy set and from optimal weights over the workspace, the best few with their poses moved.
+  void move_starts() {
+    std::vector<PoseSet> sets;
+    const ReducedTask reduced(task_, best_.members);
+    for (Outcome& outcome : settled(reduced.task(), reduced.reduced(best_.members))) {
+      outcome.members = reduced.original(outcome.members);
+      take({outcome.members, outcome.value, 0, true});
+      sets.push_back(pose_set_of(task_, outcome.members));
+    }
+    record("exchange");
+    if (task_.workspace != nullptr && !task_.workspace->support.empty()) {
+      const ExtendedTask extended(task_, promising(task_.workspace->candidates), task_.workspace->support);
+      for (const Outcome& outcome : settled(extended.task(), {}))
+        sets.push_back(extended.pose_set(task_, outcome.members));
+    }
+    std::vector<long> moves(sets.size());
+    // The rest of them is worth it for the best few alone.
+    move_all(sets, moves, sets.size(), improve_roughly);
+    std::vector<std::size_t> order(sets.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return sets[a].value > sets[b].value; });
+    for (const std::size_t i : order) {
+      best_.exchanges += moves[i];
+      remember(sets[i]);
+    }
+    moved_ = std::move(sets[order.front()]);
+    best_.exchanges += improve(task_, *moved_, monitor_);
+    remember(*moved_);
+    record("continuous");
+  }
+
+  /// Progress of one of them is told; those that do not come to their turn before a stop stay as they are.
+  void move_all(std::vector<PoseSet>& sets, std::vector<long>& moves, std::size_t count,
+                long (*move)(const DesignTask&, PoseSet&, const Monitor&)) const {
+    parallel_for(count, thread_count(options_.threads), [&](std::size_t i, int) {
+      const Part silent(monitor_, 1.0, true);
+      sets[i].value = value_of(sets[i]);
+      if (i == 0 || !monitor_.should_stop()) moves[i] = move(task_, sets[i], i == 0 ? monitor_ : silent.monitor());
+    });
+  }
+
+  double value_of(const PoseSet& poses) const {
+    const auto all = poses.blocks.all();
+    Eigen::MatrixXd M = all.transpose() * all;
+    if (task_.candidates.prior != nullptr) M += *task_.candidates.prior;
+    return task_.criterion->function().value(M);
+  }
+
+  /// The best few local optima of different value, from one given set (if any) and from the weights.
+  std::vector<Outcome> settled(const DesignTask& task, const std::vector<int>& given) {
+    std::vector<Outcome> found(std::max(settled_starts, std::size_t(options_.restarts)));
+    parallel_for(found.size(), thread_count(options_.threads), [&](std::size_t i, int) {
+      if (i > 0 && monitor_.should_stop()) return;
+      Random random(options_.seed, i);
+      // Rounded weights first, then draws by them.
+      const auto state = task.criterion->start(
+          task.candidates, i == 1 && !given.empty() ? given : start_of_restart(task, i == 0 ? 0 : 2 * i + 1, random));
+      const long exchanges = settle(*state, monitor_);
+      found[i] = outcome_of(*state, exchanges);
+    });
+    std::erase_if(found, [](const Outcome& outcome) { return !outcome.done; });
+    for (const Outcome& outcome : found) best_.exchanges += outcome.exchanges;
+    best_.restarts += int(found.size());
+    std::stable_sort(found.begin(), found.end(), [](const Outcome& a, const Outcome& b) { return a.value > b.value; });
+    const auto same = [](const Outcome& a, const Outcome& b) { return a.value - b.value < smallest_gain; };
+    found.erase(std::unique(found.begin(), found.end(), same), found.end());
+    if (found.size() > moved_starts) found.resize(moved_starts);
+    return found;
+  }
+
+  /// Where poses were moved to: candidates of the next round, so that good places of different sets meet in one.
+  void remember(const PoseSet& poses) {
+    for (std::size_t i = 0; i < poses.configurations.size(); ++i)
+      if (poses.candidates[i] < 0 &&
+          std::find(places_.begin(), places_.end(), poses.configurations[i]) == places_.end())
+        places_.push_back(poses.configurations[i]);
+  }
+
   void improve_from(PoseSet poses) {
     best_.exchanges += improve(task_, poses, monitor_);
+    remember(poses);
     if (!moved_ || poses.value > moved_->value) moved_ = std::move(poses);
   }
 
   /// Poses between the candidates, and new ones where the optimal weights want them.
-  void beyond(std::uint64_t seed) {
-    improve_from(pose_set_of(task_, best_.members));
-    record("continuous");
+  void beyond(std::uint64_t seed, int restarts, int kicks) {
     if (task_.workspace == nullptr || task_.workspace->support.empty() || monitor_.should_stop()) return;
     std::vector<std::vector<double>> added = task_.workspace->support;
-    for (std::size_t i = 0; i < moved_->configurations.size(); ++i)
-      if (moved_->candidates[i] < 0) added.push_back(moved_->configurations[i]);
-    const std::size_t others = added.size();
+    added.insert(added.end(), places_.begin(), places_.end());
     const std::vector<int> kept = promising(moved_->candidates);
-    const ExtendedTask extended(task_, kept, std::move(added));
     std::vector<int> start;
-    std::size_t next = task_.workspace->support.size();
-    for (const int candidate : moved_->candidates)
-      start.push_back(candidate >= 0 ? int(std::lower_bound(kept.begin(), kept.end(), candidate) - kept.begin())
-                                     : int(kept.size() + next++));
-    if (next != others) throw std::logic_error("auto: poses and configurations do not match");
+    for (std::size_t i = 0; i < moved_->candidates.size(); ++i)
+      start.push_back(moved_->candidates[i] >= 0
+                          ? int(std::lower_bound(kept.begin(), kept.end(), moved_->candidates[i]) - kept.begin())
+                          : int(kept.size()) +
+                                int(std::find(added.begin(), added.end(), moved_->configurations[i]) - added.begin()));
+    const ExtendedTask extended(task_, kept, std::move(added));
     PlannerOptions options = options_;
     options.seed = mix_bits(seed) + 2;
-    options.restarts = std::max(1, options_.restarts / 2);
+    options.restarts = restarts;
     const Design found = run_restarts(extended.task(), options, monitor_, "new candidates",
                                       [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
                                         const auto from = i % 2 == 0 ? start : start_of_restart(task, i, random);
-                                        return exchange_search(task, from, options.kicks, random, watch);
+                                        return exchange_search(task, from, kicks, random, watch);
                                       });
     best_.exchanges += found.exchanges;
     PoseSet poses = extended.pose_set(task_, found.members);
@@ -225,6 +274,7 @@ class Run {
   Clock::time_point begin_;
   Design best_;
   std::optional<PoseSet> moved_;
+  std::vector<std::vector<double>> places_;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace posewright {
 namespace {
 
 constexpr int evaluations_per_pose = 300;
-constexpr int most_rounds = 20;
+constexpr int most_rounds = 20, rough_rounds = 2;
 // A round that gains less than this of Φ is the last.
 constexpr double round_gain = 1e-6;
 constexpr int joint_evaluations = 200;
@@ -212,11 +212,13 @@ void write_to(Design& design, const PoseSet& poses, std::size_t candidates) {
   design.value = poses.value;
 }
 
-long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
+namespace {
+
+long move_in_turn(const DesignTask& task, PoseSet& poses, int rounds, const Monitor& monitor) {
   const auto probe = task.space->probe();
   const int r = poses.blocks.rows(), m = poses.blocks.columns();
   long moves = 0;
-  for (int round = 0; round < most_rounds && !monitor.should_stop(); ++round) {
+  for (int round = 0; round < rounds && !monitor.should_stop(); ++round) {
     const double before = poses.value;
     for (std::size_t i = 0; i < poses.configurations.size() && !monitor.should_stop(); ++i) {
       const auto block = poses.blocks.block(i);
@@ -231,11 +233,22 @@ long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
       probe->block(found.q, poses.blocks.row(i, 0), poses.blocks.stride());
       ++moves;
     }
-    monitor.report({"continuous", double(round + 1), double(most_rounds), poses.value, task.bound, {}});
+    monitor.report({"continuous", double(round + 1), double(rounds), poses.value, task.bound, {}});
     if (poses.value - before < round_gain) break;
   }
+  return moves;
+}
+
+}  // namespace
+
+long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
+  long moves = move_in_turn(task, poses, most_rounds, monitor);
   if (task.space->is_box() && !monitor.should_stop() && improve_jointly(task, poses)) ++moves;
   return moves;
+}
+
+long improve_roughly(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
+  return move_in_turn(task, poses, rough_rounds, monitor);
 }
 
 Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {

@@ -21,6 +21,8 @@ void write_to(Design& design, const PoseSet& poses, std::size_t candidates);
 /// where the feasible set is a box, then all at once by MMA. Never leaves the feasible set, never returns less
 /// than it got, keeps poses apart where they may not repeat. Returns the number of moves accepted.
 long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor);
+/// The first rounds of it, each pose in turn: enough to tell which of several sets is worth the rest.
+long improve_roughly(const DesignTask& task, PoseSet& poses, const Monitor& monitor);
 
 /// The best design of `exchange`, improved. Throws CannotDo if the task has no configurations.
 class ContinuousPlanner : public Planner {

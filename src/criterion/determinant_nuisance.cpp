@@ -9,8 +9,7 @@
 namespace posewright {
 namespace {
 
-/// Gains come from a fresh factor of the remaining members; the derivative of the concave criterion prunes:
-/// Φ(swap k → j) − Φ ≤ d_j − d_k, d being the sensitivities of the interest information.
+/// Gains come from a fresh factor of the remaining members, for those candidates that LeaveOneOut::next() leaves.
 class NuisanceState : public DesignState {
  public:
   NuisanceState(const CandidateView& view, std::vector<int> members)
@@ -45,10 +44,11 @@ class NuisanceState : public DesignState {
     const int k = members()[std::size_t(position)];
     rest_.leave(k);
     Swap best{-1, min_gain};
-    for (int j = 0; j < int(blocks().count()); ++j) {
-      if (d_[std::size_t(j)] - d_[std::size_t(k)] <= best.gain || blocked()[std::size_t(j)] != 0) continue;
-      const double gain = rest_.gain(j);
-      if (gain > best.gain) best = {j, gain};
+    const std::size_t count = blocks().count();
+    for (std::size_t j = rest_.next(0, best.gain, d_, blocked()); j < count;
+         j = rest_.next(j + 1, best.gain, d_, blocked())) {
+      const double gain = rest_.gain(int(j));
+      if (gain > best.gain) best = {int(j), gain};
     }
     if (best.enter < 0) return {};
     if (!std::isfinite(rest_.value())) return best;

@@ -14,6 +14,10 @@ namespace {
 
 // Ridge where a member is indispensable; in whitened coordinates an average pose adds the identity.
 constexpr double ridge = 1e-6;
+// Pivots of I − D_k below which what is left is told from a change of rank r too roughly for a bound.
+constexpr double nearly_indispensable = 1e-4;
+// What rounding may take off a bound, relatively and of the size of one pose's information.
+constexpr double rounding = 1e-9;
 
 int round16(int x) { return (x + 15) / 16 * 16; }
 
@@ -71,9 +75,51 @@ void LeaveOneOut::leave(int k) {
   const Eigen::Index m = information_.cols();
   const Eigen::MatrixXd rest = swapped(k, -1);
   Eigen::LLT<Eigen::MatrixXd> factor(rest);
-  if (!std::isfinite(value_) || !is_regular(factor)) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
+  const bool regular = std::isfinite(value_) && is_regular(factor);
+  if (!regular) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
   without_ = interest_log_det(factor, nuisance_);
   tile(factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m)));
+  prepare_bound(k, regular);
+}
+
+void LeaveOneOut::prepare_bound(int k, bool regular) {
+  leaving_ = k;
+  half_.clear();
+  if (k < 0 || !regular) return;
+  const auto r = Eigen::Index(blocks_.rows());
+  const Eigen::MatrixXd W = inverse_factor_.triangularView<Eigen::Lower>() * blocks_.block(std::size_t(k)).transpose();
+  half_.assign(std::size_t(2 * r * blocks_.stride()), 0.0);
+  // Of all columns, then of the nuisance ones alone: their factor is the leading part of the whole one.
+  for (const Eigen::Index columns : {W.rows(), Eigen::Index(nuisance_)}) {
+    if (columns == 0) continue;
+    const auto own = W.topRows(columns);
+    const Eigen::LLT<Eigen::MatrixXd> rest(Eigen::MatrixXd(Eigen::MatrixXd::Identity(r, r) - own.transpose() * own));
+    if (rest.info() != Eigen::Success || !(rest.matrixLLT().diagonal().minCoeff() > nearly_indispensable)) {
+      half_.clear();
+      return;
+    }
+    const Eigen::MatrixXd U =
+        inverse_factor_.topLeftCorner(columns, columns).triangularView<Eigen::Lower>().transpose() *
+        Eigen::MatrixXd(rest.matrixL().solve(own.transpose()).transpose());
+    const Eigen::Index first = columns == W.rows() ? 0 : r;
+    for (Eigen::Index l = 0; l < r; ++l)
+      std::copy_n(U.col(l).data(), columns, half_.data() + (first + l) * blocks_.stride());
+  }
+}
+
+std::size_t LeaveOneOut::next(std::size_t first, double wanted, const std::vector<double>& d,
+                              const std::vector<unsigned char>& blocked) const {
+  const int r = blocks_.rows();
+  double least = leaving_ < 0 ? wanted : d[std::size_t(leaving_)] + wanted;
+  if (std::isfinite(value_)) least = std::max(least, (1 - rounding) * r * std::expm1(wanted / r) - rounding);
+  if (half_.empty()) {
+    for (std::size_t j = first; j < blocks_.count(); ++j)
+      if (d[j] > least && blocked[j] == 0) return j;
+    return blocks_.count();
+  }
+  const double least_sum = (1 - rounding) * r * std::expm1((wanted + reference_ - without_) / r) - rounding;
+  return kernels().next_between(blocks_.data(), first, blocks_.count(), r, blocks_.stride(), half_.data(), r,
+                                nuisance_ > 0 ? r : 0, d.data(), blocked.data(), least, least_sum);
 }
 
 void LeaveOneOut::tile(const Eigen::MatrixXd& inverse_factor) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gram.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
@@ -23,17 +24,19 @@ class LogDetExpansion : public Expansion {
   void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
     const BlockArray::RowMatrix Z = rows * inverse_;
     if (r == 1) {
-      const Eigen::MatrixXd all = Z * Z.transpose();
-      H = all.cwiseAbs2();
+      BlockArray::RowMatrix padded = padded_rows(Z.rows(), Z.cols());
+      padded.leftCols(Z.cols()) = Z;
+      gram(padded, H);
+      H = H.cwiseAbs2().eval();
       if (nuisance_ == 0) return;
-      const Eigen::MatrixXd part = Z.leftCols(nuisance_) * Z.leftCols(nuisance_).transpose();
+      padded.rightCols(padded.cols() - nuisance_).setZero();
+      Eigen::MatrixXd part;
+      gram(padded, part);
       H -= part.cwiseAbs2();
       return;
     }
     const BlockArray::RowMatrix products = symmetric_products(Z, r);
-    H.setZero(products.rows(), products.rows());
-    H.selfadjointView<Eigen::Lower>().rankUpdate(products);
-    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+    gram(products, H);
   }
 
  private:
@@ -42,7 +45,7 @@ class LogDetExpansion : public Expansion {
   BlockArray::RowMatrix symmetric_products(const BlockArray::RowMatrix& Z, int r) const {
     const Eigen::Index m = Z.cols(), s = Z.rows() / r;
     const Eigen::Index pairs = m * (m + 1) / 2 - Eigen::Index(nuisance_) * (nuisance_ + 1) / 2;
-    BlockArray::RowMatrix products(s, pairs);
+    BlockArray::RowMatrix products = padded_rows(s, pairs);
     Eigen::MatrixXd square(m, m);
     for (Eigen::Index i = 0; i < s; ++i) {
       const auto zi = Z.middleRows(i * r, r);

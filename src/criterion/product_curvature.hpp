@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gram.hpp"
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/support/dense.hpp"
 
@@ -14,17 +15,21 @@ inline Eigen::VectorXd product_curvature(const BlockArray::RowMatrix& Z, const B
   Eigen::VectorXd d(s);
   for (Eigen::Index i = 0; i < s; ++i) d[i] = G.middleRows(i * r, r).squaredNorm();
   if (r == 1) {
-    const Eigen::MatrixXd first = Z * Z.transpose(), second = G * G.transpose();
-    H = 2 * first.cwiseProduct(second);
+    Eigen::MatrixXd second;
+    for (const BlockArray::RowMatrix* part : {&Z, &G}) {
+      BlockArray::RowMatrix padded = padded_rows(s, part->cols());
+      padded.leftCols(part->cols()) = *part;
+      gram(padded, part == &Z ? H : second);
+    }
+    H = 2 * H.cwiseProduct(second).eval();
     return d;
   }
-  BlockArray::RowMatrix products(s, size);
+  BlockArray::RowMatrix products = padded_rows(s, size);
   for (Eigen::Index i = 0; i < s; ++i)
     BlockArray::Map(products.row(i).data(), Z.cols(), G.cols(), Eigen::OuterStride<>(G.cols())).noalias() =
         Z.middleRows(i * r, r).transpose() * G.middleRows(i * r, r);
-  H.setZero(s, s);
-  H.selfadjointView<Eigen::Lower>().rankUpdate(products, 2.0);
-  H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+  gram(products, H);
+  H *= 2.0;
   return d;
 }
 

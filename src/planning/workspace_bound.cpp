@@ -42,7 +42,8 @@ class Sensitivity : public BlockObjective {
 struct Pool {
   BlockArray blocks;
   std::vector<std::vector<double>> configurations;
-  std::size_t candidates = 0;  // the first of the pool, all others were found
+  std::size_t candidates = 0;   // the first of the pool, all others were found
+  std::vector<int> original{};  ///< indices of those candidates
 };
 
 void append(Pool& pool, const std::vector<std::vector<double>>& found, ConfigurationSpace::Probe& probe) {
@@ -133,7 +134,7 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   order.insert(order.end(), design.support.begin(), design.support.end());
   std::sort(order.begin(), order.end());
   order.erase(std::unique(order.begin(), order.end()), order.end());
-  Pool pool{blocks.subset(order), {}, order.size()};
+  Pool pool{blocks.subset(order), {}, order.size(), order};
   for (const int i : order) pool.configurations.emplace_back(space.candidate(i).begin(), space.candidate(i).end());
   return pool;
 }
@@ -190,8 +191,15 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     append(pool, found, *probe);
   }
   for (std::size_t i = 0; i < design.support.size(); ++i)
-    if (std::size_t(design.support[i]) >= pool.candidates && design.weights[i] > 1e-6)
-      result.support.push_back(pool.configurations[std::size_t(design.support[i])]);
+    if (const auto at = std::size_t(design.support[i]); design.weights[i] > 1e-6) {
+      if (at < pool.candidates) {
+        result.candidates.push_back(pool.original[at]);
+        result.candidate_weights.push_back(design.weights[i]);
+      } else {
+        result.support.push_back(pool.configurations[at]);
+        result.weights.push_back(design.weights[i]);
+      }
+    }
   return result;
 }
 

@@ -16,7 +16,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
  public:
   StudyProbe(const std::vector<SpacePart>& parts, const Configurations& measured, const Spacing& spacing,
              const Eigen::MatrixXd& R)
-      : parts_(parts), measured_(measured), spacing_(spacing), R_(R), scratch_(parts.size()) {
+      : parts_(parts), measured_(measured), spacing_(spacing), rows_of_R_(R), scratch_(parts.size()) {
     int rows = 0;
     for (const SpacePart& part : parts) {
       first_row_.push_back(rows);
@@ -59,19 +59,32 @@ class StudyProbe : public ConfigurationSpace::Probe {
       column += width;
     }
     white_ = raw_;
-    R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(white_);
+    divide_by_upper(white_);
     if (!white_.allFinite()) return false;
     BlockArray::Map(rows, white_.rows(), white_.cols(), Eigen::OuterStride<>(stride)) = white_;
     return true;
   }
 
  private:
+  /// X R⁻¹, row by row: blocks are small, and a library's solver for large ones takes longer to begin than this to end.
+  void divide_by_upper(BlockArray::RowMatrix& X) const {
+    const Eigen::Index m = X.cols();
+    for (Eigen::Index i = 0; i < X.rows(); ++i) {
+      double* x = X.row(i).data();
+      for (Eigen::Index j = 0; j < m; ++j) {
+        const double* r = rows_of_R_.row(j).data();
+        const double value = x[j] /= r[j];
+        for (Eigen::Index k = j + 1; k < m; ++k) x[k] -= value * r[k];
+      }
+    }
+  }
+
   static bool is_direct(const SpacePart& part) { return part.mix.size() == 0 && part.features == nullptr; }
 
   const std::vector<SpacePart>& parts_;
   const Configurations& measured_;
   const Spacing& spacing_;
-  const Eigen::MatrixXd& R_;
+  const BlockArray::RowMatrix rows_of_R_;
   std::vector<Linearisation> scratch_;
   std::vector<int> first_row_;
   std::vector<std::vector<int>> linearised_;  // columns of each part as its model gives them

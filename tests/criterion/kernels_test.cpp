@@ -41,6 +41,12 @@ std::vector<double> all_results(const Kernels& kernels, int rows, int columns) {
   all.insert(all.end(), cross.begin(), cross.end());
   all.push_back(best);
   all.push_back(double(found));
+  std::vector<double> products(33 * 33, 0.0);
+  kernels.gram(blocks.data(), 33, stride, products.data());
+  all.insert(all.end(), products.begin(), products.end());
+  for (const double least : {0.0, 1.0, 5.0, 25.0})
+    all.push_back(double(kernels.next_between(blocks.data(), 0, 33, rows, stride, y.data(), 3, 2, d.data(),
+                                              blocked.data(), 0.1, least)));
   return all;
 }
 
@@ -61,6 +67,35 @@ TEST(Kernels, TracesEqualMatrixProducts) {
     for (int i = 0; i < 19; ++i) padded[std::size_t(k * 32 + i)] = t(k, i);
   kernels().traces(blocks.data(), 10, 3, blocks.stride(), padded.data(), 32, 19, d.data());
   for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(d[i], (blocks.block(i) * t).squaredNorm(), 1e-12 * d[i]);
+}
+
+TEST(Kernels, GramIsTheProductWithTheTransposedInItsLowerTriangle) {
+  for (const int rows : {1, 2, 3, 7, 20}) {
+    const BlockArray blocks = random_blocks(std::size_t(rows), 1, 13, 4);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(rows, rows);
+    kernels().gram(blocks.data(), std::size_t(rows), blocks.stride(), H.data());
+    const Eigen::MatrixXd expected = blocks.all() * blocks.all().transpose();
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j <= i; ++j) EXPECT_NEAR(H(i, j), expected(i, j), 1e-13);
+  }
+}
+
+TEST(Kernels, NextBetweenStopsAtTheFirstBlockThatIsLargeEnough) {
+  const BlockArray blocks = random_blocks(40, 3, 11, 7), y = random_blocks(1, 5, 11, 9);
+  const std::vector<double> d(40, 0.5);
+  std::vector<unsigned char> blocked(40, 0);
+  blocked[3] = 1;
+  const Eigen::MatrixXd plus = y.all().topRows(3).transpose(), minus = y.all().bottomRows(2).transpose();
+  for (const double least : {-2.0, 0.0, 1.0, 3.0, 10.0, 1e9}) {
+    std::size_t expected = 0;
+    for (; expected < 40; ++expected)
+      if (const auto J = blocks.block(expected);
+          blocked[expected] == 0 && 0.5 + (J * plus).squaredNorm() - (J * minus).squaredNorm() > least)
+        break;
+    EXPECT_EQ(kernels().next_between(blocks.data(), 0, 40, 3, blocks.stride(), y.data(), 3, 2, d.data(), blocked.data(),
+                                     0.1, least),
+              expected);
+  }
 }
 
 }  // namespace

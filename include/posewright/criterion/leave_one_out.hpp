@@ -30,11 +30,19 @@ class LeaveOneOut {
   void leave(int k);
   /// Φ(after) − Φ(now) for candidate j in the place of the member left out.
   double gain(int j);
+  /// Next candidate from `first` on whose gain may be more than `wanted`; the number of candidates if there is none.
+  /// With what is left M₋ and A = I + Z_n Z_nᵀ ⪰ I: gain ≤ Φ(M₋) − Φ(M) + r ln(1 + d₋/r), d₋ = tr(Z Zᵀ) − tr(Z_n Z_nᵀ),
+  /// which a change of rank r gives from the sensitivities d of M; Φ is concave, so gain ≤ d_j − d_k; and no swap gains
+  /// more than adding alone, r ln(1 + d_j/r).
+  /// @param d  sensitivities() now
+  std::size_t next(std::size_t first, double wanted, const std::vector<double>& d,
+                   const std::vector<unsigned char>& blocked) const;
   /// Φ of the design with j in the place of k, from scratch.
   double exact(int k, int j) const;
 
  private:
   void factorise();
+  void prepare_bound(int k, bool regular);
   void tile(const Eigen::MatrixXd& inverse_factor);
   Eigen::MatrixXd swapped(int leave, int enter) const;
 
@@ -45,6 +53,8 @@ class LeaveOneOut {
   double value_ = 0.0;
   double reference_ = 0.0;  ///< value_, or that of M plus ridge where M is singular
   double without_ = 0.0;
+  int leaving_ = -1;
+  std::vector<double> half_;  ///< rows: M⁻¹J_kᵀ(I − D_k)^{−T/2}, then the same of the nuisance columns; empty: no bound
   std::vector<double> t_, scratch_;
   std::vector<int> tile_rows_;
 };

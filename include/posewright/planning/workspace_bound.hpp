@@ -29,6 +29,9 @@ struct WorkspaceBound {
   double max_ratio = 1.0;  ///< largest d found over h
   int searches = 0;        ///< local searches carried out
   std::vector<std::vector<double>> support;  ///< configurations with weight that were not candidates
+  std::vector<double> weights;               ///< theirs; with those of the candidates they sum to one
+  std::vector<int> candidates;               ///< with weight, ascending
+  std::vector<double> candidate_weights;
   bool stopped = false;
 
   double bound_for(int poses) const;

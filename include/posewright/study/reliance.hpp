@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "posewright/outputs/plan.hpp"
+#include "posewright/planning/evaluate.hpp"
 #include "posewright/study/study.hpp"
 
 namespace posewright {

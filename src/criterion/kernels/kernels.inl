@@ -211,8 +211,73 @@ std::size_t next_block(const double* x, std::size_t first, std::size_t n, int ro
   return n;
 }
 
+/// Σ_rows Σ_l (x·y_l)².
+inline double projected_squares(const double* x, int rows, int stride, const double* y, int vectors) {
+  double sum = 0;
+  for (int i = 0; i < rows; ++i, x += stride) {
+    int l = 0;
+    for (; l + 1 < vectors; l += 2) {
+      double a, b;
+      dot2(x, y + l * stride, y + (l + 1) * stride, stride, &a, &b);
+      sum += a * a + b * b;
+    }
+    if (l < vectors) {
+      const double last = dot(x, y + l * stride, stride);
+      sum += last * last;
+    }
+  }
+  return sum;
+}
+
+std::size_t next_between(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
+                         int plus, int minus, const double* d, const unsigned char* blocked, double least_d,
+                         double least_sum) {
+  for (std::size_t j = first; j < n; ++j) {
+    if (d[j] <= least_d || blocked[j] != 0) continue;
+    const double* row = x + j * static_cast<std::size_t>(rows * stride);
+    const double sum = d[j] + projected_squares(row, rows, stride, y, plus);
+    if (sum <= least_sum) continue;
+    if (sum - projected_squares(row, rows, stride, y + plus * stride, minus) > least_sum) return j;
+  }
+  return n;
+}
+
+/// Products of Rows rows from x with Columns rows from y, each row loaded once for all of them.
+template <int Rows, int Columns>
+inline void gram_tile(const double* __restrict x, const double* __restrict y, int length, std::size_t n, double* h) {
+  Lanes sum[Rows][Columns] = {};
+  for (int k = 0; k < length; k += 4) {
+    Lanes right[Columns];
+    for (int j = 0; j < Columns; ++j) right[j] = *reinterpret_cast<const Lanes*>(y + j * length + k);
+    for (int i = 0; i < Rows; ++i) {
+      const Lanes left = *reinterpret_cast<const Lanes*>(x + i * length + k);
+      for (int j = 0; j < Columns; ++j) sum[i][j] += left * right[j];
+    }
+  }
+  for (int i = 0; i < Rows; ++i)
+    for (int j = 0; j < Columns; ++j)
+      h[static_cast<std::size_t>(j) * n + static_cast<std::size_t>(i)] =
+          (sum[i][j][0] + sum[i][j][1]) + (sum[i][j][2] + sum[i][j][3]);
+}
+
+void gram(const double* x, std::size_t n, int length, double* h) {
+  constexpr std::size_t tile = 3;
+  const std::size_t whole = n / tile * tile;
+  for (std::size_t j = 0; j < n; j += j < whole ? tile : 1) {
+    const double* y = x + j * static_cast<std::size_t>(length);
+    for (std::size_t i = j / tile * tile; i < n; i += i < whole ? tile : 1) {
+      const double* row = x + i * static_cast<std::size_t>(length);
+      double* out = h + j * n + i;
+      if (j < whole && i < whole) gram_tile<3, 3>(row, y, length, n, out);
+      else if (j < whole) gram_tile<1, 3>(row, y, length, n, out);
+      else gram_tile<1, 1>(row, y, length, n, out);
+    }
+  }
+}
+
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, next_block, KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, next_block,
+                              next_between,     gram,   KERNELS_TEXT};
 
 }  // namespace posewright

@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double exchange_share = 0.5, tabu_share = 0.5;
 constexpr std::size_t tabu_starts = 4;
 // Starts that are settled among candidates, and of their results those whose poses are moved.
-constexpr std::size_t settled_starts = 12, moved_starts = 6;
+constexpr std::size_t settled_starts = 12, moved_starts = 6, axes_for_one = 40;
 // From the moved poses, and from the weights among candidates old and new.
 constexpr int new_candidate_starts = 2, new_candidate_kicks = 0;
 // Rounds of new candidates go on while one gains this share of the best plan.
@@ -209,7 +209,10 @@ class Run {
     std::stable_sort(found.begin(), found.end(), [](const Outcome& a, const Outcome& b) { return a.value > b.value; });
     const auto same = [](const Outcome& a, const Outcome& b) { return a.value - b.value < smallest_gain; };
     found.erase(std::unique(found.begin(), found.end(), same), found.end());
-    if (found.size() > moved_starts) found.resize(moved_starts);
+    // A move of one pose costs as many evaluations as it has axes, squared; without a gradient many more.
+    const std::size_t cost = task_.space->axes().size() * (task_.space->is_box() ? 1 : 2);
+    const std::size_t most = std::clamp<std::size_t>(axes_for_one / cost, 1, moved_starts);
+    if (found.size() > most) found.resize(most);
     return found;
   }
 

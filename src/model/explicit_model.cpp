@@ -104,6 +104,15 @@ void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, L
   }
 }
 
+bool ExplicitModel::do_multilinear(std::span<const int> selected, std::span<const double> correction) const {
+  // Turns of a visit move targets by an amount that depends on where they point.
+  if (reading_noise_ || repeatability_.rotation > 0 || !measurement_->linear_with_constant_noise()) return false;
+  std::vector<int> of_tip;
+  for (const int i : selected)
+    if (i < tip_parameters_) of_tip.push_back(i);
+  return tip_->multilinear(of_tip, correction.first(std::min(correction.size(), std::size_t(tip_parameters_))));
+}
+
 void ExplicitModel::do_take_loads_at(std::span<const double> correction) {
   tip_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(tip_parameters_)));
 }

@@ -47,6 +47,8 @@ void IdentificationModel::take_loads_at(std::span<const double> correction) {
   do_take_loads_at(total(correction, sum));
 }
 
+bool IdentificationModel::do_multilinear(std::span<const int>, std::span<const double>) const { return false; }
+
 void IdentificationModel::do_take_loads_at(std::span<const double>) {}
 
 std::span<const double> IdentificationModel::total(std::span<const double> correction,

@@ -93,6 +93,19 @@ bool SerialChain::linearise(const Point& at, std::span<const int> selected, Eige
   return true;
 }
 
+bool SerialChain::multilinear(std::span<const int> selected, std::span<const double> correction) const {
+  for (const int i : selected)
+    if (i < layout_.count && columns_[std::size_t(i)].kind == 7) return false;
+  for (std::size_t c = 0; c < coordinates_.size(); ++c) {
+    if (coordinates_[c].choice()) continue;
+    const std::vector<int>& joints = joints_of_coordinate_[c];
+    if (joints.size() != 1 || std::abs(chain_.joints[std::size_t(joints.front())].multiplier) != 1.0) return false;
+    const auto gear = std::size_t(layout_.offset[c] + 1);
+    if (gear < correction.size() && correction[gear] != 0.0) return false;
+  }
+  return true;
+}
+
 void SerialChain::linearise_deflected(std::span<const double> q, std::span<const double> deflection,
                                       std::span<const double> correction, std::span<const int> selected,
                                       Eigen::Isometry3d& X, Twists& twists, Twists* reading_twists) const {

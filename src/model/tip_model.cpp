@@ -5,6 +5,8 @@
 
 namespace posewright {
 
+bool TipModel::multilinear(std::span<const int>, std::span<const double>) const { return false; }
+
 void TipModel::take_loads_at(std::span<const double>) {}
 
 bool TipModel::actuator_values(const Point&, std::span<double>) const { return true; }

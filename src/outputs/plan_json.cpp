@@ -37,7 +37,9 @@ Json certificate_json(const Plan& plan) {
     workspace = {{"efficiency", c.workspace->efficiency},
                  {"bound", c.workspace->bound},
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
-                 {"method", c.workspace->method}};
+                 {"method", c.workspace->method},
+                 {"proved", c.workspace->proved},
+                 {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)}};
   return {{"candidates", candidates}, {"workspace", workspace}};
 }
 

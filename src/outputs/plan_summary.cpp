@@ -55,8 +55,12 @@ std::string certificate_text(const Plan& plan) {
                 : "No plan of these candidates is better: every other one is ruled out.\n";
   if (c.workspace)
     text +=
-        fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof).\n",
-                    searched_percent(c.workspace->efficiency));
+        c.workspace->proved
+            ? fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
+                          proved_percent(c.workspace->efficiency))
+            : fmt::format(
+                  "Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof: {}).\n",
+                  searched_percent(c.workspace->efficiency), c.workspace->why_not);
   return text;
 }
 

@@ -34,6 +34,8 @@ Shown shown_unit(const std::string& unit) {
 
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
 
+std::string proved_percent(double share) { return fmt::format("{:.1f} %", std::floor(share * 1e3) / 10); }
+
 std::string searched_percent(double share) {
   return fmt::format("{:.0f} %", std::min(100.0, std::floor(share * 1e2 + 0.05)));
 }

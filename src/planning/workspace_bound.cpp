@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include "posewright/planning/ascent.hpp"
+#include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -22,6 +26,17 @@ constexpr int pool_per_column = 4;
 constexpr double nearly = 1.02;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
+
+// Angles of a tensor of so many axes are sampled in a second.
+constexpr std::size_t most_axes = 7;
+// d and its polynomial may differ by this share of h, at so many random places.
+constexpr double same_function = 1e-7, rounding_factor = 100.0;
+constexpr int places_compared = 100;
+constexpr std::uint64_t proof_stream = 0x9f00f;
+// Coefficients of all boxes: some ten seconds of one core, whatever the number of joints. Counted and not timed, so
+// that a plan is the same on every machine.
+constexpr double proof_work = 3e8;
+constexpr long fewest_boxes = 3000;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
@@ -139,6 +154,92 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   return pool;
 }
 
+/// d(q) = ‖J(q) T‖² of the axes that move, all others where they are.
+class MovingSensitivity {
+ public:
+  MovingSensitivity(const ConfigurationSpace& space, const Eigen::MatrixXd& T, int rows, int columns)
+      : space_(space), T_(T), rows_(rows), columns_(columns) {
+    for (std::size_t a = 0; a < space.axes().size(); ++a) {
+      const ConfigurationSpace::Axis& axis = space.axes()[a];
+      q_.push_back(axis.lower);
+      if (!axis.continuous || !(axis.upper > axis.lower)) continue;
+      moving_.push_back(a);
+      axes_.push_back({axis.lower, axis.upper, axis.turns});
+    }
+  }
+  const std::vector<HarmonicAxis>& axes() const { return axes_; }
+
+  std::function<double(std::span<const double>)> for_one_thread() const {
+    auto probe = std::shared_ptr<ConfigurationSpace::Probe>(space_.probe());
+    auto block = std::make_shared<BlockArray>(1, rows_, columns_);
+    return [this, probe, block, sensitivity = std::make_shared<Sensitivity>(T_), q = q_](auto values) mutable {
+      for (std::size_t i = 0; i < moving_.size(); ++i) q[moving_[i]] = values[i];
+      if (!probe->block(q, block->row(0, 0), block->stride())) return std::numeric_limits<double>::quiet_NaN();
+      return sensitivity->value(std::as_const(*block).block(0));
+    };
+  }
+
+ private:
+  const ConfigurationSpace& space_;
+  const Eigen::MatrixXd& T_;
+  int rows_, columns_;
+  std::vector<double> q_;
+  std::vector<std::size_t> moving_;
+  std::vector<HarmonicAxis> axes_;
+};
+
+/// Largest difference between the polynomial and d itself at random places; NaN if d has none at one.
+double largest_difference(const HarmonicFunction& polynomial, const std::function<double(std::span<const double>)>& d,
+                          Random& random) {
+  double largest = 0;
+  std::vector<double> q(polynomial.axes().size());
+  for (int i = 0; i < places_compared; ++i) {
+    for (std::size_t a = 0; a < q.size(); ++a)
+      q[a] = random.uniform(polynomial.axes()[a].lower, polynomial.axes()[a].upper);
+    largest = std::max(largest, std::abs(polynomial.value(q) - d(q)));
+  }
+  return largest;
+}
+
+/// The largest d within the limits by its polynomial, where it is one.
+void prove(WorkspaceBound& result, const ApproximateDesign& design, const ConfigurationSpace& space,
+           const BlockArray& blocks, const WorkspaceBoundOptions& options, const Monitor& monitor) {
+  WorkspaceProof& proof = result.proof;
+  proof.why_not = options.prove ? space.not_harmonic() : "not asked for";
+  if (result.stopped || monitor.should_stop()) proof.why_not = "stopped";
+  if (!proof.why_not.empty()) return;
+  const MovingSensitivity d(space, design.factor, blocks.rows(), blocks.columns());
+  if (d.axes().empty() || d.axes().size() > most_axes) {
+    proof.why_not = "more than 7 joints";
+    return;
+  }
+  const HarmonicFunction polynomial(
+      d.axes(), [&] { return d.for_one_thread(); }, options.threads);
+  Random random(options.seed, proof_stream);
+  const double difference = polynomial.defined() ? largest_difference(polynomial, d.for_one_thread(), random)
+                                                 : std::numeric_limits<double>::quiet_NaN();
+  if (!(difference <= same_function * design.degree)) {
+    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
+    return;
+  }
+  HarmonicBoundOptions limits;
+  // Values were interpolated as they are computed: what rounding makes of them there is far below this.
+  limits.slack = rounding_factor * difference + same_function * 1e-3 * design.degree;
+  limits.tolerance = options.tolerance;
+  limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
+  limits.threads = options.threads;
+  const HarmonicBound most = largest_value(polynomial, limits, monitor);
+  const double extra =
+      options.prior.size() > 0 ? (design.factor.transpose() * options.prior * design.factor).trace() : 0.0;
+  proof.boxes = most.boxes;
+  if (!std::isfinite(most.bound)) {
+    proof.why_not = "stopped";
+    return;
+  }
+  proof.max_ratio = std::max(1.0, (most.bound + extra) / design.degree);
+  proof.bound = design.value + design.degree * std::log(proof.max_ratio);
+}
+
 }  // namespace
 
 double WorkspaceBound::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
@@ -190,6 +291,7 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     append(pool, found, *probe);
   }
+  prove(result, design, space, blocks, options, monitor);
   for (std::size_t i = 0; i < design.support.size(); ++i)
     if (const auto at = std::size_t(design.support[i]); design.weights[i] > 1e-6) {
       if (at < pool.candidates) {

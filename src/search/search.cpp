@@ -190,6 +190,28 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   return result;
 }
 
+namespace {
+
+/// Over the whole workspace: proved where the largest d is, else as far as searches tell.
+Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, double offset, bool box) {
+  const WorkspaceProof& proof = found.proof;
+  if (proof.why_not.empty())
+    return {0.0,
+            proof.bound + found.degree * std::log(double(poses)) + offset,
+            proof.max_ratio,
+            fmt::format("largest d(q) over the limits by Bernstein coefficients of {} boxes", proof.boxes),
+            true,
+            ""};
+  return {0.0,
+          found.bound_for(poses) + offset,
+          found.max_ratio,
+          fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, box ? "SLSQP" : "SBPLX"),
+          false,
+          proof.why_not};
+}
+
+}  // namespace
+
 SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
   const CriterionEntry& entry = *find_criterion(request.criterion);
   require_choice(request, parts.front().blocks.count());
@@ -258,10 +280,11 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
     result.certificate.count += more.count();
     result.certificate.found = more.count();
   }
-  if (workspace)
-    result.certificate.workspace = {0.0, workspace->bound_for(request.poses) + offset, workspace->max_ratio,
-                                    fmt::format("largest d(q) of {} local searches ({}); not a proof",
-                                                workspace->searches, space->is_box() ? "SLSQP" : "SBPLX")};
+  if (workspace) result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->is_box());
+  // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
+  // miss.
+  if (auto& space_wide = result.certificate.workspace; space_wide && !space_wide->proved)
+    space_wide->bound = std::max(space_wide->bound, result.certificate.bound);
   for (const SearchStage& stage : result.design.stages)
     result.stages.push_back({stage.name, stage.value + offset,
                              degree > 0

@@ -97,7 +97,8 @@ class StudySpace : public ConfigurationSpace {
   StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
              const Spacing& spacing, Eigen::MatrixXd R)
       : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
-    for (const Coordinate& c : parts_.front().workspace->proposed()) axes_.push_back({c.lower, c.upper, !c.discrete()});
+    for (const Coordinate& c : parts_.front().workspace->proposed())
+      axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad"});
     // Poses that are there already are holes in the box.
     box_ = measured.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
@@ -105,6 +106,17 @@ class StudySpace : public ConfigurationSpace {
 
   const std::vector<Axis>& axes() const override { return axes_; }
   bool is_box() const override { return box_; }
+  std::string not_harmonic() const override {
+    if (parts_.size() > 1) return "several variants or effects";
+    const SpacePart& part = parts_.front();
+    if (part.features != nullptr) return "an unmodelled effect";
+    if (part.mix.size() > 0) return "effects of another variant";
+    for (const Coordinate& c : parts_.front().workspace->proposed())
+      if (c.discrete() && c.values.size() > 1) return "a choice of " + c.name;
+    return part.model->multilinear(part.selected)
+               ? ""
+               : "readings, noise or columns that are not linear in cosines and sines of the joints";
+  }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
   std::unique_ptr<Probe> probe() const override {

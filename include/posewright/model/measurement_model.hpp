@@ -51,6 +51,9 @@ class MeasurementModel {
   virtual void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                               Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
+  /// Whether the noise is the same at every pose, and rows and own columns linear in the tip's pose and in twists.
+  virtual bool linear_with_constant_noise() const { return false; }
+
   /// Own parameters that act like a motion of the tip (a station moves one way, the tip seems to move the other):
   /// true, and the twist where `twist` is not null.
   virtual bool motion(const Sighting& sighting, int index, Twist* twist) const;

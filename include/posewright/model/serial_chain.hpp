@@ -20,6 +20,9 @@ class SerialChain : public TipModel {
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
 
+  /// Arms whose joints follow one coordinate each, at its own speed, without gear errors.
+  bool multilinear(std::span<const int> selected, std::span<const double> correction) const override;
+
   /// The same with every joint turned further than it reads by `deflection` (rad or m per coordinate; empty: zero).
   void linearise_deflected(std::span<const double> q, std::span<const double> deflection,
                            std::span<const double> correction, std::span<const int> selected,

@@ -38,6 +38,10 @@ class TipModel {
   virtual bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
                          Twists& twists, Twists* reading_twists) const = 0;
 
+  /// Whether the tip's pose and these columns are linear in each of 1, cos q, sin q of every angle and in each length,
+  /// at these corrections (all parameters, or empty): theory.md eq. (37). Twists of zero columns are.
+  virtual bool multilinear(std::span<const int> selected, std::span<const double> correction) const;
+
   /// From now on loads bend the robot as they do with these corrections (all parameters, maybe without tool.*).
   virtual void take_loads_at(std::span<const double> correction);
 

@@ -75,7 +75,9 @@ struct Certificate {
   std::string repeats = "forbid";      ///< what the bound allows: forbid, allow or a number
   struct Workspace {
     double efficiency = 0.0, bound = 0.0, max_sensitivity_ratio = 1.0;
-    std::string method;  ///< how the largest sensitivity was sought
+    std::string method;   ///< how the largest sensitivity was sought
+    bool proved = false;  ///< no plan within the limits exceeds the bound; else a search says so
+    std::string why_not;  ///< why it is not proved
   };
   std::optional<Workspace> workspace;
 };

@@ -23,6 +23,8 @@ std::string percent(double share);
 
 /// "97 %": the same to the digits that a search gives on any processor. Half a thousandth is what the search stops at.
 std::string searched_percent(double share);
+/// "98.5 %", rounded down: of a proof that rests on weights whose last digits depend on the processor.
+std::string proved_percent(double share);
 
 /// "0.0123 mm", "0.0045 deg": a value in SI for people, by its SI unit ("m", "rad", "1").
 std::string shown_value(double value, const std::string& unit);

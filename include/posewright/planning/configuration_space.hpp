@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "posewright/criterion/spacing.hpp"
@@ -15,6 +16,7 @@ class ConfigurationSpace {
   struct Axis {
     double lower = 0.0, upper = 0.0;
     bool continuous = true;  ///< false: a choice; keeps the value that a start has
+    bool turns = false;      ///< an angle, rad
   };
   /// Evaluations of one thread.
   class Probe {
@@ -30,6 +32,9 @@ class ConfigurationSpace {
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
+  /// Whether ‖J(q) T‖² is of degree 2 in cosine and sine of every angle and in every length, for any T: then its
+  /// largest value can be proved. Empty: it is; else why not, for people.
+  virtual std::string not_harmonic() const { return "this space does not say how blocks depend on its axes"; }
   /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "posewright/criterion/information_function.hpp"
@@ -17,8 +18,17 @@ struct WorkspaceBoundOptions {
   double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
   int evaluations = 400;    ///< of one local search
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
+  bool prove = true;        ///< the largest d, where it can be
   std::uint64_t seed = 0;
   int threads = 0;
+};
+
+/// Whether the largest d over the limits of the workspace is proved.
+struct WorkspaceProof {
+  std::string why_not;     ///< empty: it is proved
+  double max_ratio = 1.0;  ///< no d within the limits exceeds it times h
+  double bound = 0.0;      ///< Φ(w) + h ln(max_ratio)
+  long boxes = 0;          ///< that it took
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.
@@ -32,6 +42,7 @@ struct WorkspaceBound {
   std::vector<double> weights;               ///< theirs; with those of the candidates they sum to one
   std::vector<int> candidates;               ///< with weight, ascending
   std::vector<double> candidate_weights;
+  WorkspaceProof proof;
   bool stopped = false;
 
   double bound_for(int poses) const;

@@ -20,10 +20,13 @@ export function certificateSection(plan) {
   }
   const space = w
     ? [
-        ['share of the best, as far as the search saw', percentDown(Math.min(1, w.efficiency + 5e-4), 0)],
+        w.proved
+          ? ['at least this share of the best', percentDown(w.efficiency, 1)]
+          : ['share of the best, as far as the search saw', percentDown(Math.min(1, w.efficiency + 5e-4), 0)],
         ['bound', number(w.bound, 8)],
-        ['largest sensitivity found', number(w.max_sensitivity_ratio, 6)],
+        [`largest sensitivity ${w.proved ? 'that is possible' : 'found'}`, number(w.max_sensitivity_ratio, 6)],
         ['method', w.method],
+        ...(w.proved ? [] : [['no proof because of', w.why_not_proved ?? 'an older program']]),
       ]
     : [];
   return section(
@@ -43,7 +46,7 @@ export function certificateSection(plan) {
       h(
         'div',
         {},
-        h('h3', {}, 'Searched, over the whole workspace'),
+        h('h3', {}, w?.proved ? 'Proved, over the whole workspace' : 'Searched, over the whole workspace'),
         h('p', {}, w ? say.searched(plan) : 'Nothing is claimed about poses between the candidates.'),
         space.length > 0 ? list(space) : null,
       ),

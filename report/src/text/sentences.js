@@ -82,6 +82,8 @@ export function proofMeaning(plan) {
 /** @param {any} plan */
 export function searched(plan) {
   const w = plan.certificate.workspace;
+  if (w?.proved)
+    return `Proved within the joint limits: over the whole workspace, between the candidates too, it reaches at least ${percentDown(w.efficiency, 1)} of the best.`;
   return w
     ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(Math.min(1, w.efficiency + 5e-4), 0)} of the best.`
     : '';

@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double exchange_share = 0.5, tabu_share = 0.5;
 constexpr std::size_t tabu_starts = 4;
 // Starts that are settled among candidates, and of their results those whose poses are moved.
-constexpr std::size_t settled_starts = 12, moved_starts = 6, axes_for_one = 40;
+constexpr std::size_t settled_starts = 12, most_settled_starts = 100, moved_starts = 6, axes_for_one = 40;
 // From the moved poses, and from the weights among candidates old and new.
 constexpr int new_candidate_starts = 2, new_candidate_kicks = 0;
 // Rounds of new candidates go on while one gains this share of the best plan.
@@ -193,7 +193,7 @@ class Run {
 
   /// The best few local optima of different value, from one given set (if any) and from the weights.
   std::vector<Outcome> settled(const DesignTask& task, const std::vector<int>& given) {
-    std::vector<Outcome> found(std::max(settled_starts, std::size_t(options_.restarts)));
+    std::vector<Outcome> found(std::clamp(std::size_t(options_.restarts), settled_starts, most_settled_starts));
     parallel_for(found.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (i > 0 && monitor_.should_stop()) return;
       Random random(options_.seed, i);

@@ -28,7 +28,7 @@ constexpr double nearly = 1.02;
 constexpr double start_distance = 0.1, end_distance = 1e-3;
 
 // Angles of a tensor of so many axes are sampled in a second.
-constexpr std::size_t most_axes = 7;
+constexpr std::size_t most_axes = 7, axes_for_nothing = 3;
 // d and its polynomial may differ by this share of h, at so many random places.
 constexpr double same_function = 1e-7, rounding_factor = 100.0;
 constexpr int places_compared = 100;
@@ -201,45 +201,6 @@ double largest_difference(const HarmonicFunction& polynomial, const std::functio
   return largest;
 }
 
-/// The largest d within the limits by its polynomial, where it is one.
-void prove(WorkspaceBound& result, const ApproximateDesign& design, const ConfigurationSpace& space,
-           const BlockArray& blocks, const WorkspaceBoundOptions& options, const Monitor& monitor) {
-  WorkspaceProof& proof = result.proof;
-  proof.why_not = options.prove ? space.not_harmonic() : "not asked for";
-  if (result.stopped || monitor.should_stop()) proof.why_not = "stopped";
-  if (!proof.why_not.empty()) return;
-  const MovingSensitivity d(space, design.factor, blocks.rows(), blocks.columns());
-  if (d.axes().empty() || d.axes().size() > most_axes) {
-    proof.why_not = "more than 7 joints";
-    return;
-  }
-  const HarmonicFunction polynomial(
-      d.axes(), [&] { return d.for_one_thread(); }, options.threads);
-  Random random(options.seed, proof_stream);
-  const double difference = polynomial.defined() ? largest_difference(polynomial, d.for_one_thread(), random)
-                                                 : std::numeric_limits<double>::quiet_NaN();
-  if (!(difference <= same_function * design.degree)) {
-    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
-    return;
-  }
-  HarmonicBoundOptions limits;
-  // Values were interpolated as they are computed: what rounding makes of them there is far below this.
-  limits.slack = rounding_factor * difference + same_function * 1e-3 * design.degree;
-  limits.tolerance = options.tolerance;
-  limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
-  limits.threads = options.threads;
-  const HarmonicBound most = largest_value(polynomial, limits, monitor);
-  const double extra =
-      options.prior.size() > 0 ? (design.factor.transpose() * options.prior * design.factor).trace() : 0.0;
-  proof.boxes = most.boxes;
-  if (!std::isfinite(most.bound)) {
-    proof.why_not = "stopped";
-    return;
-  }
-  proof.max_ratio = std::max(1.0, (most.bound + extra) / design.degree);
-  proof.bound = design.value + design.degree * std::log(proof.max_ratio);
-}
-
 }  // namespace
 
 double WorkspaceBound::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
@@ -291,7 +252,7 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     append(pool, found, *probe);
   }
-  prove(result, design, space, blocks, options, monitor);
+  result.factor = design.factor;
   for (std::size_t i = 0; i < design.support.size(); ++i)
     if (const auto at = std::size_t(design.support[i]); design.weights[i] > 1e-6) {
       if (at < pool.candidates) {
@@ -303,6 +264,47 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
       }
     }
   return result;
+}
+
+void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
+                     int columns, const WorkspaceBoundOptions& options, const Monitor& monitor) {
+  WorkspaceProof& proof = result.proof;
+  proof.why_not = result.stopped || monitor.should_stop() ? "stopped" : space.not_harmonic();
+  if (!proof.why_not.empty()) return;
+  const MovingSensitivity d(space, result.factor, rows, columns);
+  if (d.axes().empty() || d.axes().size() > most_axes) {
+    proof.why_not = "more than 7 joints";
+    return;
+  }
+  if (candidates < few_candidates && d.axes().size() > axes_for_nothing) {
+    proof.why_not = "a quick look at fewer than 1,000 candidates";
+    return;
+  }
+  const HarmonicFunction polynomial(
+      d.axes(), [&] { return d.for_one_thread(); }, options.threads);
+  Random random(options.seed, proof_stream);
+  const double difference = polynomial.defined() ? largest_difference(polynomial, d.for_one_thread(), random)
+                                                 : std::numeric_limits<double>::quiet_NaN();
+  if (!(difference <= same_function * result.degree)) {
+    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
+    return;
+  }
+  HarmonicBoundOptions limits;
+  // Values were interpolated as they are computed: what rounding makes of them there is far below this.
+  limits.slack = rounding_factor * difference + same_function * 1e-3 * result.degree;
+  limits.tolerance = options.tolerance;
+  limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
+  limits.threads = options.threads;
+  const HarmonicBound most = largest_value(polynomial, limits, monitor);
+  const double extra =
+      options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
+  proof.boxes = most.boxes;
+  if (!std::isfinite(most.bound)) {
+    proof.why_not = "stopped";
+    return;
+  }
+  proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
+  proof.bound = result.value + result.degree * std::log(proof.max_ratio);
 }
 
 }  // namespace posewright

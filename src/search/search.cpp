@@ -228,8 +228,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   if (degree == 0) approximate.sensitivity.clear();
   const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
   std::optional<WorkspaceBound> workspace;
+  WorkspaceBoundOptions options;
   if (space != nullptr && degree > 0 && !monitor.should_stop()) {
-    WorkspaceBoundOptions options;
     options.prior = bound_options(request, joined.prior).prior;
     options.seed = request.planner.seed;
     options.threads = request.planner.threads;
@@ -263,6 +263,10 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   };
   result.design = make_planner(request.method)->plan(task, request.planner, shifted);
   result.stopped = approximate.stopped || result.design.stopped;
+  // Last, so that whoever stops it has his plan.
+  if (workspace && request.prove)
+    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), joined.blocks.columns(), options,
+                    monitor);
   result.references = joined.references;
   result.certificate.proved = degree > 0;
   BlockArray added;

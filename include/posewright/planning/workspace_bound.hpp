@@ -42,7 +42,8 @@ struct WorkspaceBound {
   std::vector<double> weights;               ///< theirs; with those of the candidates they sum to one
   std::vector<int> candidates;               ///< with weight, ascending
   std::vector<double> candidate_weights;
-  WorkspaceProof proof;
+  Eigen::MatrixXd factor;  ///< T of d(q) = ‖J(q) T‖² at the weights
+  WorkspaceProof proof{"not asked for"};
   bool stopped = false;
 
   double bound_for(int poses) const;
@@ -56,5 +57,11 @@ struct WorkspaceBound {
 WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign& design,
                                const InformationFunction& function, const ConfigurationSpace& space,
                                const WorkspaceBoundOptions& options, const Monitor& monitor);
+
+/// Proves the largest d of these weights over the limits of the axes, where the space says that d is harmonic and the
+/// candidates are no quick look (fewer than 1,000, unless a proof costs next to nothing): fills `found.proof`.
+/// @param rows, columns  of a block
+void prove_workspace(WorkspaceBound& found, const ConfigurationSpace& space, std::size_t candidates, int rows,
+                     int columns, const WorkspaceBoundOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

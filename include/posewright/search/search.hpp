@@ -32,6 +32,7 @@ struct SearchRequest {
   Repeats repeats;
   bool reserve = false;
   PlannerOptions planner;
+  bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
   std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance
   /// Configurations behind the blocks, for the whitening R of all columns; empty: there are only blocks.

@@ -292,6 +292,7 @@ HarmonicBound largest_value(const HarmonicFunction& function, const HarmonicBoun
   std::vector<Box> round = first_boxes(function.axes());
   const int threads = thread_count(options.threads);
   std::vector<BoxBound> bounds;
+  bounds.reserve(std::size_t(threads));
   for (int i = 0; i < threads; ++i) bounds.emplace_back(function);
   while (true) {
     std::vector<double> largest(round.size(), result.largest);

@@ -216,6 +216,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   const CriterionEntry& entry = *find_criterion(request.criterion);
   require_choice(request, parts.front().blocks.count());
   std::vector<std::pair<int, int>> shapes;
+  shapes.reserve(parts.size());
   for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
   const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
   const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);

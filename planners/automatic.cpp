@@ -158,37 +158,25 @@ class Run {
       for (const Outcome& outcome : settled(extended.task(), {}))
         sets.push_back(extended.pose_set(task_, outcome.members));
     }
-    std::vector<long> moves(sets.size());
-    // The rest of them is worth it for the best few alone.
-    move_all(sets, moves, sets.size(), improve_roughly);
-    std::vector<std::size_t> order(sets.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return sets[a].value > sets[b].value; });
-    for (const std::size_t i : order) {
-      best_.exchanges += moves[i];
-      remember(sets[i]);
-    }
-    moved_ = std::move(sets[order.front()]);
+    move_roughly(sets);
+    // The rest of the moves is worth it for the best set alone.
+    std::stable_sort(sets.begin(), sets.end(), [](const PoseSet& a, const PoseSet& b) { return a.value > b.value; });
+    for (const PoseSet& poses : sets) remember(poses);
+    moved_ = std::move(sets.front());
     best_.exchanges += improve(task_, *moved_, monitor_);
     remember(*moved_);
     record("continuous");
   }
 
   /// Progress of one of them is told; those that do not come to their turn before a stop stay as they are.
-  void move_all(std::vector<PoseSet>& sets, std::vector<long>& moves, std::size_t count,
-                long (*move)(const DesignTask&, PoseSet&, const Monitor&)) const {
-    parallel_for(count, thread_count(options_.threads), [&](std::size_t i, int) {
+  void move_roughly(std::vector<PoseSet>& sets) {
+    std::vector<long> moves(sets.size());
+    parallel_for(sets.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       const Part silent(monitor_, 1.0, true);
-      sets[i].value = value_of(sets[i]);
-      if (i == 0 || !monitor_.should_stop()) moves[i] = move(task_, sets[i], i == 0 ? monitor_ : silent.monitor());
+      if (i == 0 || !monitor_.should_stop())
+        moves[i] = improve_roughly(task_, sets[i], i == 0 ? monitor_ : silent.monitor());
     });
-  }
-
-  double value_of(const PoseSet& poses) const {
-    const auto all = poses.blocks.all();
-    Eigen::MatrixXd M = all.transpose() * all;
-    if (task_.candidates.prior != nullptr) M += *task_.candidates.prior;
-    return task_.criterion->function().value(M);
+    best_.exchanges = std::accumulate(moves.begin(), moves.end(), best_.exchanges);
   }
 
   /// The best few local optima of different value, from one given set (if any) and from the weights.
@@ -252,9 +240,7 @@ class Run {
                                         return exchange_search(task, from, kicks, random, watch);
                                       });
     best_.exchanges += found.exchanges;
-    PoseSet poses = extended.pose_set(task_, found.members);
-    poses.value = found.value;
-    improve_from(std::move(poses));
+    improve_from(extended.pose_set(task_, found.members));
     record("new candidates");
   }
 

@@ -188,13 +188,17 @@ bool improve_jointly(const DesignTask& task, PoseSet& poses) {
 
 }  // namespace
 
+double value_of_blocks(const DesignTask& task, const BlockArray& blocks) {
+  return task.criterion->function().value(information_of(task, blocks));
+}
+
 PoseSet pose_set_of(const DesignTask& task, const std::vector<int>& members) {
   PoseSet poses;
   poses.candidates = members;
   poses.blocks = task.candidates.blocks->subset(members);
   for (const int i : members)
     poses.configurations.emplace_back(task.space->candidate(i).begin(), task.space->candidate(i).end());
-  poses.value = task.criterion->function().value(information_of(task, poses.blocks));
+  poses.value = value_of_blocks(task, poses.blocks);
   return poses;
 }
 

@@ -13,6 +13,8 @@ struct PoseSet {
   BlockArray blocks;            ///< one a pose
   double value = 0.0;           ///< Φ
 };
+/// Φ of these blocks and what is known before.
+double value_of_blocks(const DesignTask& task, const BlockArray& blocks);
 PoseSet pose_set_of(const DesignTask& task, const std::vector<int>& members);
 /// As a design: poses that moved are `added`.
 void write_to(Design& design, const PoseSet& poses, std::size_t candidates);

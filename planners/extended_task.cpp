@@ -47,6 +47,7 @@ PoseSet ExtendedTask::pose_set(const DesignTask& whole, const std::vector<int>& 
     poses.configurations.emplace_back(q.begin(), q.end());
     poses.candidates.push_back(std::size_t(i) < kept_.size() ? kept_[std::size_t(i)] : -1);
   }
+  poses.value = value_of_blocks(whole, poses.blocks);
   return poses;
 }
 

@@ -17,7 +17,7 @@ class ExtendedTask {
   ExtendedTask(const DesignTask& task, std::vector<int> kept, std::vector<std::vector<double>> added);
 
   const DesignTask& task() const { return task_; }
-  /// Poses of the whole task from members of this one; their value is still to be found.
+  /// Poses of the whole task from members of this one.
   PoseSet pose_set(const DesignTask& whole, const std::vector<int>& members) const;
 
  private:

@@ -1,10 +1,10 @@
 #include "posewright/calibration/frame_shift.hpp"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
 #include "posewright/calibration/placement.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"
 #include "stacked_readings.hpp"
@@ -12,19 +12,15 @@
 namespace posewright {
 namespace {
 
-constexpr std::array<const char*, 6> base_names = {"base.x", "base.y", "base.z", "base.rx", "base.ry", "base.rz"};
-
 /// The base's columns; fewer than six if the model has none.
 VariantColumns base_columns(const IdentificationModel& model) {
   VariantColumns columns;
-  for (const char* name : base_names)
-    for (std::size_t i = 0; i < model.parameters().size(); ++i)
-      if (model.parameters()[i].name == name) {
-        columns.selected.push_back(int(i));
-        columns.parameters.push_back(model.parameters()[i]);
-        columns.parameters.back().places = true;
-        columns.tiers.push_back(0);
-      }
+  columns.selected = base_parameters(model);
+  for (const int i : columns.selected) {
+    columns.parameters.push_back(model.parameters()[std::size_t(i)]);
+    columns.parameters.back().places = true;
+    columns.tiers.push_back(0);
+  }
   return columns;
 }
 
@@ -50,7 +46,7 @@ Eigen::Matrix3d rotation_of(const std::vector<double>& correction, const std::ve
 std::optional<FrameShift> frame_shift(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                                       const std::vector<double>& correction) {
   const VariantColumns base = base_columns(model);
-  if (base.selected.size() < base_names.size() || poses.size() < 3) return std::nullopt;
+  if (base.selected.size() < 6 || poses.size() < 3) return std::nullopt;
   FrameShift shift;
   std::vector<double> best = correction;
   try {

@@ -24,14 +24,11 @@ class LogDetExpansion : public Expansion {
   void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
     const BlockArray::RowMatrix Z = rows * inverse_;
     if (r == 1) {
-      BlockArray::RowMatrix padded = padded_rows(Z.rows(), Z.cols());
-      padded.leftCols(Z.cols()) = Z;
-      gram(padded, H);
+      gram_of(Z, H);
       H = H.cwiseAbs2().eval();
       if (nuisance_ == 0) return;
-      padded.rightCols(padded.cols() - nuisance_).setZero();
       Eigen::MatrixXd part;
-      gram(padded, part);
+      gram_of(Z.leftCols(nuisance_), part);
       H -= part.cwiseAbs2();
       return;
     }

@@ -16,11 +16,8 @@ inline Eigen::VectorXd product_curvature(const BlockArray::RowMatrix& Z, const B
   for (Eigen::Index i = 0; i < s; ++i) d[i] = G.middleRows(i * r, r).squaredNorm();
   if (r == 1) {
     Eigen::MatrixXd second;
-    for (const BlockArray::RowMatrix* part : {&Z, &G}) {
-      BlockArray::RowMatrix padded = padded_rows(s, part->cols());
-      padded.leftCols(part->cols()) = *part;
-      gram(padded, part == &Z ? H : second);
-    }
+    gram_of(Z, H);
+    gram_of(G, second);
     H = 2 * H.cwiseProduct(second).eval();
     return d;
   }

@@ -85,9 +85,7 @@ Matrix of_axis(const HarmonicAxis& axis, double lower, double upper) {
 /// Bernstein coefficients of the weight (1 + u²)² alone.
 Eigen::Matrix<double, 5, 1> weight_of(const HarmonicAxis& axis, const Matrix& M) {
   if (axis.turns) return M.col(0);
-  Eigen::Matrix<double, 5, 1> one;
-  one << 1, 1, 1, 1, 1;
-  return one;
+  return Eigen::Matrix<double, 5, 1>::Ones();
 }
 
 /// out = M along one axis of a row-major tensor.
@@ -150,7 +148,7 @@ class BoxBound {
   void judge(Box& box, double& largest, std::vector<double>& where) {
     const auto& axes = function_.axes();
     now_ = function_.coefficients();
-    std::fill(weight_.begin(), weight_.end(), 1.0);
+    weight_.assign(1, 1.0);
     double growth = 1;
     for (std::size_t a = 0; a < axes.size(); ++a) {
       const Matrix M = of_axis(axes[a], box.lower[a], box.upper[a]);
@@ -159,7 +157,10 @@ class BoxBound {
       now_.swap(next_);
       growth *= M.topLeftCorner(terms, terms).cwiseAbs().rowwise().sum().maxCoeff();
       const auto w = weight_of(axes[a], M);
-      for (std::size_t i = 0; i < weight_.size(); ++i) weight_[i] *= w[Eigen::Index(i / strides_[a]) % terms];
+      next_weight_.clear();
+      for (const double before : weight_)
+        for (int k = 0; k < terms; ++k) next_weight_.push_back(before * w[k]);
+      weight_.swap(next_weight_);
     }
     // Every coefficient is a sum of products: its rounding is that of all terms' sizes, a dozen operations an axis.
     const double rounding = 16.0 * double(axes.size()) * epsilon * growth * most_;
@@ -169,6 +170,7 @@ class BoxBound {
       const double quotient = (now_[i] + rounding) / (now_[i] + rounding > 0 ? w : weight_[i] * (1 + 1e-12));
       box.bound = std::max(box.bound, quotient);
     }
+    for (std::size_t i = 0; i < now_.size(); ++i) now_[i] /= weight_[i];
     corners(box, largest, where);
     box.longest = most_varied(axes);
   }
@@ -180,7 +182,7 @@ class BoxBound {
       std::size_t at = 0;
       for (std::size_t a = 0; a < axes.size(); ++a)
         if ((corner >> a & 1) != 0) at += std::size_t(HarmonicFunction::terms(axes[a]) - 1) * strides_[a];
-      const double value = now_[at] / weight_[at];
+      const double value = now_[at];
       if (!(value > largest)) continue;
       largest = value;
       where.resize(axes.size());
@@ -201,7 +203,7 @@ class BoxBound {
           double sum = 0;
           for (int k = 0; k + 1 < terms; ++k) {
             const std::size_t i = first + std::size_t(k) * stride;
-            sum += std::abs(now_[i + stride] / weight_[i + stride] - now_[i] / weight_[i]);
+            sum += std::abs(now_[i + stride] - now_[i]);
           }
           variation = std::max(variation, sum);
         }
@@ -215,7 +217,8 @@ class BoxBound {
 
   const HarmonicFunction& function_;
   std::vector<std::size_t> strides_;
-  std::vector<double> now_, next_, weight_;
+  std::vector<double> now_, next_;  // the coefficients; at last their quotients with the weights
+  std::vector<double> weight_, next_weight_;
   double most_ = 0;
 };
 

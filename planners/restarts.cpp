@@ -14,6 +14,8 @@ namespace {
 
 // How many of the reduced search's results are taken through all candidates.
 constexpr std::size_t finished = 2;
+// Under a time limit; nobody waits for so many.
+constexpr int most_starts = 100'000'000;
 
 /// The best few outcomes so far and totals over all: what is kept does not depend on the order in which they come.
 class BestOutcomes {
@@ -76,8 +78,11 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
   BestOutcomes best;
   std::mutex mutex;
   const double degree = task.criterion->function().degree();
-  Progress progress{stage, 0, double(options.restarts), {}, task.bound, {}};
-  parallel_for(std::size_t(options.restarts), thread_count(options.threads), [&](std::size_t i, int) {
+  // A limit is there to be used, where nobody says how many starts it is for.
+  const bool all_time = options.use_all_time && !options.restarts_stated && monitor.deadline;
+  const int starts = all_time ? std::max(options.restarts, most_starts) : options.restarts;
+  Progress progress{stage, 0, all_time ? 0.0 : double(starts), {}, task.bound, {}};
+  parallel_for(std::size_t(starts), thread_count(options.threads), [&](std::size_t i, int) {
     if (i > 0 && monitor.should_stop()) return;
     Random random(options.seed, i);
     Outcome outcome = search(reduced.task(), i, random, monitor);

@@ -10,12 +10,14 @@ export function posesCsv(poses, actuatorUnits = {}) {
   if (poses.length === 0) return '';
   const first = poses[0];
   const actuators = Object.keys(first.actuators ?? {});
+  const conditions = Object.keys(first.conditions ?? {});
   const withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const header = [
     'pose',
     ...first.names.map((name, k) => withUnit(name, first.units[k])),
     ...actuators.map((name) => withUnit(name, actuatorUnits[name])),
     ...['load_case', 'station'].filter((choice) => first[choice]),
+    ...conditions,
   ];
   const lines = poses.map((pose) =>
     [
@@ -23,6 +25,7 @@ export function posesCsv(poses, actuatorUnits = {}) {
       ...pose.configuration,
       ...actuators.map((name) => pose.actuators[name]),
       ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice])),
+      ...conditions.map((name) => quoted(pose.conditions[name])),
     ].join(','),
   );
   return [header.join(','), ...lines, ''].join('\n');

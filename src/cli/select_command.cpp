@@ -1,3 +1,5 @@
+#include <charconv>
+
 #include "command.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -15,11 +17,31 @@ po::options_description select_command_options() {
       ("nuisance", text("k"), "the leading k columns are nuisance: eliminated (0)")              //
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())  //
       ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())          //
-      ("restarts", text("k"), "starts of the search (10)")                                       //
+      ("restarts", text("k"), "starts of the search (10, or what --time-limit allows)")          //
+      ("fixed", text("ROWS"), "blocks that are among the N: 3,17,25, from 0")                    //
+      ("augment", text("ROWS"), "blocks that are measured already: N more come to them")         //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
           "reserve", "maximise what is left when the block that hurts most is lost");
   options.add(output_options(false));
   return options;
+}
+
+/// "3,17,25"; empty if the option is not given.
+std::vector<int> row_list(const po::variables_map& values, const std::string& option) {
+  std::vector<int> rows;
+  if (values.count(option) == 0) return rows;
+  const std::string text = text_of(values, option);
+  const char *at = text.data(), *const end = at + text.size();
+  while (true) {
+    int row = 0;
+    const auto [next, code] = std::from_chars(at, end, row);
+    if (code != std::errc() || row < 0 || (next != end && *next != ','))
+      throw InputError({}, "--" + option + " '" + text.substr(0, 40) + "'",
+                       "numbers of blocks from 0, with commas between them: 3,17,25");
+    rows.push_back(row);
+    if (next == end) return rows;
+    at = next + 1;
+  }
 }
 
 int run_select(const po::variables_map& values, const Words& positional) {
@@ -33,7 +55,9 @@ int run_select(const po::variables_map& values, const Words& positional) {
   select.nuisance = whole_number(values, "nuisance", 0, 100000).value_or(0);
   if (values.count("criterion") > 0) select.criterion = text_of(values, "criterion");
   if (values.count("method") > 0) select.method = text_of(values, "method");
-  select.restarts = whole_number(values, "restarts", 1, 1000000).value_or(select.restarts);
+  select.restarts = whole_number(values, "restarts", 1, 1000000);
+  select.fixed = row_list(values, "fixed");
+  select.measured = row_list(values, "augment");
   select.repeats = repeats_of(values).value_or(Repeats{});
   select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;

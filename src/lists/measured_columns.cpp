@@ -95,7 +95,9 @@ void MeasuredColumns::read_configurations(const std::string& bytes) {
     from_actuators();
     return;
   }
-  configurations_ = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv").configurations;
+  PoseList list = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv");
+  configurations_ = std::move(list.configurations);
+  notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
   for (int i = 0; i < rows(); ++i)
     for (std::size_t k = 0; k < model_.coordinates().size(); ++k) {
       const Coordinate& c = model_.coordinates()[k];

@@ -158,10 +158,6 @@ class ReadingAverages {
   std::size_t first_rows_ = 0;
 };
 
-const std::string& label_of(const Coordinate& c, double value) {
-  return c.labels[std::size_t(std::find(c.values.begin(), c.values.end(), value) - c.values.begin())];
-}
-
 int id_of(const std::string& cell, const SourcePlace& place) {
   int id = 0;
   const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), id);
@@ -235,7 +231,7 @@ std::string measured_data_csv(const IdentificationModel& model, const std::vecto
     text += std::to_string(pose.id);
     for (std::size_t i = 0; i < pose.q.size(); ++i) {
       const Coordinate& c = model.coordinates()[i];
-      text += c.choice() ? "," + label_of(c, pose.q[i]) : fmt::format(",{}", pose.q[i]);
+      text += c.choice() ? "," + c.label_at(pose.q[i]) : fmt::format(",{}", pose.q[i]);
     }
     for (const double value : pose.y) text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
     text += "\n";

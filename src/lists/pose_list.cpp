@@ -34,7 +34,7 @@ std::vector<double> completed(const std::vector<double>& q, const std::vector<Co
 void judge_value(double& value, const Coordinate& c, const SourcePlace& place) {
   if (!std::isfinite(value)) throw InputError(place, fmt::format("'{}' is not finite", c.name), "a number is expected");
   if (c.choice()) {
-    if (std::find(c.values.begin(), c.values.end(), value) == c.values.end())
+    if (!c.measurable && std::find(c.values.begin(), c.values.end(), value) == c.values.end())
       throw InputError(
           place, fmt::format("'{}' is {:.6g}", c.name, value),
           fmt::format("a number from 0 to {} stands for one of {}", c.labels.size() - 1, fmt::join(c.labels, ", ")));

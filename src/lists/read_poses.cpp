@@ -28,8 +28,19 @@ double in_si(const std::string& cell, const std::string& unit, const Coordinate&
   }
 }
 
+double temperature_of(const std::string& cell, const Coordinate& c, const SourcePlace& place) {
+  constexpr double coldest = -100, hottest = 300;  // degrees Celsius, of a robot that somebody measures
+  double value = 0;
+  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (code != std::errc() || end != cell.data() + cell.size() || !(value >= coldest && value <= hottest))
+    throw InputError(place, fmt::format("'{}' is not a {}", cell.substr(0, 40), c.name),
+                     fmt::format("degrees Celsius, {} to {}", coldest, hottest));
+  return value;
+}
+
 double of_label(const std::string& label, const Coordinate& c, const SourcePlace& place) {
   const auto at = std::find(c.labels.begin(), c.labels.end(), label);
+  if (at == c.labels.end() && c.measurable) return temperature_of(label, c, place);
   if (at == c.labels.end())
     throw InputError(place, fmt::format("'{}' is not a {}", label.substr(0, 40), c.name),
                      fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
@@ -50,12 +61,32 @@ class ColumnMap {
 
   PoseList map() {
     for (const PoseRow& row : table_.rows) add(row);
+    for (std::size_t k = 0; k < coordinates_.size(); ++k)
+      if (column_[k] < 0 && !coordinates_[k].arrives.empty()) arrive_in_order(k);
     return std::move(list_);
   }
 
  private:
   /// A choice among one thing needs no column.
-  static bool needs_column(const Coordinate& c) { return !c.choice() || c.labels.size() > 1; }
+  static bool needs_column(const Coordinate& c) { return !c.choice() || (c.labels.size() > 1 && c.arrives.empty()); }
+
+  /// Where no column says from which side a joint arrived, its last motion in the order of the list does.
+  void arrive_in_order(std::size_t approach) {
+    const Coordinate& c = coordinates_[approach];
+    const auto joint = std::size_t(
+        std::find_if(coordinates_.begin(), coordinates_.end(), [&](const auto& o) { return o.name == c.arrives; }) -
+        coordinates_.begin());
+    double side = c.values.front(), before = list_.configurations.front()[joint];
+    for (std::vector<double>& q : list_.configurations) {
+      if (q[joint] != before) side = q[joint] > before ? c.values.front() : c.values.back();
+      before = q[joint];
+      q[approach] = side;
+    }
+    list_.notes.push_back(
+        fmt::format("{} has no column '{}': the order of its poses says from which side {} arrived, "
+                    "{} at the first",
+                    file_, c.name, c.arrives, c.labels.front()));
+  }
 
   void map_by_name() {
     for (std::size_t k = 0; k < coordinates_.size(); ++k) {

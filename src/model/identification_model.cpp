@@ -1,5 +1,7 @@
 #include "posewright/model/identification_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -34,6 +36,18 @@ Coordinate make_choice(const std::string& name, const std::vector<std::string>& 
   return c;
 }
 
+Coordinate make_approach(const std::string& joint, double overrun) {
+  Coordinate c = make_choice(joint + ".approach", {"rising", "falling"});
+  c.arrives = joint;
+  c.overrun = overrun;
+  return c;
+}
+
+std::string Coordinate::label_at(double value) const {
+  const auto at = std::find(values.begin(), values.end(), value);
+  return at == values.end() ? fmt::format("{}", value) : labels[std::size_t(at - values.begin())];
+}
+
 void IdentificationModel::set_nominal(int index, double value) {
   if (shift_.empty()) shift_.assign(parameters_.size(), 0.0);
   Parameter& p = parameters_.at(std::size_t(index));
@@ -65,7 +79,8 @@ Point IdentificationModel::point(std::span<const double> q, std::span<const doub
   Point at{q, total};
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     if (!coordinates_[i].choice()) continue;
-    (coordinates_[i].name == "station" ? at.station : at.load_case) = int(q[i]);
+    if (coordinates_[i].name == "station") at.station = int(q[i]);
+    if (coordinates_[i].name == "load_case") at.load_case = int(q[i]);
   }
   return at;
 }

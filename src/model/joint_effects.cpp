@@ -1,11 +1,14 @@
 #include "posewright/model/joint_effects.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "displacement.hpp"
 #include "parameter_names.hpp"
+#include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -13,6 +16,11 @@ namespace {
 
 // 1σ before calibration: an encoder disc 20 µm off its axis at a radius of 0.1 m; a coupling that was adjusted.
 constexpr double effect_angle_tolerance = 2e-4, coupling_tolerance = 1e-3;  // rad, 1
+// A gear with play within its class; a drive that warms by ten kelvin.
+constexpr double backlash_tolerance = 2e-4, backlash_length_tolerance = 2e-5;  // rad, m
+constexpr double drift_tolerance = 1e-5, drift_length_tolerance = 1e-5;        // rad/K, m/K
+// What a route comes from beyond where nobody says.
+constexpr double standard_overrun = 2.0 * M_PI / 180, standard_length_overrun = 5e-3;  // rad, m
 
 int joint_named(const std::vector<Coordinate>& joints, const Located<std::string>& name, const std::string& file) {
   for (int i = 0; i < int(joints.size()); ++i)
@@ -27,19 +35,38 @@ std::string unit_of_ratio(const Coordinate& own, const Coordinate& other) {
 }  // namespace
 
 double JointEffects::Effect::value(double q) const {
-  if (kind == Kind::linear) return q;
-  return kind == Kind::cosine ? std::cos(frequency * q) : std::sin(frequency * q);
+  switch (kind) {
+    case Kind::cosine:
+      return std::cos(constant * q);
+    case Kind::sine:
+      return std::sin(constant * q);
+    case Kind::linear:
+      return q - constant;
+    case Kind::side:
+      return q - 0.5;  // 0: it rose, and what it drives lags
+  }
+  return 0.0;
 }
 
 double JointEffects::Effect::derivative(double q) const {
-  if (kind == Kind::linear) return 1.0;
-  return frequency * (kind == Kind::cosine ? -std::sin(frequency * q) : std::cos(frequency * q));
+  switch (kind) {
+    case Kind::cosine:
+      return -constant * std::sin(constant * q);
+    case Kind::sine:
+      return constant * std::cos(constant * q);
+    case Kind::linear:
+      return 1.0;
+    case Kind::side:
+      return 0.0;
+  }
+  return 0.0;
 }
 
-JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const std::vector<JointEffectsSpec>& effects,
-                           const std::string& file)
+JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& arm_spec, const std::string& file)
     : arm_(std::move(arm)) {
   coordinates_ = arm_->coordinates();
+  const std::size_t moving = coordinates_.size();
+  if (arm_spec.temperature) add_temperature(*arm_spec.temperature);
   reading_noise_ = arm_->reading_noise();
   parameters_ = arm_->parameters();
   const auto is_tool = [](const Parameter& p) { return p.name.starts_with("tool."); };
@@ -48,10 +75,10 @@ JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const std::vector<Join
   const std::vector<Parameter> last(tool, parameters_.end());
   parameters_.erase(tool, parameters_.end());
   std::set<int> taken;
-  for (const JointEffectsSpec& spec : effects) {
+  for (const JointEffectsSpec& spec : arm_spec.joint_effects) {
     bool found = false;
-    for (int j = 0; j < int(coordinates_.size()); ++j) {
-      const Coordinate& c = coordinates_[std::size_t(j)];
+    for (int j = 0; j < int(moving); ++j) {
+      const Coordinate c = coordinates_[std::size_t(j)];
       if (c.choice() || !matches(spec.joint.value, c.name)) continue;
       if (!taken.insert(j).second)
         throw InputError({file, spec.joint.line}, "robot.joint_effects: joint '" + c.name + "' is there twice",
@@ -69,7 +96,7 @@ JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const std::vector<Join
 }
 
 void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::string& file) {
-  const Coordinate& c = coordinates_[std::size_t(joint)];
+  const Coordinate c = coordinates_[std::size_t(joint)];
   const SourcePlace place{file, spec.joint.line};
   if (c.unit != "rad" && (spec.eccentricity || spec.gear_ratio))
     throw InputError(place, "robot.joint_effects: joint '" + c.name + "' does not turn",
@@ -96,6 +123,37 @@ void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::strin
                            coupling_tolerance, Role::interest});
     effects_.push_back({joint, other, Kind::linear, 0.0});
   }
+  const bool turns = c.unit == "rad";
+  if (spec.backlash) {
+    parameters_.push_back(
+        {c.name + ".backlash", c.unit, 0.0, turns ? backlash_tolerance : backlash_length_tolerance, Role::interest});
+    effects_.push_back({joint, int(coordinates_.size()), Kind::side, 0.0});
+    if (spec.overrun && !fits_unit(spec.overrun->quantity, c.unit))
+      throw InputError(place, "robot.joint_effects: overrun of joint '" + c.name + "' has the wrong unit",
+                       "a value in " + c.unit + " is expected");
+    const double standard = turns ? standard_overrun : standard_length_overrun;
+    coordinates_.push_back(make_approach(c.name, spec.overrun ? spec.overrun->value : standard));
+  }
+  if (!spec.temperature) return;
+  if (temperature_ < 0)
+    throw InputError(place, "robot.joint_effects: joint '" + c.name + "' drifts with a temperature nobody states",
+                     "robot: temperature: {reference: 20}, in degrees Celsius");
+  parameters_.push_back(
+      {c.name + ".temperature", c.unit + "/K", 0.0, turns ? drift_tolerance : drift_length_tolerance, Role::interest});
+  effects_.push_back({joint, temperature_, Kind::linear, reference_temperature_});
+}
+
+void JointEffects::add_temperature(const TemperatureSpec& spec) {
+  std::vector<std::string> labels;
+  for (const double at : spec.at) labels.push_back(fmt::format("{}", at));
+  Coordinate c = make_choice("temperature", labels);
+  c.values = spec.at;
+  c.lower = spec.at.front();
+  c.upper = spec.at.back();
+  c.measurable = true;
+  temperature_ = int(coordinates_.size());
+  reference_temperature_ = spec.reference;
+  coordinates_.push_back(std::move(c));
 }
 
 double JointEffects::coefficient(const Point& at, std::size_t effect) const {
@@ -114,13 +172,15 @@ bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eig
   static thread_local std::vector<int> of_arm;
   static thread_local Twists joints;
   const int count = int(effects_.size()), beyond = int(arm_->parameters().size());
-  turned.assign(at.q.begin(), at.q.end());
+  const std::size_t own = arm_->coordinates().size();
+  turned.assign(at.q.begin(), at.q.begin() + std::ptrdiff_t(own));
   for (std::size_t e = 0; e < effects_.size(); ++e)
     turned[std::size_t(effects_[e].joint)] += coefficient(at, e) * effects_[e].value(at.q[std::size_t(effects_[e].of)]);
   of_arm.clear();
   for (const int index : selected)
     of_arm.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
-  const Point arm{turned, without_block(at.correction, first_, effects_.size(), rest), at.station, at.load_case, at.q};
+  const Point arm{turned, without_block(at.correction, first_, effects_.size(), rest), at.station, at.load_case,
+                  at.q.first(own)};
   if (!arm_->linearise(arm, of_arm, X, twists, &joints)) return false;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int e = selected[c] - first_;
@@ -132,7 +192,7 @@ bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eig
   // A reading moves the joint itself and what its effects add.
   *reading_twists = joints;
   for (std::size_t e = 0; e < effects_.size(); ++e)
-    if (const double k = coefficient(at, e); k != 0)
+    if (const double k = coefficient(at, e); k != 0 && effects_[e].of < int(own))
       reading_twists->col(effects_[e].of) +=
           k * effects_[e].derivative(at.q[std::size_t(effects_[e].of)]) * joints.col(effects_[e].joint);
   return true;

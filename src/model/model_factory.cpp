@@ -24,7 +24,7 @@ struct MakeTip {
   std::unique_ptr<TipModel> operator()(const SerialArmSpec& arm) const {
     std::unique_ptr<TipModel> chain = chain_of(arm);
     if (arm.joint_effects.empty()) return chain;
-    return std::make_unique<JointEffects>(std::move(chain), arm.joint_effects, problem.file.string());
+    return std::make_unique<JointEffects>(std::move(chain), arm, problem.file.string());
   }
   std::unique_ptr<TipModel> chain_of(const SerialArmSpec& arm) const {
     using Convention = VariantSpec::Convention;

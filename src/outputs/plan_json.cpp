@@ -93,6 +93,12 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
           {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
 }
 
+nlohmann::ordered_json conditions_json(const Conditions& conditions) {
+  Json json = Json::object();
+  for (const auto& [name, choice] : conditions) json[name] = choice;
+  return json;
+}
+
 nlohmann::ordered_json actuators_json(const PlannedPose& pose) {
   Json actuators = Json::object();
   for (const NamedValue& v : pose.actuators) actuators[v.name] = v.value;
@@ -157,6 +163,7 @@ Json pose_json(const PlannedPose& pose) {
     json["units"] = units;
     json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
     json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+    if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
   }
   if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
@@ -203,6 +210,7 @@ Json unmodelled_json(const PlannedEffect& effect) {
           {"features", effect.features},
           {"feature_error", effect.feature_error},
           {"by_noise", value(effect.by_noise)},
+          {"by_repeatability", value(effect.by_repeatability)},
           {"by_effect", value(effect.by_effect)},
           {"interpolated", value(effect.interpolated)}};
 }

@@ -115,13 +115,19 @@ std::string effect_text(const Plan& plan) {
                                  shown_value(effect.size, "m"), effect.size_assumed ? " (auto)" : "",
                                  effect.rotation > 0 ? " and " + shown_value(effect.rotation, "rad") : "",
                                  effect.length * 180 / std::numbers::pi);
-  if (effect.by_noise)
-    text += fmt::format(
-        "Of the position error {} come from noise and {} from the effect; with what is left interpolated between the "
-        "poses it is {}.\n",
-        shown_value(*effect.by_noise, "m"), shown_value(*effect.by_effect, "m"),
-        shown_value(*effect.interpolated, "m"));
-  return text;
+  if (!effect.by_noise) return text;
+  const double by_visits = effect.by_repeatability.value_or(0.0);
+  const std::string noise =
+      by_visits > 0
+          ? fmt::format(
+                "{} come from instrument and encoders, {} from repeatability",
+                shown_value(std::sqrt(std::max(0.0, *effect.by_noise * *effect.by_noise - by_visits * by_visits)), "m"),
+                shown_value(by_visits, "m"))
+          : shown_value(*effect.by_noise, "m") + " come from noise";
+  return text + fmt::format(
+                    "Of the position error {} and {} from the effect; with what is left interpolated between "
+                    "the poses it is {}.\n",
+                    noise, shown_value(*effect.by_effect, "m"), shown_value(*effect.interpolated, "m"));
 }
 
 std::string indices_text(const Plan& plan) {

@@ -131,6 +131,15 @@ class SequenceReader {
           "one value a coordinate");
     pose.load_case = label_of(json, "load_case", place_);
     pose.station = label_of(json, "station", place_);
+    if (json.contains("conditions"))
+      for (const auto& [name, choice] : json["conditions"].items())
+        pose.conditions.emplace_back(name_of(name, place_), name_of(choice, place_));
+    if (!sequence_.poses.empty() &&
+        !std::equal(pose.conditions.begin(), pose.conditions.end(), sequence_.poses.front().conditions.begin(),
+                    sequence_.poses.front().conditions.end(),
+                    [](const auto& a, const auto& b) { return a.first == b.first; }))
+      throw InputError(place_, fmt::format("pose {} has other conditions than the first", pose.id),
+                       "the same ones for all poses");
     if (json.contains("actuators") && !json["actuators"].empty()) sequence_.is_platform = true;
     if (json.contains("tool_pose")) pose.tool_pose = tool_pose_of(json["tool_pose"], place_);
     if (json.contains("targets"))

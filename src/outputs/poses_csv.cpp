@@ -12,6 +12,7 @@ std::string poses_csv(const Plan& plan) {
   for (const NamedValue& v : first.actuators) text += fmt::format(",{} [{}]", v.name, v.unit);
   if (!first.load_case.empty()) text += ",load_case";
   if (!first.station.empty()) text += ",station";
+  for (const auto& [name, choice] : first.conditions) text += "," + formats::csv_cell(name);
   text += "\n";
   for (const PlannedPose& pose : plan.poses) {
     if (pose.measured) continue;
@@ -20,6 +21,7 @@ std::string poses_csv(const Plan& plan) {
     for (const NamedValue& v : pose.actuators) text += fmt::format(",{}", v.value);
     for (const std::string& choice : {pose.load_case, pose.station})
       if (!choice.empty()) text += "," + formats::csv_cell(choice);
+    for (const auto& [name, choice] : pose.conditions) text += "," + formats::csv_cell(choice);
     text += "\n";
   }
   return text;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "nearest.hpp"
 #include "posewright/outputs/route.hpp"
@@ -31,6 +32,7 @@ Json stop_json(const PlannedPose& pose) {
   Json json = {{"id", pose.id}, {"configuration", values}};
   json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
   json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+  if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
   if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
   if (pose.nearest) json["nearest"] = nearest_json(pose.nearest);
@@ -51,10 +53,24 @@ const RouteMotion* motion_to(const Route& route, int id) {
   return nullptr;
 }
 
+/// "joint_a2 rising, temperature 20"
+std::string conditions_text(const Conditions& conditions) {
+  std::string text;
+  for (const auto& [name, choice] : conditions)
+    text += (text.empty() ? "" : ", ") +
+            (name.ends_with(approach_suffix) ? name.substr(0, name.size() - std::strlen(approach_suffix)) : name) +
+            " " + choice;
+  return text;
+}
+
 std::string steps_table(const Route& route) {
   using A = Table::Align;
-  Table table({"", "pose", "station", "load case", "motion", "via", "found by", "elapsed", "targets seen"},
-              {A::right, A::right, A::left, A::left, A::right, A::right, A::left, A::right, A::right});
+  std::vector<std::string> header = {"",    "pose",     "station", "load case",   "motion",
+                                     "via", "found by", "elapsed", "targets seen"};
+  std::vector<A> align = {A::right, A::right, A::left, A::left, A::right, A::right, A::left, A::right, A::right};
+  const bool conditions = !route.poses.empty() && !route.poses.front().conditions.empty();
+  if (conditions) header.emplace_back("conditions"), align.push_back(A::left);
+  Table table(std::move(header), std::move(align));
   double elapsed = 0;
   for (std::size_t k = 0; k < route.poses.size(); ++k) {
     const PlannedPose& pose = route.poses[k];
@@ -63,12 +79,18 @@ std::string steps_table(const Route& route) {
     if (motion != nullptr) elapsed += motion->seconds + motion->change_seconds;
     const auto seen =
         std::count_if(pose.sights.begin(), pose.sights.end(), [](const TargetSight& s) { return s.hidden_by.empty(); });
-    table.row(
-        {std::to_string(k + 1), std::to_string(pose.id), pose.station, pose.load_case,
-         motion == nullptr ? "" : seconds_text(motion->seconds),
-         motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
-         motion == nullptr ? "" : motion->found_by, seconds_text(elapsed),
-         pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())});
+    std::vector<std::string> row = {
+        std::to_string(k + 1),
+        std::to_string(pose.id),
+        pose.station,
+        pose.load_case,
+        motion == nullptr ? "" : seconds_text(motion->seconds),
+        motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
+        motion == nullptr ? "" : motion->found_by,
+        seconds_text(elapsed),
+        pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())};
+    if (conditions) row.push_back(conditions_text(pose.conditions));
+    table.row(std::move(row));
     elapsed += route.settle;
   }
   return table.text();

@@ -110,7 +110,8 @@ StationChoiceSpec read_station_choice(const Value& value) {
 
 MotionSpec read_motion(const Value& value) {
   const Section section(value);
-  section.allow({"velocity", "acceleration", "home", "speed", "settle", "station_change", "load_change", "reachable"});
+  section.allow({"velocity", "acceleration", "home", "speed", "settle", "station_change", "load_change",
+                 "temperature_change", "reachable"});
   MotionSpec motion;
   motion.line = value.line();
   const auto read = [&](const char* key, std::initializer_list<Quantity> quantities, Sign sign, auto& into) {
@@ -131,6 +132,7 @@ MotionSpec read_motion(const Value& value) {
   seconds("settle", motion.settle);
   seconds("station_change", motion.station_change);
   seconds("load_change", motion.load_change);
+  seconds("temperature_change", motion.temperature_change);
   if (const Value* reachable = section.find("reachable")) motion.reachable = reachable->flag();
   return motion;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "posewright/support/text.hpp"
@@ -30,7 +31,7 @@ std::vector<JointEffectsSpec> read_joint_effects(const Value& value) {
   std::vector<JointEffectsSpec> all;
   for (const yaml::Entry& entry : Section(value).entries()) {
     const Section section(entry.value);
-    section.allow({"eccentricity", "gear_ratio", "coupling"});
+    section.allow({"eccentricity", "gear_ratio", "coupling", "backlash", "overrun", "temperature"});
     JointEffectsSpec effects;
     effects.joint = entry.key;
     if (const Value* eccentricity = section.find("eccentricity")) effects.eccentricity = eccentricity->flag();
@@ -40,16 +41,38 @@ std::vector<JointEffectsSpec> read_joint_effects(const Value& value) {
         ratio->fail("is a harmonic of eccentricity, too", "another ratio, or one of both");
     }
     if (const Value* coupling = section.find("coupling")) effects.coupling = coupling->texts();
-    if (!effects.eccentricity && !effects.gear_ratio && effects.coupling.empty())
-      entry.value.fail("has no effect", "eccentricity: yes, gear_ratio or coupling");
+    if (const Value* backlash = section.find("backlash")) effects.backlash = backlash->flag();
+    if (const Value* overrun = section.find("overrun")) {
+      if (!effects.backlash) overrun->fail("stands without backlash", "backlash: yes");
+      effects.overrun = overrun->measured({Quantity::angle, Quantity::length}, Sign::positive);
+    }
+    if (const Value* temperature = section.find("temperature")) effects.temperature = temperature->flag();
+    if (!effects.eccentricity && !effects.gear_ratio && effects.coupling.empty() && !effects.backlash &&
+        !effects.temperature)
+      entry.value.fail("has no effect", "eccentricity: yes, gear_ratio, coupling, backlash: yes or temperature: yes");
     all.push_back(std::move(effects));
   }
   return all;
 }
 
+TemperatureSpec read_temperature(const Value& value) {
+  const Section section(value);
+  section.allow({"reference", "at"});
+  TemperatureSpec spec;
+  if (const Value* reference = section.find("reference")) spec.reference = reference->number(Quantity::number);
+  if (const Value* at = section.find("at"))
+    for (const Value& one : at->items("a list of temperatures in degrees Celsius is expected"))
+      spec.at.push_back(one.number(Quantity::number));
+  if (spec.at.empty()) spec.at = {spec.reference};
+  std::sort(spec.at.begin(), spec.at.end());
+  if (std::adjacent_find(spec.at.begin(), spec.at.end()) != spec.at.end())
+    value.fail("names a temperature twice", "at: [18, 25], each once, in degrees Celsius");
+  return spec;
+}
+
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& folder) {
-  robot.allow(
-      {"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "joint_effects"});
+  robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "joint_effects",
+               "temperature"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
   arm.urdf = folder / urdf.text("a file name is expected");
@@ -62,6 +85,11 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
   if (const Value* names = robot.find("parameter_names")) arm.parameter_names = read_parameter_names(*names);
   if (const Value* elastostatic = robot.find("elastostatic")) arm.elastostatic = read_elastostatic(*elastostatic);
   if (const Value* effects = robot.find("joint_effects")) arm.joint_effects = read_joint_effects(*effects);
+  if (const Value* temperature = robot.find("temperature")) {
+    arm.temperature = read_temperature(*temperature);
+    if (std::none_of(arm.joint_effects.begin(), arm.joint_effects.end(), [](const auto& e) { return e.temperature; }))
+      temperature->fail("is used by no joint", "joint_effects: {NAME: {temperature: yes}}");
+  }
   return arm;
 }
 

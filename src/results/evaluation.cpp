@@ -87,6 +87,7 @@ Json change_json(const ListChange& change) {
                              {"configuration", values},
                              {"load_case", pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case)},
                              {"station", pose.station.empty() ? Json(nullptr) : Json(pose.station)}});
+    for (const auto& [name, choice] : pose.conditions) json["poses"].back()["conditions"][name] = choice;
   }
   return json;
 }

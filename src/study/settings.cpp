@@ -71,6 +71,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.measured = options.measured;
   if (!s.measured) s.measured_file = design.measured.value_or("");
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
+  s.planner.restarts_stated = options.restarts || design.restarts.line > 0;
   s.planner.seed = options.seed;
   s.planner.threads = options.threads;
   return s;

@@ -163,8 +163,9 @@ Eigen::MatrixXd effect_places(const UnmodelledEffect& effect, const Configuratio
 }
 
 BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& features, const Configurations& configurations,
-                           int threads) {
-  const std::vector<int>& own = variant.columns.selected;
+                           int threads, const std::vector<int>& others) {
+  std::vector<int> own = variant.columns.selected;
+  own.insert(own.end(), others.begin(), others.end());
   std::vector<int> all = own;
   all.insert(all.end(), features.effect().columns().begin(), features.effect().columns().end());
   const BlockArray raw = build_blocks(*variant.model, all, configurations, threads);

@@ -36,6 +36,7 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
       throw std::logic_error("targets of the instrument and of the line of sight differ");
     variant.model->set_visibility({cell, cell->sight.get()});
   }
+  variant.repeatability = problem.measurement.repeatability;
   variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell);
   return variant;
 }

@@ -39,7 +39,10 @@ class SequenceCheck {
     for (const SequencePose& pose : sequence_.poses) check_values(pose.values, fmt::format("pose {}", pose.id));
     if (!sequence_.is_route) return;
     check_values(sequence_.home, "home");
-    for (const SequenceMotion& motion : sequence_.motions) check_motion(motion);
+    for (const SequenceMotion& motion : sequence_.motions) {
+      check_motion(motion);
+      check_arrival(motion);
+    }
     if (!(sequence_.settle >= 0 && sequence_.settle <= 3600))
       refuse(fmt::format("settles for {:.6g} s at a pose", sequence_.settle), "0 to 3600 s");
   }
@@ -117,6 +120,27 @@ class SequenceCheck {
     for (std::size_t i = 0, k = 0; i < limits_.size(); ++i)
       configuration.push_back(limits_[i].choice() ? limits_[i].values.front() : q[k++]);
     return configuration;
+  }
+
+  /// Joints with backlash arrive from the side that their pose states.
+  void check_arrival(const SequenceMotion& motion) const {
+    const auto pose = std::find_if(sequence_.poses.begin(), sequence_.poses.end(),
+                                   [&](const SequencePose& p) { return p.id == motion.to; });
+    if (pose == sequence_.poses.end() || motion.points.size() < 2) return;
+    const std::vector<double>& before = motion.points[motion.points.size() - 2];
+    for (const Coordinate& c : limits_) {
+      if (c.arrives.empty()) continue;
+      const auto at = std::find_if(pose->conditions.begin(), pose->conditions.end(),
+                                   [&](const auto& condition) { return condition.first == c.name; });
+      const auto joint = std::size_t(
+          std::find_if(moving_.begin(), moving_.end(), [&](const Coordinate& m) { return m.name == c.arrives; }) -
+          moving_.begin());
+      const double way = motion.points.back()[joint] - before[joint];
+      if (at == pose->conditions.end() || (at->second == c.labels.front() ? way : -way) < c.overrun * (1 - slack))
+        refuse(fmt::format("the motion from {} to {} does not arrive as its pose states: {}", motion.from, motion.to,
+                           c.name),
+               fmt::format("rising or falling, from {:.4g} {} or more", c.overrun, moving_[joint].unit));
+    }
   }
 
   void check_motion(const SequenceMotion& motion) const {

@@ -12,7 +12,7 @@ namespace {
 Problem with_eccentricity(Problem problem) {
   auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
   if (arm == nullptr) return problem;
-  if (arm->joint_effects.empty()) arm->joint_effects.push_back({{"*", 0}, true, std::nullopt, {}});
+  if (arm->joint_effects.empty()) arm->joint_effects.push_back({{"*", 0}, true, std::nullopt, {}, false, {}, false});
   else
     for (JointEffectsSpec& spec : arm->joint_effects) spec.eccentricity = true;
   return problem;

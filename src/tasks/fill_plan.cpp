@@ -20,11 +20,20 @@ std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::s
 std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];
-    if (!c.choice() || c.name != name) continue;
-    const auto at = std::lower_bound(c.values.begin(), c.values.end(), q[i]) - c.values.begin();
-    return c.labels[std::size_t(at)];
+    if (c.choice() && c.name == name) return c.label_at(q[i]);
   }
   return {};
+}
+
+/// What else is chosen, where there is a choice.
+Conditions conditions_at(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
+  Conditions result;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Coordinate& c = coordinates[i];
+    if (!c.choice() || c.name == "load_case" || c.name == "station") continue;
+    if (c.labels.size() > 1) result.emplace_back(c.name, c.label_at(q[i]));
+  }
+  return result;
 }
 
 void fill_parameters(Plan& plan, const Variant& variant, const Evaluation& evaluation, const std::string& name) {
@@ -51,6 +60,7 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
   pose.configuration = named(model.coordinates(), q);
   pose.load_case = chosen_label(model.coordinates(), q, "load_case");
   pose.station = chosen_label(model.coordinates(), q, "station");
+  pose.conditions = conditions_at(model.coordinates(), q);
   std::vector<double> actuators(model.actuators().size());
   if (model.actuator_values(q, actuators)) pose.actuators = named(model.actuators(), actuators);
   pose.tool_pose = model.tool_pose(q);

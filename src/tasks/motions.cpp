@@ -7,10 +7,12 @@
 
 namespace posewright {
 
-Motions::Motions(const MotionSpace& space, std::vector<std::vector<double>> stops, int milestones, std::uint64_t seed,
-                 int threads, const Monitor& monitor)
+Motions::Motions(const MotionSpace& space, std::vector<std::vector<double>> stops,
+                 std::vector<std::vector<double>> leads, int milestones, std::uint64_t seed, int threads,
+                 const Monitor& monitor)
     : space_(space),
       stops_(std::move(stops)),
+      leads_(std::move(leads)),
       milestones_(milestones),
       threads_(threads),
       seed_(seed),
@@ -26,7 +28,7 @@ void Motions::look_ahead(const std::vector<Pair>& pairs) {
   std::vector<char> free(open.size(), 0);
   parallel_for(open.size(), thread_count(threads_), [&](std::size_t k, int) {
     free[k] = char(!monitor_.should_stop() &&
-                   space_.is_free(stops_[std::size_t(open[k].first)], stops_[std::size_t(open[k].second)]));
+                   space_.is_free(leads_[std::size_t(open[k].first)], leads_[std::size_t(open[k].second)]));
   });
   if (monitor_.should_stop()) throw CannotDo("stopped before all motions were found");
   for (std::size_t k = 0; k < open.size(); ++k) straight_[open[k]] = free[k] != 0;
@@ -40,12 +42,25 @@ Roadmap& Motions::roadmap() {
 }
 
 Motion Motions::direct(int i, int j) {
-  const auto& from = stops_[std::size_t(i)];
-  const auto& to = stops_[std::size_t(j)];
+  const auto& from = leads_[std::size_t(i)];
+  const auto& to = leads_[std::size_t(j)];
   look_ahead({{i, j}});
   if (straight_[{std::min(i, j), std::max(i, j)}]) return {{from, to}, space_.seconds(from, to), "straight"};
   if (!space_.is_free(from) || !space_.is_free(to)) return {};
   return roadmap().motion(from, to);
+}
+
+void Motions::add_ends(Motion& motion, int i, int j) const {
+  const auto &from = stops_[std::size_t(i)], &to = stops_[std::size_t(j)];
+  if (motion.points.empty()) return;
+  if (from != motion.points.front()) {
+    motion.seconds += space_.seconds(from, motion.points.front());
+    motion.points.insert(motion.points.begin(), from);
+  }
+  if (to != motion.points.back()) {
+    motion.seconds += space_.seconds(motion.points.back(), to);
+    motion.points.push_back(to);
+  }
 }
 
 const Motion& Motions::between(int i, int j) {
@@ -53,6 +68,7 @@ const Motion& Motions::between(int i, int j) {
   auto known = found_.find(key);
   if (known == found_.end()) {
     Motion motion = direct(key.first, key.second);
+    add_ends(motion, key.first, key.second);
     if (motion.points.empty() && key.first != hub_ && key.second != hub_ && reachable(key.first) &&
         reachable(key.second)) {
       motion = between(key.first, hub_);

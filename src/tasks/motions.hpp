@@ -15,8 +15,9 @@ namespace posewright {
 /// hub that every reachable stop is connected with.
 class Motions {
  public:
-  Motions(const MotionSpace& space, std::vector<std::vector<double>> stops, int milestones, std::uint64_t seed,
-          int threads, const Monitor& monitor);
+  /// @param leads  where each stop is arrived from, and left to, in a straight motion (MotionSpace::lead)
+  Motions(const MotionSpace& space, std::vector<std::vector<double>> stops, std::vector<std::vector<double>> leads,
+          int milestones, std::uint64_t seed, int threads, const Monitor& monitor);
   ~Motions();
 
   /// Straight motions of these pairs, looked at in parallel.
@@ -34,10 +35,12 @@ class Motions {
  private:
   using Pair = std::pair<int, int>;
   Motion direct(int i, int j);
+  /// The same from stop to stop, where it leads from lead to lead.
+  void add_ends(Motion& motion, int i, int j) const;
   Roadmap& roadmap();
 
   const MotionSpace& space_;
-  std::vector<std::vector<double>> stops_;
+  std::vector<std::vector<double>> stops_, leads_;
   int milestones_, threads_, hub_ = 0;
   std::uint64_t seed_;
   const Monitor& monitor_;

@@ -26,6 +26,12 @@ struct Stop {
   PlannedPose pose;
 };
 
+std::string temperature_of(const PlannedPose& pose) {
+  for (const auto& [name, choice] : pose.conditions)
+    if (name == "temperature") return choice;
+  return {};
+}
+
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
@@ -88,10 +94,23 @@ class Router {
     if (options_.start && find_stop(*options_.start) < 0)
       throw InputError({}, "--start " + std::to_string(*options_.start) + " is not a pose of " + list.name,
                        "an id of a pose that is still to be measured");
-    std::vector<std::vector<double>> reduced;
-    for (const Stop& stop : stops_) reduced.push_back(space_.reduced(stop.configuration));
-    motions_ = std::make_unique<Motions>(space_, std::move(reduced), options_.milestones, options_.seed,
-                                         options_.threads, monitor_);
+    require_beginning();
+    std::vector<std::vector<double>> reduced, leads;
+    for (const Stop& stop : stops_) {
+      reduced.push_back(space_.reduced(stop.configuration));
+      // Nobody measures at home.
+      leads.push_back(stop.id == 0 ? reduced.back() : space_.lead(stop.configuration));
+    }
+    motions_ = std::make_unique<Motions>(space_, std::move(reduced), std::move(leads), options_.milestones,
+                                         options_.seed, options_.threads, monitor_);
+  }
+
+  /// Nobody knows from where the robot comes to a first pose.
+  void require_beginning() const {
+    const auto arrives = [](const auto& condition) { return condition.first.ends_with(approach_suffix); };
+    const Conditions& conditions = stops_.back().pose.conditions;
+    if (!options_.from_home && std::any_of(conditions.begin(), conditions.end(), arrives))
+      throw CannotDo("joints with backlash arrive from a stated side, also at the first pose: begin --from-home");
   }
 
   int find_stop(int id) const {
@@ -106,14 +125,27 @@ class Router {
     return pair.empty() ? space_.violation(space_.reduced(stops_[stop].configuration)) : pair + " are too near";
   }
 
-  /// Leaves out poses that collide where they are.
+  /// Why no motion can end at a stop, whatever the way; empty if one may.
+  std::string obstacle(std::size_t stop) const {
+    const std::vector<double> q = space_.reduced(stops_[stop].configuration);
+    if (!space_.is_free(q)) return "not free: " + collision(stop);
+    const std::vector<double> lead = space_.lead(stops_[stop].configuration);
+    if (space_.is_free(lead, q)) return {};
+    std::string sides;
+    for (const auto& [name, side] : stops_[stop].pose.conditions)
+      if (name.ends_with(approach_suffix)) sides += (sides.empty() ? "" : ", ") + name + " " + side;
+    const std::string why = space_.violation(lead);
+    return "no room to arrive as stated (" + sides + "): " + (why.empty() ? "collision on the way" : why);
+  }
+
+  /// Leaves out poses that collide where they are, or where they are arrived from.
   void keep_free() {
     if (options_.from_home && !space_.is_free(space_.home()))
       throw CannotDo("home is not free: " + collision(0) + "; set workspace: motion: home to a configuration that is");
     for (std::size_t i = 1; i < stops_.size(); ++i)
-      if (space_.is_free(space_.reduced(stops_[i].configuration))) open_.push_back(int(i));
-      else route_.unreachable.push_back({stops_[i].id, "not free: " + collision(i)});
-    if (open_.empty()) throw CannotDo("no pose of the plan is free: " + route_.unreachable.front().reason);
+      if (const std::string why = obstacle(i); why.empty()) open_.push_back(int(i));
+      else route_.unreachable.push_back({stops_[i].id, why});
+    if (open_.empty()) throw CannotDo("no pose of the plan can be reached: " + route_.unreachable.front().reason);
     require_start();
     motions_->set_hub(space_.is_free(space_.home()) ? 0 : open_.front());
     if (options_.from_home) open_.insert(open_.begin(), 0);
@@ -168,7 +200,8 @@ class Router {
     if (i == 0 || j == 0) return 0.0;
     const PlannedPose &a = stops_[std::size_t(i)].pose, &b = stops_[std::size_t(j)].pose;
     return (a.station != b.station ? problem_.workspace.motion.station_change : 0.0) +
-           (a.load_case != b.load_case ? problem_.workspace.motion.load_change : 0.0);
+           (a.load_case != b.load_case ? problem_.workspace.motion.load_change : 0.0) +
+           (temperature_of(a) != temperature_of(b) ? problem_.workspace.motion.temperature_change : 0.0);
   }
 
   double cost(int i, int j) {

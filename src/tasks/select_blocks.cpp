@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <numeric>
+#include <set>
 
 #include "fill_plan.hpp"
 #include "posewright/blocks/read_blocks.hpp"
@@ -27,18 +28,84 @@ void require_block_criterion(const std::string& criterion) {
     throw InputError({}, "criterion '" + criterion + "' needs a robot", "with blocks alone: o1 to o5, ds, a");
 }
 
+/// Blocks that are in the plan before the search: fixed ones, then measured ones.
+std::vector<int> given_blocks(const BlockFile& file, const SelectOptions& options) {
+  std::vector<int> all = options.fixed;
+  all.insert(all.end(), options.measured.begin(), options.measured.end());
+  std::set<int> seen;
+  for (const int i : all) {
+    if (i < 0 || std::size_t(i) >= file.blocks.count())
+      throw InputError({}, "there is no block " + std::to_string(i),
+                       "0 to " + std::to_string(file.blocks.count() - 1) + " are allowed");
+    if (!seen.insert(i).second && options.repeats.most == 1)
+      throw InputError({}, "block " + std::to_string(i) + " is fixed or measured twice", "--repeats allow, or once");
+  }
+  if (int(options.fixed.size()) >= options.poses)
+    throw InputError({},
+                     std::to_string(options.fixed.size()) + " of " + std::to_string(options.poses) + " poses are fixed",
+                     "fewer than --poses: something is to be chosen");
+  return all;
+}
+
 void require_enough(const BlockFile& file, const SelectOptions& options) {
+  const int poses = options.poses + int(options.measured.size());
   const int m = file.blocks.columns(), r = file.blocks.rows();
   if (options.nuisance < 0 || options.nuisance >= m)
     throw InputError({}, "--nuisance " + std::to_string(options.nuisance),
                      "0 to " + std::to_string(m - 1) + " of the " + std::to_string(m) + " columns");
-  if (options.poses * r < m)
-    throw CannotDo(std::to_string(options.poses) + " poses give " + std::to_string(options.poses * r) +
-                   " equations for " + std::to_string(m) + " parameters: at least " + std::to_string((m + r - 1) / r) +
+  if (poses * r < m)
+    throw CannotDo(std::to_string(poses) + " poses give " + std::to_string(poses * r) + " equations for " +
+                   std::to_string(m) + " parameters: at least " + std::to_string((m + r - 1) / r) +
                    " poses are needed");
 }
 
-void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation, const SearchResult& found) {
+/// The candidates that are left, the information of the blocks that are given, and the blocks themselves.
+struct Start {
+  std::vector<int> free;
+  Eigen::MatrixXd prior;
+  BlockArray given;
+};
+
+Start start_of(const BlockFile& file, const std::vector<int>& given, const SelectOptions& options) {
+  Start start{{}, {}, file.blocks.subset(given)};
+  const std::set<int> taken(given.begin(), given.end());
+  for (int i = 0; i < int(file.blocks.count()); ++i)
+    if (options.repeats.most > 1 || taken.count(i) == 0) start.free.push_back(i);
+  if (!given.empty()) start.prior = start.given.all().transpose() * start.given.all();
+  return start;
+}
+
+/// Given blocks, then chosen ones.
+BlockArray together(const BlockArray& given, const BlockArray& chosen) {
+  BlockArray all(given.count() + chosen.count(), chosen.rows(), chosen.columns());
+  if (given.count() > 0) all.all().topRows(given.all().rows()) = given.all();
+  all.all().bottomRows(chosen.all().rows()) = chosen.all();
+  return all;
+}
+
+/// What is left of the whole list without each of its first blocks, which no search has looked at.
+std::vector<double> without_given(const BlockArray& all, std::size_t given, const SearchRequest& request,
+                                  const SelectOptions& options, double degree) {
+  std::vector<int> whole(all.count());
+  std::iota(whole.begin(), whole.end(), 0);
+  std::vector<SearchPart> parts(1);
+  parts.front().blocks = all.subset(whole);
+  parts.front().nuisance = options.nuisance;
+  parts.front().scale = Eigen::VectorXd::Ones(all.columns());
+  const auto measure = measure_of(std::move(parts), request, Monitor{});
+  const double phi = measure->phi(all);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < given; ++i) {
+    std::vector<int> rest = whole;
+    rest.erase(rest.begin() + std::ptrdiff_t(i));
+    const double left = measure->phi(all.subset(rest));
+    result.push_back(std::min(1.0, std::exp((left - phi) / (degree > 0 ? degree : 1.0))));
+  }
+  return result;
+}
+
+void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation, const SearchResult& found,
+          const Start& start, const std::vector<int>& given, const std::vector<double>& without) {
   plan.log_det = evaluation.log_det;
   plan.log_det_full = evaluation.log_det_full;
   plan.indices = evaluation.indices;
@@ -47,12 +114,14 @@ void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation
   const double phi = found.measure->phi(found.chosen.front());
   plan.criterion_value = find_criterion(options.criterion)->shown(phi, evaluation.indices);
   certify(plan.certificate, phi, found.degree);
-  for (std::size_t i = 0; i < found.design.members.size(); ++i) {
+  for (std::size_t i = 0; i < given.size() + found.design.members.size(); ++i) {
     PlannedPose pose;
     pose.id = int(i) + 1;
-    pose.candidate = found.design.members[i];
+    const bool chosen = i >= given.size();
+    pose.candidate = chosen ? start.free[std::size_t(found.design.members[i - given.size()])] : given[i];
+    pose.measured = !chosen && i >= options.fixed.size();
     pose.contribution = evaluation.contribution[Eigen::Index(i)];
-    pose.without = found.without[i];
+    pose.without = chosen ? found.without[i - given.size()] : without[i];
     plan.poses.push_back(std::move(pose));
   }
   plan.statistics.stages = found.stages;
@@ -72,26 +141,35 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   plan.scaling = "none";
   plan.reserve = options.reserve;
   plan.problem_sha256 = file.sha256;
+  const std::vector<int> given = given_blocks(file, options);
+  if (options.reserve && !options.fixed.empty())
+    throw InputError({}, "--reserve stands beside --fixed", "one of both: what is fixed may be lost, too");
   require_enough(file, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
   SearchRequest request;
   request.criterion = options.criterion;
   request.method = options.method;
-  request.poses = options.poses;
+  request.poses = options.poses - int(options.fixed.size());
   request.repeats = options.repeats;
   request.reserve = options.reserve;
-  request.planner.restarts = options.restarts;
+  request.planner.restarts = options.restarts.value_or(request.planner.restarts);
+  request.planner.restarts_stated = options.restarts.has_value();
   request.planner.seed = options.seed;
   request.planner.threads = options.threads;
+  Start start = start_of(file, given, options);
   std::vector<SearchPart> parts(1);
-  parts.front().blocks = std::move(file.blocks);
+  parts.front().blocks = given.empty() ? std::move(file.blocks) : file.blocks.subset(start.free);
   parts.front().nuisance = options.nuisance;
+  parts.front().prior = start.prior;
   parts.front().scale = Eigen::VectorXd::Ones(Eigen::Index(parameters.size()));
   const SearchResult found = search(std::move(parts), request, monitor);
 
-  const Evaluation evaluation = evaluate(found.chosen.front(), parameters);
-  fill(plan, options, evaluation, found);
+  const BlockArray all = together(start.given, found.chosen.front());
+  const Evaluation evaluation = evaluate(all, parameters);
+  const std::vector<double> without =
+      given.empty() ? std::vector<double>{} : without_given(all, given.size(), request, options, found.degree);
+  fill(plan, options, evaluation, found, start, given, without);
   for (std::size_t j = 0; j < parameters.size(); ++j)
     plan.parameters.push_back({parameters[j], "", evaluation.sigma[Eigen::Index(j)], ""});
   plan.interrupted = found.stopped;

@@ -17,6 +17,7 @@ Checks pose_checks(const CheckContext& context) {
   add_limits_check(context, checks);
   add_coupled_checks(context, checks);
   add_actuator_checks(context, checks);
+  add_approach_check(context, checks);
   add_measurable_check(context, checks);
   add_tool_check(context, checks);
   add_singularity_check(context, checks);

@@ -27,6 +27,7 @@ Checks pose_checks(const CheckContext& context);
 void add_limits_check(const CheckContext& context, Checks& checks);
 void add_coupled_checks(const CheckContext& context, Checks& checks);
 void add_actuator_checks(const CheckContext& context, Checks& checks);
+void add_approach_check(const CheckContext& context, Checks& checks);
 void add_measurable_check(const CheckContext& context, Checks& checks);
 void add_tool_check(const CheckContext& context, Checks& checks);
 void add_singularity_check(const CheckContext& context, Checks& checks);

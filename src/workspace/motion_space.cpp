@@ -136,6 +136,18 @@ std::vector<double> MotionSpace::whole(std::span<const double> q) const { return
 
 std::vector<double> MotionSpace::home() const { return reduced(implementation_->home); }
 
+std::vector<double> MotionSpace::lead(std::span<const double> configuration) const {
+  const std::vector<Coordinate>& all = implementation_->all;
+  std::vector<double> q = reduced(configuration);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].arrives.empty()) continue;
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (implementation_->coordinates[k].name == all[i].arrives)
+        q[k] += all[i].overrun * (configuration[i] == all[i].values.front() ? -1 : 1);
+  }
+  return q;
+}
+
 std::string MotionSpace::violation(std::span<const double> q) const { return implementation_->violation(whole(q)); }
 
 bool MotionSpace::is_free(std::span<const double> q) const {

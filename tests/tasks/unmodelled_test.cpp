@@ -123,6 +123,31 @@ TEST_F(UnmodelledEffects, FiguresAreThoseOfGeneralisedLeastSquaresOfAllReadings)
   }
 }
 
+TEST_F(UnmodelledEffects, ErrorByRepeatabilityIsWhatRandomVisitsMakeOfTheEstimate) {
+  constexpr double visit = 3e-4, size = 2e-4;
+  Problem loose = problem("{size: 0.2 mm}", "{variant: short, poses: 8, test_poses: {at: [[0.5, 1]]}}");
+  loose.measurement.repeatability.translation = visit;
+  const Plan plan = judged(loose, eight);
+  // The estimator of all readings: weights are those of instrument, visits and effect together.
+  const Whole whole(eight, size, sixty_degrees);
+  const Eigen::MatrixXd covariance =
+      whole.inverse.inverse() + visit * visit * Eigen::MatrixXd::Identity(whole.J.rows(), whole.J.rows());
+  const Eigen::MatrixXd weights = covariance.inverse() * whole.J;
+  const Eigen::MatrixXd gain = (whole.J.transpose() * weights).inverse() * weights.transpose();
+  Random random(5, 1);
+  double squares = 0;
+  constexpr int draws = 20000;
+  for (int k = 0; k < draws; ++k) {
+    Eigen::VectorXd moved(whole.J.rows());
+    for (double& value : moved) value = visit * random.normal();
+    squares += (jacobian({0.5, 1}) * (gain * moved)).squaredNorm();
+  }
+  ASSERT_TRUE(plan.unmodelled);
+  EXPECT_NEAR(*plan.unmodelled->by_repeatability / std::sqrt(squares / draws), 1, 0.02);
+  EXPECT_LT(*plan.unmodelled->by_repeatability, *plan.unmodelled->by_noise);
+  EXPECT_THAT(plan_summary(plan), testing::HasSubstr("from repeatability"));
+}
+
 TEST_F(UnmodelledEffects, InterpolationAddsNothingAtAMeasuredPoseOfANoiselessInstrumentAndMissesTheRestFarAway) {
   // An effect a thousand times the noise: at a measured pose what is read there is known, across the plane it is not.
   const Plan plan = judged(

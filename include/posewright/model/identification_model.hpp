@@ -23,9 +23,15 @@ struct Coordinate {
   std::vector<std::string> labels{};  ///< of a choice (load case, station): what the values 0, 1, … stand for
   double speed = 0.0;                 ///< largest, per second; 0: not known
   std::string limited_by{};           ///< what narrows the joint's own limits; empty: nothing
+  /// Of a choice between `rising` and `falling`: the coordinate that arrives so, and from how far, rad or m.
+  std::string arrives{};
+  double overrun = 0.0;
+  bool measurable = false;  ///< a choice (of a temperature) that data may hold any number of; values are the numbers
 
   bool discrete() const { return !values.empty(); }
   bool choice() const { return !labels.empty(); }
+  /// What a value of a choice is called; of a measured one that is none of them, the number.
+  std::string label_at(double value) const;
 };
 
 /// InputError for a name that is none of them; says which are allowed (the second ones of pairs go without saying).
@@ -34,6 +40,8 @@ struct Coordinate {
 
 /// A choice among named things as a coordinate: values 0, 1, … with these labels.
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels);
+/// The side from which a coordinate with backlash arrives: `rising` (0) or `falling` (1), named JOINT.approach.
+Coordinate make_approach(const std::string& joint, double overrun);
 
 /// One value that an instrument delivers at a configuration.
 struct Reading {

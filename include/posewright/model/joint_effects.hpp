@@ -12,37 +12,44 @@ namespace posewright {
 ///   q' = q + c₁ cos q + s₁ sin q + c₂ cos 2q + s₂ sin 2q   (eccentricity: encoder or gear wheel off its axis, and
 ///   oval)
 ///          + c cos Nq + s sin Nq                           (gear: N periods a turn of the joint)
-///          + Σ k q_other                                   (coupling with another joint).
+///          + Σ k q_other                                   (coupling with another joint)
+///          ∓ b/2 where it arrived rising, falling          (backlash: b is the play)
+///          + t (T − T_reference)                           (temperature).
 /// Parameters NAME.{cos1, sin1, cos2, sin2}, NAME.{cos_g, sin_g} (rad), NAME.coupling.OTHER (own unit per other's), as
-/// the problem lists them, before tool.*; nominal 0. Loads bend the arm as it reads. Their twists are those of the
-/// joints' readings times the function.
+/// NAME.backlash (own unit), NAME.temperature (own unit/K), as the problem lists them, before tool.*; nominal 0. Joints
+/// with backlash add a choice NAME.approach to the configuration, temperature one `temperature` (°C). Loads bend the
+/// arm as it reads. Their twists are those of the joints' readings times the function.
 class JointEffects : public TipModel {
  public:
   /// @param arm  the chain whose coordinates are the joints' readings
-  /// Throws InputError for names that match no joint or one twice, and for angles of a joint that slides.
-  JointEffects(std::unique_ptr<TipModel> arm, const std::vector<JointEffectsSpec>& effects, const std::string& file);
+  /// Throws InputError for names that match no joint or one twice, for angles of a joint that slides, and for one that
+  /// drifts with a temperature that nobody states.
+  JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& spec, const std::string& file);
 
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
   void take_loads_at(std::span<const double> correction) override;
 
  private:
-  enum class Kind { cosine, sine, linear };
-  /// One parameter: what it adds to the reading of `joint` is its value times the function of the reading of `of`.
+  enum class Kind { cosine, sine, linear, side };
+  /// One parameter: what it adds to the reading of `joint` is its value times the function of coordinate `of`.
   struct Effect {
     int joint, of;
     Kind kind;
-    double frequency;
+    double constant;  ///< periods in a turn; where a linear one is zero
     double value(double q) const;
     double derivative(double q) const;
   };
 
   void add(const JointEffectsSpec& spec, int joint, const std::string& file);
+  void add_temperature(const TemperatureSpec& spec);
   double coefficient(const Point& at, std::size_t effect) const;
 
   std::unique_ptr<TipModel> arm_;
   std::vector<Effect> effects_;
-  int first_ = 0;  ///< index of the first effect's parameter
+  int first_ = 0;         ///< index of the first effect's parameter
+  int temperature_ = -1;  ///< coordinate; −1: there is none
+  double reference_temperature_ = 0.0;
 };
 
 }  // namespace posewright

@@ -12,6 +12,12 @@
 
 namespace posewright {
 
+/// What else is chosen for a pose beside load case and station: the side that a joint arrives from, the temperature.
+/// Names and choices, in the order of the robot's coordinates.
+using Conditions = std::vector<std::pair<std::string, std::string>>;
+/// Of a condition's name: the side that a joint arrives from (model/identification_model.hpp, make_approach).
+inline constexpr const char* approach_suffix = ".approach";
+
 /// A named value with its unit: one entry of a configuration or an actuator.
 struct NamedValue {
   std::string name;
@@ -44,10 +50,11 @@ struct PlannedPose {
     int line = 0;  ///< of its file; 0: not known
   };
   std::optional<Listed> listed{};
-  bool measured = false;                       ///< was there before: not to be measured again
-  std::vector<NamedValue> configuration;       ///< empty for a plan made from bare blocks
-  std::vector<NamedValue> actuators;           ///< of a parallel robot
-  std::string load_case, station;              ///< empty if the problem has none
+  bool measured = false;                  ///< was there before: not to be measured again
+  std::vector<NamedValue> configuration;  ///< empty for a plan made from bare blocks
+  std::vector<NamedValue> actuators;      ///< of a parallel robot
+  std::string load_case, station;         ///< empty if the problem has none
+  Conditions conditions{};
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<TargetSight> sights;             ///< where to look for the targets
   std::optional<BodyDistance> nearest{};       ///< of the bodies that are checked for collision
@@ -170,8 +177,9 @@ struct PlannedEffect {
   int features = 0;                                 ///< that stood for it in the search
   /// log det of the plan with the features less that with the whole effect.
   double feature_error = 0.0;
-  /// Of rho0, if there are test poses: by noise alone, by the effect; and in all if what is left is interpolated, m.
-  std::optional<double> by_noise{}, by_effect{}, interpolated{};
+  /// Of rho0, if there are test poses: by noise alone (the part of it that repeatability has), by the effect; and in
+  /// all if what is left is interpolated, m.
+  std::optional<double> by_noise{}, by_repeatability{}, by_effect{}, interpolated{};
 };
 
 /// How much the accuracy of a plan relies on the model being complete: a smooth effect that it lacks moves the tip by

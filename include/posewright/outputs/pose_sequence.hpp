@@ -18,9 +18,10 @@ struct SequenceTarget {
 
 struct SequencePose {
   int id = 0;
-  bool measured = false;                       ///< was there before the plan: not to be measured again
-  std::vector<double> values;                  ///< SI, in the order of PoseSequence::names
-  std::string load_case, station;              ///< empty if there is none
+  bool measured = false;           ///< was there before the plan: not to be measured again
+  std::vector<double> values;      ///< SI, in the order of PoseSequence::names
+  std::string load_case, station;  ///< empty if there is none
+  Conditions conditions{};
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<SequenceTarget> targets;
   std::vector<std::string> references;  ///< reference targets to measure while the robot stands here

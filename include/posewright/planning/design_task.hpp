@@ -32,7 +32,9 @@ struct PlannerOptions {
   int kicks = 50;     ///< ≥ 0: perturbations of each restart's local optimum (iterated local search)
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0 = all
-  bool use_all_time = true;  ///< `auto` goes on until the monitor's deadline, if there is one
+  bool use_all_time = true;  ///< a search goes on until the monitor's deadline, if there is one
+  /// Somebody wants so many starts and no more; `auto` takes more than one round of them all the same.
+  bool restarts_stated = false;
 };
 
 /// What a part of a search reached.

@@ -103,11 +103,12 @@ struct SingularitySpec {
 struct MotionSpec {
   std::vector<std::pair<Located<std::string>, Measured>> velocity, acceleration;  ///< replace the robot's own
   std::vector<std::pair<Located<std::string>, Measured>> home;                    ///< coordinates left out are zero
-  double speed = 1.0;           ///< share of the velocities that is used
-  double settle = 0.0;          ///< s, standstill at each pose
-  double station_change = 900;  ///< s, from one station to another
-  double load_change = 300;     ///< s, from one load case to another
-  bool reachable = false;       ///< every pose must be connected with home
+  double speed = 1.0;                ///< share of the velocities that is used
+  double settle = 0.0;               ///< s, standstill at each pose
+  double station_change = 900;       ///< s, from one station to another
+  double load_change = 300;          ///< s, from one load case to another
+  double temperature_change = 3600;  ///< s, until the robot has another of the temperatures that are asked for
+  bool reachable = false;            ///< every pose must be connected with home
   int line = 0;
 };
 

@@ -70,6 +70,15 @@ struct JointEffectsSpec {
   bool eccentricity = false;                   ///< first and second harmonic of the joint's angle
   std::optional<double> gear_ratio;            ///< periods of the gear's error in one turn of the joint
   std::vector<Located<std::string>> coupling;  ///< joints that it follows a little
+  bool backlash = false;                       ///< it stands elsewhere by the side that it came from
+  std::optional<Measured> overrun;             ///< that a route comes from beyond; none: 2 deg or 5 mm
+  bool temperature = false;                    ///< it drifts with the robot's temperature
+};
+
+/// Temperatures of the robot, °C.
+struct TemperatureSpec {
+  double reference = 20.0;  ///< where nothing is added
+  std::vector<double> at;   ///< at which a plan may have poses measured, ascending; never empty
 };
 
 /// Serial arm read from a URDF file: the chain from link `base` to link `tip`.
@@ -83,6 +92,7 @@ struct SerialArmSpec {
   std::vector<std::pair<std::string, Located<std::string>>> parameter_names;
   std::optional<ElastostaticSpec> elastostatic;
   std::vector<JointEffectsSpec> joint_effects;
+  std::optional<TemperatureSpec> temperature;
 };
 
 /// One leg of a six-legged platform, all vectors in m (u dimensionless, normalised by the reader).

@@ -36,9 +36,9 @@ inline constexpr int whole_features = 150;
 
 /// f of all configurations' tips, one a column.
 Eigen::MatrixXd effect_places(const UnmodelledEffect& effect, const Configurations& configurations);
-/// Raw whitened blocks of these features and the variant's columns.
+/// Raw whitened blocks of these features, the variant's columns and behind them others of its model.
 BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& features, const Configurations& configurations,
-                           int threads);
+                           int threads, const std::vector<int>& others = {});
 
 /// What configurations are worth for a variant. With an effect by its whole covariance between them and not by features
 /// of candidates: a list says the same whatever was searched.

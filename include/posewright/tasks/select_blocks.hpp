@@ -18,9 +18,12 @@ struct SelectOptions {
   std::optional<int> rows;  ///< r; needed for CSV and two-dimensional arrays
   int poses = 0;
   std::string criterion = "o1", method = "exchange";
-  int nuisance = 0;  ///< how many leading columns are nuisance
-  int restarts = 10;
+  int nuisance = 0;             ///< how many leading columns are nuisance
+  std::optional<int> restarts;  ///< 10, or as many as a time limit allows
   Repeats repeats;
+  /// Blocks that are in the plan whatever the search finds, `poses` counts them; and blocks that are measured already,
+  /// to which `poses` more come. Neither is chosen again unless repeats are allowed.
+  std::vector<int> fixed, measured;
   bool reserve = false;  ///< maximise what is left when the block that hurts most is lost
   std::uint64_t seed = 0;
   int threads = 0;
@@ -28,7 +31,8 @@ struct SelectOptions {
 
 /// The same search on whitened Jacobian blocks that the user brings. Tolerances are unknown here, so parameters
 /// have tolerance 1 and the indices are those of the blocks as they are.
-/// Throws InputError for options that do not fit the blocks, CannotDo for too few poses.
+/// Throws InputError for options that do not fit the blocks (fixed ones out of range, twice, or as many as poses),
+/// CannotDo for too few poses.
 /// @param blocks  with the columns' names; `rows` of the options is not looked at
 Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor& monitor);
 /// The same for a file.

@@ -30,6 +30,9 @@ class MotionSpace {
   std::vector<double> reduced(std::span<const double> configuration) const;
   std::vector<double> whole(std::span<const double> q) const;
   std::vector<double> home() const;
+  /// Where the robot comes from for the last straight motion to a configuration: every coordinate with an approach its
+  /// overrun away on the side that is stated. The configuration itself if there are none.
+  std::vector<double> lead(std::span<const double> configuration) const;
 
   /// What forbids q ("limits", "collision with table", …); empty if it is free.
   std::string violation(std::span<const double> q) const;

@@ -1,4 +1,5 @@
 import { h } from '../dom.js';
+import { conditionTexts } from '../text/sentences.js';
 import { percent } from '../text/units.js';
 
 /**
@@ -67,6 +68,7 @@ function row(list, entry, place, preview) {
   const notes = [
     pose.station && `station ${pose.station}`,
     pose.load_case,
+    ...conditionTexts(pose),
     list.unreachable.has(entry.id) && 'not reachable',
   ]
     .filter(Boolean)

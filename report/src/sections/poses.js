@@ -80,12 +80,13 @@ function allValues(list) {
   const fill = () => {
     if (!details.open) return;
     const poses = list.ids.map((id) => list.poses.get(id));
-    const { names = [], units = [], station, load_case: load } = poses[0] ?? {};
+    const { names = [], units = [], station, load_case: load, conditions = {} } = poses[0] ?? {};
     const shown = units.map((unit) => shownUnit(unit));
     const header = [
       'pose',
       ...(station ? ['station'] : []),
       ...(load ? ['load case'] : []),
+      ...Object.keys(conditions),
       ...names.map((name, k) => `#${name}${shown[k].name ? `, ${shown[k].name}` : ''}`),
     ];
     details.replaceChildren(
@@ -96,6 +97,7 @@ function allValues(list) {
           `${p.id}`,
           ...(station ? [p.station] : []),
           ...(load ? [p.load_case] : []),
+          ...Object.keys(conditions).map((name) => p.conditions[name]),
           ...p.configuration.map((v, k) => fixed(v * shown[k].factor, 3)),
         ]),
         'All poses in numbers',

@@ -1,5 +1,5 @@
 import { h } from '../dom.js';
-import { nearestText } from '../text/sentences.js';
+import { conditionTexts, nearestText } from '../text/sentences.js';
 import { coordinate, percent, quantity } from '../text/units.js';
 
 /**
@@ -24,6 +24,7 @@ export function poseCard(list) {
   const facts = [
     pose.station && `station ${pose.station}`,
     pose.load_case && `load case ${pose.load_case}`,
+    ...conditionTexts(pose),
     `${percent(pose.contribution)} of all information`,
     tipText(pose),
     pose.nearest && nearestText(pose.nearest),

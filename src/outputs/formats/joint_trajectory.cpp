@@ -92,6 +92,7 @@ Exported write_joint_trajectory(const PoseSequence& all, const ExportOptions& op
   if (has_changes(sequence))
     throw CannotDo(
         "joint-trajectory: a trajectory cannot wait for a change of station or load case; plan one at a time");
+  require_arrivals(sequence);
   std::vector<std::string> notes;
   if (!sequence.is_route)
     notes.push_back(

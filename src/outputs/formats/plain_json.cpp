@@ -1,4 +1,5 @@
 
+#include "../sight_json.hpp"
 #include "formats.hpp"
 #include "posewright/support/json.hpp"
 #include "program.hpp"
@@ -18,6 +19,7 @@ Exported write_plain_json(const PoseSequence& all, const ExportOptions&) {
     Json entry = {{"id", pose.id}, {"values", pose.values}};
     if (!pose.load_case.empty()) entry["load_case"] = pose.load_case;
     if (!pose.station.empty()) entry["station"] = pose.station;
+    if (!pose.conditions.empty()) entry["conditions"] = conditions_json(pose.conditions);
     json["poses"].push_back(entry);
   }
   return one_file("poses.json", lenient_json_text(json));

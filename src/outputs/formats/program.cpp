@@ -33,12 +33,32 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   return name;
 }
 
+bool is_approach(const std::string& condition) { return condition.ends_with(approach_suffix); }
+
+/// What somebody changes by hand between poses.
+Conditions others(const SequencePose& pose) {
+  Conditions result = pose.conditions;
+  std::erase_if(result, [](const auto& condition) { return is_approach(condition.first); });
+  return result;
+}
+
+bool has_approaches(const PoseSequence& sequence) {
+  const auto& conditions = sequence.poses.front().conditions;
+  return std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return is_approach(c.first); });
+}
+
 std::vector<std::string> changes(const SequencePose* before, const SequencePose& pose) {
   std::vector<std::string> result;
   if (!pose.station.empty() && (before == nullptr || before->station != pose.station))
     result.push_back("station: " + pose.station);
   if (!pose.load_case.empty() && (before == nullptr || before->load_case != pose.load_case))
     result.push_back("load case: " + pose.load_case);
+  for (std::size_t i = 0; i < pose.conditions.size(); ++i) {
+    const auto& [name, choice] = pose.conditions[i];
+    // A route arrives as it should; nobody at the robot has to do anything.
+    if (is_approach(name)) continue;
+    if (before == nullptr || before->conditions[i].second != choice) result.push_back(name + ": " + choice);
+  }
   return result;
 }
 
@@ -119,6 +139,7 @@ int number_of(const std::vector<ProgramPoint>& points) {
 
 RobotProgram make_program(const PoseSequence& all, const ExportOptions& options, const ProgramRules& rules) {
   const PoseSequence sequence = to_measure(all);
+  require_arrivals(sequence);
   RobotProgram program;
   program.name = program_name(options.name, rules);
   const Axes axes(sequence, options, rules);
@@ -168,17 +189,29 @@ PoseSequence to_measure(const PoseSequence& sequence) {
 }
 
 std::vector<std::string> list_notes(const PoseSequence& sequence) {
-  if (has_changes(sequence)) return {"the format has no place for stations and load cases: they change on the way"};
-  return {};
+  std::vector<std::string> notes;
+  if (has_changes(sequence))
+    notes.emplace_back("the format has no place for stations, load cases and temperatures: they change on the way");
+  if (has_approaches(sequence))
+    notes.emplace_back("the format has no place for the side that joints arrive from: move as a route does");
+  return notes;
 }
 
 Exported one_file(const std::string& name, std::string bytes, std::vector<std::string> notes) {
   return {{{name, std::move(bytes)}}, std::move(notes)};
 }
 
+void require_arrivals(const PoseSequence& sequence) {
+  if (has_approaches(sequence) && !sequence.is_route)
+    throw CannotDo(sequence.file +
+                   ": its poses are to be reached from a stated side, which a way straight to them may miss; export a "
+                   "route of them, which arrives so (posewright route)");
+}
+
 bool has_changes(const PoseSequence& sequence) {
   return std::any_of(sequence.poses.begin(), sequence.poses.end(), [&](const SequencePose& pose) {
-    return pose.station != sequence.poses.front().station || pose.load_case != sequence.poses.front().load_case;
+    return others(pose) != others(sequence.poses.front()) || pose.station != sequence.poses.front().station ||
+           pose.load_case != sequence.poses.front().load_case;
   });
 }
 

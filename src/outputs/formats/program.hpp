@@ -66,7 +66,9 @@ PoseSequence to_measure(const PoseSequence& sequence);
 std::vector<std::string> list_notes(const PoseSequence& sequence);
 /// One file of the format's usual name.
 Exported one_file(const std::string& name, std::string bytes, std::vector<std::string> notes = {});
-/// Whether station or load case change from one pose to the next.
+/// Throws CannotDo for poses that joints are to reach from a stated side and that no route leads to.
+void require_arrivals(const PoseSequence& sequence);
+/// Whether station, load case or temperature change from one pose to the next.
 bool has_changes(const PoseSequence& sequence);
 /// Keys of the settings file that a format does not read are an error.
 void allow_settings(const ControllerSettings& settings, const char* format, const std::vector<std::string>& keys);

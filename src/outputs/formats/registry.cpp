@@ -88,11 +88,14 @@ PoseTable table_of(const PoseSequence& sequence) {
   std::vector<std::string SequencePose::*> labels;
   if (has(&SequencePose::load_case)) labels.push_back(&SequencePose::load_case), table.names.push_back("load_case");
   if (has(&SequencePose::station)) labels.push_back(&SequencePose::station), table.names.push_back("station");
+  for (const auto& [name, choice] : sequence.poses.empty() ? Conditions{} : sequence.poses.front().conditions)
+    table.names.push_back(name);
   table.units.resize(table.names.size());
   for (const SequencePose& pose : sequence.poses) {
     PoseRow row;
     row.cells.assign(pose.values.begin(), pose.values.end());
     for (const auto label : labels) row.cells.emplace_back(pose.*label);
+    for (const auto& [name, choice] : pose.conditions) row.cells.emplace_back(choice);
     row.id = pose.id;
     row.measured = pose.measured;
     table.rows.push_back(std::move(row));

@@ -25,6 +25,7 @@ std::vector<double> completed(const std::vector<double>& q, const std::vector<Co
                      fmt::format("one for each of {} is expected", names));
   }
   std::vector<double> whole;
+  whole.reserve(coordinates.size());
   auto next = q.begin();
   for (const Coordinate& c : coordinates)
     whole.push_back(c.choice() && c.labels.size() == 1 ? c.values.front() : *next++);

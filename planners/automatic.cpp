@@ -115,10 +115,11 @@ class Run {
     const Part part(monitor_, exchange_share);
     PlannerOptions options = options_;
     options.seed = seed;
-    const Design found = run_restarts(task_, options, part.monitor(), "exchange",
-                                      [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
-                                        return exchange_restart(task, i, options.kicks, random, watch);
-                                      });
+    const Design found =
+        run_restarts(task_, options, part.monitor(), "exchange",
+                     [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
+                       return exchange_restart(task, i, affordable_kicks(task, options), random, watch);
+                     });
     best_.restarts += found.restarts;
     take({found.members, found.value, found.exchanges, true});
     record("exchange");
@@ -132,7 +133,7 @@ class Run {
     parallel_for(outcomes.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (i > 0 && part.monitor().should_stop()) return;
       Random random(mix_bits(seed) + 1, i);
-      outcomes[i] = tabu_search(reduced.task(), start, tabu_patience(options_.kicks), random, part.monitor());
+      outcomes[i] = tabu_search(reduced.task(), start, tabu_patience(reduced.task(), options_), random, part.monitor());
     });
     for (Outcome& outcome : outcomes) {
       if (!outcome.done || !(outcome.value > best_.value + smallest_gain)) continue;

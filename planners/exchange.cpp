@@ -46,7 +46,8 @@ Outcome exchange_restart(const DesignTask& task, std::size_t restart, int kicks,
 Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(task, options, monitor, "exchange",
                       [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-                        return exchange_search(part, start_of_restart(part, i, random), options.kicks, random, watch);
+                        return exchange_search(part, start_of_restart(part, i, random), affordable_kicks(part, options),
+                                               random, watch);
                       });
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr int most_singular_passes = 50;
 
 /// One pass over all positions; returns the number of accepted swaps.
-int exchange_pass(DesignState& state, std::vector<int>& order) {
+int exchange_pass(DesignState& state, std::vector<int>& order, const Monitor& monitor) {
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> loss(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) loss[i] = state.loss(int(i));
@@ -20,6 +20,7 @@ int exchange_pass(DesignState& state, std::vector<int>& order) {
                    [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
   int accepted = 0;
   for (const int position : order) {
+    if (monitor.should_stop()) break;
     const Swap swap = state.best_swap(position, smallest_gain);
     if (swap.enter < 0) continue;
     state.apply(position, swap.enter);
@@ -41,7 +42,7 @@ long settle(DesignState& state, const Monitor& monitor) {
   while (true) {
     int accepted = 0, now = 0;
     do {
-      now = exchange_pass(state, order);
+      now = exchange_pass(state, order, monitor);
       accepted += now;
       // Gains of a singular set are those of M plus a ridge; if no set is regular they may go round for ever.
       if (!std::isfinite(state.value()) && ++singular >= most_singular_passes) break;

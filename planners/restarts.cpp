@@ -65,6 +65,14 @@ void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outc
 
 }  // namespace
 
+int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
+  // A kick costs two passes or so; counted and not timed, so that a plan is the same on any machine.
+  constexpr double most_products = 1e10, passes = 2;
+  const BlockArray& blocks = *task.candidates.blocks;
+  const double pass = double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
+  return int(std::clamp(most_products / (passes * pass * options.restarts), 0.0, double(options.kicks)));
+}
+
 std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random) {
   const bool weights = task.approximate != nullptr && !task.approximate->support.empty();
   if (weights && index == 0) return rounded_start(task);

@@ -16,6 +16,10 @@ using Search = std::function<Outcome(const DesignTask&, std::size_t, Random&, co
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search);
 
+/// Kicks of a restart that so many candidates, poses and parameters leave time for, at most `kicks`: all restarts
+/// together make some 10¹⁰ products of scanning for swaps.
+int affordable_kicks(const DesignTask& task, const PlannerOptions& options);
+
 /// Start i: rounded optimal weights, draws from them, uniform draws, in turn.
 std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random);
 

@@ -65,6 +65,11 @@ Move best_move(DesignState& state, double min_gain, const Among& among) {
 
 }  // namespace
 
+int tabu_patience(const DesignTask& task, const PlannerOptions& options) {
+  const int kicks = affordable_kicks(task, options);
+  return kicks > 10 || kicks < options.kicks ? 2 * kicks : 20;
+}
+
 Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Random& random, const Monitor& monitor) {
   const auto state = task.criterion->start(task.candidates, std::move(start));
   long exchanges = settle(*state, monitor);
@@ -103,7 +108,7 @@ Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Ra
 Design TabuPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(
       task, options, monitor, "tabu", [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-        return tabu_search(part, start_of_restart(part, i, random), tabu_patience(options.kicks), random, watch);
+        return tabu_search(part, start_of_restart(part, i, random), tabu_patience(part, options), random, watch);
       });
 }
 

@@ -17,7 +17,7 @@ class TabuPlanner : public Planner {
 };
 
 /// Swaps without a new best after which a start ends, where `exchange` would have made so many kicks.
-inline int tabu_patience(int kicks) { return kicks > 10 ? 2 * kicks : 20; }
+int tabu_patience(const DesignTask& task, const PlannerOptions& options);
 
 /// The same from a given design.
 Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Random& random, const Monitor& monitor);

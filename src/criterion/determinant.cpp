@@ -151,7 +151,8 @@ class DeterminantState : public DesignState {
   DeterminantState(const CandidateView& view, std::vector<int> members)
       : DesignState(view, std::move(members)),
         inverse_(*view.blocks, view.blocks->columns(), view.prior),
-        gain_(inverse_, view.blocks->rows()) {
+        gain_(inverse_, view.blocks->rows()),
+        has_prior_(view.prior != nullptr) {
     refresh();
   }
 
@@ -192,8 +193,9 @@ class DeterminantState : public DesignState {
 
   void do_change(int leave, int enter) override {
     gain_.forget();
-    // A ridge is for starts; every change may be the one that makes it needless.
-    if (singular_ || !inverse_.change(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
+    // A ridge is for starts; every change may be the one that makes it needless, once there are rows enough.
+    const bool enough = has_prior_ || long(members().size()) * blocks().rows() >= blocks().columns();
+    if ((singular_ && enough) || !inverse_.change(leave, enter) || ++since_refresh_ >= refresh_after) refresh();
   }
 
   Swap best_row(int k, double min_gain) {
@@ -219,7 +221,7 @@ class DeterminantState : public DesignState {
   SwapGain gain_;
   std::vector<double> y_;
   int since_refresh_ = 0;
-  bool singular_ = false;
+  bool has_prior_ = false, singular_ = false;
 };
 
 }  // namespace

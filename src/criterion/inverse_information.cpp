@@ -30,8 +30,10 @@ InverseInformation::InverseInformation(const BlockArray& blocks, int columns, co
 bool InverseInformation::refresh(const std::vector<int>& members, double ridge) {
   Eigen::MatrixXd m = ridge * Eigen::MatrixXd::Identity(columns_, columns_);
   if (prior_ != nullptr) m += *prior_;
-  for (const int i : members)
-    m.selfadjointView<Eigen::Lower>().rankUpdate(blocks_.block(std::size_t(i)).leftCols(columns_).transpose());
+  BlockArray::RowMatrix rows(Eigen::Index(members.size()) * rows_, columns_);
+  for (std::size_t i = 0; i < members.size(); ++i)
+    rows.middleRows(Eigen::Index(i) * rows_, rows_) = blocks_.block(std::size_t(members[i])).leftCols(columns_);
+  if (rows.rows() > 0) m.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   const Eigen::LLT<Eigen::MatrixXd> factor(m);
   if (!is_regular(factor)) return false;
 

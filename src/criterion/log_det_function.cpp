@@ -25,7 +25,7 @@ class LogDetExpansion : public Expansion {
     const BlockArray::RowMatrix Z = rows * inverse_;
     if (r == 1) {
       gram_of(Z, H);
-      H = H.cwiseAbs2().eval();
+      H = H.cwiseAbs2();
       if (nuisance_ == 0) return;
       Eigen::MatrixXd part;
       gram_of(Z.leftCols(nuisance_), part);

@@ -18,7 +18,7 @@ inline Eigen::VectorXd product_curvature(const BlockArray::RowMatrix& Z, const B
     Eigen::MatrixXd second;
     gram_of(Z, H);
     gram_of(G, second);
-    H = 2 * H.cwiseProduct(second).eval();
+    H = 2 * H.cwiseProduct(second);
     return d;
   }
   BlockArray::RowMatrix products = padded_rows(s, size);

@@ -14,6 +14,11 @@
 namespace posewright {
 namespace {
 
+// Weights of more candidates than this are settled at a gap that no figure shows: a step costs the cube of their
+// number.
+constexpr std::size_t most_settled = 1200;
+constexpr double settled_gap = 1e-6;
+
 /// Indices of the `count` largest values among `among`, ties by index.
 std::vector<int> largest(const std::vector<double>& value, std::vector<int> among, std::size_t count) {
   count = std::min(count, among.size());
@@ -120,7 +125,7 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, const Infor
   double gap = 1.0;
   int unchanged = 0;
   for (int round = 1;; ++round) {
-    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)));
+    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)), monitor);
     sensitivities(blocks, restricted.factor(), options.threads, d);
     const double ratio = std::max(1.0, (best_mean(d, options.cap) + restricted.prior_sensitivity()) / degree);
     const double bound = with_margin(restricted.value() + degree * std::log(ratio));
@@ -138,7 +143,9 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, const Infor
     }
     result.rounds = round;
     result.stopped = monitor.should_stop();
-    if (gap <= options.tolerance || round == options.max_rounds || result.stopped) break;
+    const double tolerance =
+        restricted.candidates().size() > most_settled ? std::max(options.tolerance, settled_gap) : options.tolerance;
+    if (gap <= tolerance || round == options.max_rounds || result.stopped) break;
     const std::vector<int> next = next_working_set(restricted, d, std::min(n, 2 * top), room);
     // Nothing left to add: what remains is the accuracy of the weights (a fresh centre helps), or rounding.
     if (next == restricted.candidates() && ++unchanged > 3) break;

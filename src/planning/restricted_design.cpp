@@ -126,7 +126,8 @@ bool RestrictedDesign::newton_step(double mu) {
     right -= mu / room;
   }
   hessian_.diagonal() += diagonal.matrix();
-  const Eigen::LLT<Eigen::MatrixXd> factor(hessian_);
+  // In place: of thousands of candidates a second copy would be the largest thing in memory.
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(hessian_);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(w_.size());
   const Eigen::VectorXd a = factor.solve(right.matrix()), b = factor.solve(ones);
   const double d_lambda = (a.sum() - (1 - w_.sum())) / b.sum();
@@ -156,12 +157,12 @@ bool RestrictedDesign::newton_step(double mu) {
   return true;
 }
 
-int RestrictedDesign::solve(double target) {
+int RestrictedDesign::solve(double target, const Monitor& monitor) {
   const double sides = capped() ? 2.0 : 1.0;
   for (int step = 0; step < max_newton_steps; ++step) {
     // Once the sum of all products weight × multiplier is far below the target, rounding decides the rest.
     const double products = complementarity();
-    if (gap() <= target || products < 1e-3 * target * degree_) return step;
+    if (gap() <= target || products < 1e-3 * target * degree_ || monitor.should_stop()) return step;
     if (!newton_step(centring * products / (sides * double(w_.size())))) return step;
   }
   return max_newton_steps;

@@ -6,6 +6,7 @@
 
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/criterion/information_function.hpp"
+#include "posewright/support/monitor.hpp"
 
 namespace posewright {
 
@@ -29,8 +30,9 @@ class RestrictedDesign {
   /// Returns false if they leave M(w) singular; the set is then of no use.
   bool set_candidates(const std::vector<int>& candidates);
   /// Newton steps until the optimality gap on the working set, relative to Φ's degree, is at
-  /// most `gap`. Returns the number of steps. Ends early where the best weights leave M singular.
-  int solve(double gap);
+  /// most `gap`. Returns the number of steps. Ends early where the best weights leave M singular, and
+  /// where the monitor says stop.
+  int solve(double gap, const Monitor& monitor);
 
   const std::vector<int>& candidates() const { return candidates_; }
   const Eigen::VectorXd& weights() const { return w_; }

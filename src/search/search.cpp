@@ -13,6 +13,7 @@
 #include "posewright/planning/whiten.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
 #include "posewright/support/repeats.hpp"
 
 namespace posewright {
@@ -98,7 +99,7 @@ BlockArray blocks_at(const std::vector<std::vector<double>>& configurations, con
 }
 
 std::vector<double> without_each(const Joined& joined, const Design& design, const BlockArray& added,
-                                 const InformationFunction& function) {
+                                 const InformationFunction& function, int threads) {
   const auto n = joined.blocks.count();
   BlockArray chosen(design.members.size(), joined.blocks.rows(), joined.blocks.columns());
   for (std::size_t i = 0; i < chosen.count(); ++i) {
@@ -108,11 +109,11 @@ std::vector<double> without_each(const Joined& joined, const Design& design, con
   Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
   if (joined.prior.size() > 0) M += joined.prior;
   const double whole = function.value(M), degree = function.degree() > 0 ? function.degree() : 1.0;
-  std::vector<double> result;
-  for (std::size_t i = 0; i < chosen.count(); ++i) {
+  std::vector<double> result(chosen.count());
+  parallel_for(chosen.count(), thread_count(threads), [&](std::size_t i, int) {
     const auto block = chosen.block(i);
-    result.push_back(std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / degree)));
-  }
+    result[i] = std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / degree));
+  });
   return result;
 }
 
@@ -296,7 +297,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
                                  ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / degree))
                                  : std::nullopt,
                              stage.seconds});
-  result.without = without_each(joined, result.design, added, function);
+  result.without = without_each(joined, result.design, added, function, request.planner.threads);
   result.chosen = raw_blocks(joined, shapes, result.design);
   return result;
 }

@@ -419,6 +419,8 @@ def plan(
     measured: Optional[_Poses] = None,
     truth: str = "",
     candidates_from: Optional[_Poses] = None,
+    gap: Optional[float] = None,
+    proof_time: Optional[float] = None,
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,

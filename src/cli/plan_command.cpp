@@ -32,7 +32,9 @@ po::options_description plan_command_options() {
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
           "reserve", "maximise what is left when the pose that hurts most is lost")(
-          "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)");
+          "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
+          "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(
+          "proof-time", text("S"), "seconds for that proof; 0: none (an amount of work, some seconds)");
   options.add(output_options(true));
   options.add(problem_options());
   return options;
@@ -51,6 +53,12 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   plan_options.candidates = whole_number(values, "candidates", 1, 10000000);
   plan_options.restarts = whole_number(values, "restarts", 1, 1000000);
   plan_options.repeats = repeats_of(values);
+  if (const auto gap = number_below(values, "gap", 100, "percent, above 0 and below 100, are allowed"))
+    plan_options.proof.gap = *gap / 100;
+  plan_options.proof.seconds =
+      text_of(values, "proof-time") == "0"
+          ? 0.0
+          : number_below(values, "proof-time", 1e9, "a number of seconds is allowed; 0: no proof");
   if (const std::string prior = choice_of(values, "prior", {"none", "tolerance"}); !prior.empty())
     plan_options.prior = prior == "tolerance";
   if (const std::string scaling = choice_of(values, "scaling", {"tolerance", "norm", "none"}); !scaling.empty())

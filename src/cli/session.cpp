@@ -54,14 +54,19 @@ void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) print_aside("posewright: note: " + note + "\n");
 }
 
+std::optional<double> number_below(const po::variables_map& values, const std::string& option, double most,
+                                   const std::string& allowed) {
+  if (values.count(option) == 0) return std::nullopt;
+  const std::string text = text_of(values, option);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !(value > 0) || !(value < most))
+    throw InputError({}, "--" + option + " " + text, allowed);
+  return value;
+}
+
 double time_limit(const po::variables_map& values) {
-  const std::string text = text_of(values, "time-limit");
-  if (values.count("time-limit") == 0) return 0;
-  double seconds = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (code != std::errc() || end != text.data() + text.size() || !(seconds > 0) || !(seconds < 1e9))
-    throw InputError({}, "--time-limit " + text, "a number of seconds above 0 is allowed");
-  return seconds;
+  return number_below(values, "time-limit", 1e9, "a number of seconds above 0 is allowed").value_or(0.0);
 }
 
 }  // namespace posewright::cli

@@ -313,7 +313,8 @@ HarmonicBound largest_value(const HarmonicFunction& function, const HarmonicBoun
       }
     for (Box& box : round) open.push(std::move(box));
     round.clear();
-    const double enough = result.largest + options.tolerance * std::abs(result.largest);
+    const double enough =
+        std::max(result.largest + options.tolerance * std::abs(result.largest), options.enough - options.slack);
     result.complete = open.top().bound <= enough;
     if (result.complete || monitor.should_stop() || result.boxes >= options.most_boxes) break;
     for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough; ++i) {

@@ -1,6 +1,7 @@
 #include "posewright/planning/workspace_bound.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -270,6 +271,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
                      int columns, const WorkspaceBoundOptions& options, const Monitor& monitor) {
   WorkspaceProof& proof = result.proof;
   proof.why_not = result.stopped || monitor.should_stop() ? "stopped" : space.not_harmonic();
+  if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
   if (!proof.why_not.empty()) return;
   const MovingSensitivity d(space, result.factor, rows, columns);
   if (d.axes().empty() || d.axes().size() > most_axes) {
@@ -295,10 +297,24 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   limits.tolerance = options.tolerance;
   limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
   limits.threads = options.threads;
-  const HarmonicBound most = largest_value(polynomial, limits, monitor);
   const double extra =
       options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
+  if (options.proof.gap) {
+    limits.enough = result.degree * (1 + *options.proof.gap) - extra;
+    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
+  }
+  Monitor own;
+  own.interrupted = monitor.interrupted;
+  own.deadline = monitor.deadline;
+  if (options.proof.seconds) {
+    const auto end = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
+                                                 std::chrono::duration<double>(*options.proof.seconds));
+    own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
+    limits.most_boxes = std::numeric_limits<long>::max();
+  }
+  const HarmonicBound most = largest_value(polynomial, limits, own);
   proof.boxes = most.boxes;
+  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
     proof.why_not = "stopped";
     return;

@@ -200,7 +200,8 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
     return {0.0,
             proof.bound + found.degree * std::log(double(poses)) + offset,
             proof.max_ratio,
-            fmt::format("largest d(q) over the limits by Bernstein coefficients of {} boxes", proof.boxes),
+            fmt::format("largest d(q) over the limits by Bernstein coefficients of {} boxes{}{}", proof.boxes,
+                        proof.ended.empty() ? "" : ", ", proof.ended),
             true,
             ""};
   return {0.0,
@@ -234,6 +235,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   if (space != nullptr && degree > 0 && !monitor.should_stop()) {
     options.prior = bound_options(request, joined.prior).prior;
     options.seed = request.planner.seed;
+    options.proof = request.proof;
     options.threads = request.planner.threads;
     workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
   }

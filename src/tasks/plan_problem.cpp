@@ -42,6 +42,7 @@ class PlanSearch {
     SearchRequest request = spaced_request(study_, settings_, poses);
     request.make_space = space_maker(study_, settings_.criterion);
     request.prove = settings_.poses > 0;
+    request.proof = settings_.proof;
     const SearchResult found = search(
         search_parts(study_, settings_.criterion, study_.configurations, settings_.planner.threads), request, monitor_);
     return assemble(found);

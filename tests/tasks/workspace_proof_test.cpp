@@ -1,15 +1,23 @@
 // The certificate over the whole workspace, where it is proved. Second roads: grids of candidates finer than any plan
 // needs, and sensitivities at random configurations by the model alone.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <cstdlib>
 
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
 #include "posewright/outputs/write_plan.hpp"
+#include "posewright/planning/workspace_bound.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/study/space.hpp"
+#include "posewright/support/random.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "posewright/workspace/workspace.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
@@ -51,6 +59,101 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
   EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.01 * 3);
   EXPECT_LE(plan.log_det, plan.certificate.workspace->bound);
   EXPECT_THAT(plan_summary(plan), HasSubstr("Proved over the joint limits"));
+}
+
+/// A chain of one to four random joints with small ranges, seen by points; what a test of its sensitivity needs.
+struct RandomArm {
+  std::unique_ptr<IdentificationModel> model;
+  std::unique_ptr<Workspace> workspace;
+  Problem problem;
+  std::vector<int> selected;
+  Eigen::MatrixXd scale, factor;  // R of the columns, T of d(q) = ‖J(q) R⁻¹ T‖²
+
+  RandomArm(const TemporaryFolder& folder, Random& random) {
+    const auto triple = [&](double size) {
+      return fmt::format("{} {} {}", random.uniform(-size, size), random.uniform(-size, size),
+                         random.uniform(-size, size));
+    };
+    std::string text = "<robot name=\"chain\"><link name=\"base\"/>", parent = "base", joints;
+    const int count = 1 + random.index(4);
+    for (int k = 0; k < count; ++k) {
+      const std::string child = fmt::format("l{}", k);
+      const bool turns = random.uniform() < 0.7;
+      const double middle = random.uniform(-2, 2), half = random.uniform(0.05, turns ? 0.5 : 0.2);
+      text += fmt::format(
+          "<link name=\"{0}\"/><joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/><origin "
+          "xyz=\"{4}\" rpy=\"{5}\"/><axis xyz=\"{6}\"/><limit lower=\"{7}\" upper=\"{8}\" effort=\"1\" "
+          "velocity=\"1\"/></joint>",
+          child, k, turns ? "revolute" : "prismatic", parent, triple(0.5), triple(3), triple(1), middle - half,
+          middle + half);
+      joints += fmt::format("j{0}.offset, j{0}.x, j{0}.rx, j{0}.rz, ", k);
+      parent = child;
+    }
+    folder.write("arm.urdf", text + "</robot>");
+    problem = read_problem(folder.write(
+        "p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement:\n  type: points\n  targets: {A: [" +
+                      fmt::format("{}, {}, 0.1], B: [{}, 0.05, {}", random.uniform(-0.3, 0.3),
+                                  random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)) +
+                      "]}\n  device: {type: isotropic, noise: 0.1 mm}\nvariants: {v: {parameters: [" + joints +
+                      "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}}\n"));
+    model = make_model(problem);
+    workspace = std::make_unique<Workspace>(*model, problem, nullptr);
+    selected = select_columns(*model, problem, problem.variants.front()).selected;
+    const auto m = Eigen::Index(selected.size());
+    // Columns of very different size, as units and tolerances make them: rounding has its chance.
+    Eigen::VectorXd size(m);
+    for (double& s : size) s = std::pow(10.0, random.uniform(-12, 12));
+    scale = size.asDiagonal();
+    factor.resize(m, 1 + random.index(int(m)));
+    for (double& value : factor.reshaped()) value = random.normal();
+    factor = scale * factor * 1e-4;
+  }
+
+  double sensitivity(ConfigurationSpace::Probe& probe, const std::vector<double>& q, BlockArray& block) const {
+    EXPECT_TRUE(probe.block(q, block.row(0, 0), block.stride()));
+    return (block.block(0) * factor).squaredNorm();
+  }
+};
+
+TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
+  const char* wanted = std::getenv("POSEWRIGHT_RANDOM_ARMS");
+  const int arms = wanted != nullptr ? std::atoi(wanted) : 150;
+  int wide = 0;
+  for (int i = 0; i < arms; ++i) {
+    Random random(23, std::uint64_t(i));
+    const RandomArm arm(folder_, random);
+    const auto space =
+        make_configuration_space({{arm.model.get(), arm.workspace.get(), arm.selected, {}}}, {}, {}, {}, arm.scale);
+    const int m = int(arm.selected.size()), rows = arm.model->block_rows(arm.selected);
+    const auto probe = space->probe();
+    BlockArray block(1, rows, m);
+    // Dense sampling, its best taken uphill by ever smaller random steps.
+    double largest = 0;
+    std::vector<double> best, q;
+    const auto& axes = arm.workspace->coordinates();
+    for (int sample = 0; sample < 1200; ++sample) {
+      const double reach = sample < 600 ? 1.0 : std::pow(0.98, sample - 600);
+      q.clear();
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        const double width = axes[k].upper - axes[k].lower;
+        const double at = sample < 600 ? random.uniform(axes[k].lower - 0.1 * width, axes[k].upper + 0.1 * width)
+                                       : best[k] + reach * width * random.normal();
+        q.push_back(std::clamp(at, axes[k].lower, axes[k].upper));
+      }
+      const double d = arm.sensitivity(*probe, q, block);
+      if (d > largest) largest = d, best = q;
+    }
+    WorkspaceBound result;
+    result.factor = arm.factor;
+    // Far below the largest value, so that the proof has to find it.
+    result.degree = 1e-2 * largest;
+    prove_workspace(result, *space, 1000, rows, m, {}, Monitor{});
+    ASSERT_EQ(result.proof.why_not, "") << "arm " << i;
+    EXPECT_GE(result.proof.max_ratio * result.degree, largest * (1 - 1e-12)) << "arm " << i;
+    wide += int(result.proof.max_ratio * result.degree > 1.005 * largest);
+  }
+  // A bound that is nowhere near would hold as well; random steps do not always find the largest value.
+  EXPECT_LT(wide, arms / 20);
 }
 
 TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {

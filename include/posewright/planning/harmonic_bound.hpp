@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,7 +40,8 @@ class HarmonicFunction {
 struct HarmonicBoundOptions {
   double slack = 0.0;       ///< of values of the function itself, added to the bound
   double tolerance = 1e-3;  ///< stop where the bound is at most (1 + tolerance) times the largest value found
-  long most_boxes = 20000;  ///< stop then, with the bound reached
+  double enough = -std::numeric_limits<double>::infinity();  ///< or where the bound is at most this
+  long most_boxes = 20000;                                   ///< stop then, with the bound reached
   int threads = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,16 @@
 
 namespace posewright {
 
+/// How far a proof over the workspace goes.
+struct ProofLimits {
+  /// It ends where the largest d is proved to be within this share of h, so that no plan over the workspace is better
+  /// than the weights found by more, as D-efficiency. None: within a thousandth of the largest d that it finds.
+  std::optional<double> gap;
+  /// And after so long, whatever it has proved then; 0: no proof. None: after an amount of work that is the same on
+  /// every machine, some seconds.
+  std::optional<double> seconds;
+};
+
 struct WorkspaceBoundOptions {
   int starts = 32;          ///< local searches a round, from the candidates of largest d and spread ones
   int rounds = 30;          ///< at most: new configurations enter, the weights are solved again;
@@ -19,6 +30,7 @@ struct WorkspaceBoundOptions {
   int evaluations = 400;    ///< of one local search
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
   bool prove = true;        ///< the largest d, where it can be
+  ProofLimits proof{};
   std::uint64_t seed = 0;
   int threads = 0;
 };
@@ -29,6 +41,7 @@ struct WorkspaceProof {
   double max_ratio = 1.0;  ///< no d within the limits exceeds it times h
   double bound = 0.0;      ///< Φ(w) + h ln(max_ratio)
   long boxes = 0;          ///< that it took
+  std::string ended{};     ///< why not more of them; empty: they were enough
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.

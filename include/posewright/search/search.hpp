@@ -8,6 +8,7 @@
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/outputs/plan.hpp"
 #include "posewright/planning/design_task.hpp"
+#include "posewright/planning/workspace_bound.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/support/repeats.hpp"
@@ -33,6 +34,7 @@ struct SearchRequest {
   bool reserve = false;
   PlannerOptions planner;
   bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
+  ProofLimits proof{};
   std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance
   /// Configurations behind the blocks, for the whitening R of all columns; empty: there are only blocks.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "posewright/lists/pose_list.hpp"
+#include "posewright/planning/workspace_bound.hpp"
 #include "posewright/problem/design_specs.hpp"
 
 namespace posewright {
@@ -26,6 +27,7 @@ struct PlanOptions {
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
   /// many to draw.
   std::optional<PoseList> candidates_from{};
+  ProofLimits proof{};  ///< of the certificate over the workspace
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

@@ -31,6 +31,7 @@ struct Settings {
   /// The same as files that are still to be read; empty: none.
   std::filesystem::path measured_file, candidates_file;
   PlannerOptions planner;
+  ProofLimits proof{};
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.
 Settings settings_of(const Problem& problem, const PlanOptions& options);

@@ -5,12 +5,81 @@
 #include <limits>
 
 #include "posewright/support/dense.hpp"
+#include "product_curvature.hpp"
 
 namespace posewright {
 namespace {
 
 // Ratio of eigenvalues of the whitened, scaled information below which it counts as singular.
 constexpr double singular_ratio = 1e-15;
+
+// o3 is curved by the mean (Σ λ⁻ᵖ)^{−1/p} in place of the least eigenvalue: larger is nearer and harder to solve.
+constexpr double smoothing = 60.0;
+// Pairs of eigenvectors whose products are held at a time.
+constexpr Eigen::Index pairs_at_once = 4096;
+
+/// Φ = −ln(Σ λ⁻ᵖ)/2p of the eigenvalues of the Schur complement, p = ½ for o5. For o3 p is large, and value and T are
+/// those of o3 itself with the supergradient that the weights λ^{−p−1} give: λ_s ≤ ⟨Z, M⟩ for every Z of trace 1.
+class SpectralExpansion : public Expansion {
+ public:
+  /// @param left  C W V: columns that the eigenvalues are squares of;  @param inside  L_nn⁻ᵀ of the nuisance columns
+  SpectralExpansion(SpectralIndex index, const Eigen::VectorXd& lambda, Eigen::MatrixXd left, Eigen::MatrixXd inside)
+      : p_(index == SpectralIndex::o5 ? 0.5 : smoothing), least_(lambda[0]), inside_(std::move(inside)) {
+    mu_ = lambda / least_;
+    sum_ = mu_.array().pow(-p_).sum();
+    left_ = left / std::sqrt(least_);
+    const Eigen::ArrayXd weight = mu_.array().pow(-p_ - 1);
+    share_ = 0.5 * weight / (index == SpectralIndex::o5 ? sum_ : weight.sum());
+    value = index == SpectralIndex::o5 ? 0.5 * std::log(least_) - std::log(sum_) : 0.5 * std::log(least_);
+    factor = upper_factor(left_ * share_.cwiseSqrt().asDiagonal());
+  }
+
+  /// Daleckii–Krein: D² Σ λ⁻ᵖ [X, Y] = Σ_ab f'[λ_a, λ_b] X_ab Y_ab with f' = −p λ^{−p−1} and its divided differences;
+  /// and what the elimination of nuisance columns curves besides.
+  void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
+    const BlockArray::RowMatrix Y = rows * left_;
+    const Eigen::Index s = Y.cols(), count = rows.rows() / r;
+    // As T's, where the weights of o3 sum to one.
+    const double scale = share_.sum() / (0.5 * mu_.array().pow(-p_ - 1).sum() / sum_);
+    Eigen::VectorXd d(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      d[i] = (Y.middleRows(i * r, r).array().square().matrix() * share_).sum() / scale;
+    if (inside_.cols() > 0)
+      product_curvature(rows.leftCols(inside_.rows()) * inside_, Y * (share_ / scale).cwiseSqrt().asDiagonal(), r, H);
+    else H.setZero(count, count);
+    Eigen::MatrixXd products(count, std::min(pairs_at_once, s * (s + 1) / 2));
+    Eigen::Index held = 0;
+    const auto add = [&] {
+      H.selfadjointView<Eigen::Lower>().rankUpdate(products.leftCols(held));
+      held = 0;
+    };
+    for (Eigen::Index b = 0; b < s; ++b)
+      for (Eigen::Index a = 0; a <= b; ++a) {
+        const double weight = std::sqrt((a == b ? 1.0 : 2.0) * difference(a, b) / (2 * p_ * sum_));
+        for (Eigen::Index i = 0; i < count; ++i) {
+          double product = 0;
+          for (int k = 0; k < r; ++k) product += Y(i * r + k, a) * Y(i * r + k, b);
+          products(i, held) = weight * product;
+        }
+        if (++held == products.cols()) add();
+      }
+    if (held > 0) add();
+    H.selfadjointView<Eigen::Lower>().rankUpdate(d, -2 * p_);
+    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+    H *= scale;
+  }
+
+ private:
+  double difference(Eigen::Index a, Eigen::Index b) const {
+    const double x = mu_[a], y = mu_[b];
+    if (std::abs(x - y) < 1e-5 * (x + y)) return p_ * (p_ + 1) * std::pow(0.5 * (x + y), -p_ - 2);
+    return -p_ * (std::pow(x, -p_ - 1) - std::pow(y, -p_ - 1)) / (x - y);
+  }
+
+  double p_, least_, sum_ = 0.0;
+  Eigen::VectorXd mu_, share_;  // eigenvalues in units of the least; ∂Φ/∂λ in the same
+  Eigen::MatrixXd left_, inside_;
+};
 
 class SpectralFunction : public InformationFunction {
  public:
@@ -30,9 +99,27 @@ class SpectralFunction : public InformationFunction {
     return left * by_eigenvalue(s.lambda).asDiagonal() * left.transpose();
   }
 
-  bool concave() const override { return index_ == SpectralIndex::o3; }
+  bool concave() const override { return has_bound(); }
+
+  double degree() const override { return has_bound() ? 0.5 : 0.0; }
+
+  std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override {
+    const Spectrum s = spectrum(information, true);
+    if (!s.regular) return nullptr;
+    Eigen::MatrixXd inside(0, 0);
+    if (nuisance_ > 0) {
+      const Eigen::MatrixXd N = C_.leftCols(nuisance_);
+      const Eigen::LLT<Eigen::MatrixXd> factor(N.transpose() * information * N);
+      if (factor.info() != Eigen::Success) return nullptr;
+      inside =
+          N.topRows(nuisance_) * factor.matrixL().solve(Eigen::MatrixXd::Identity(nuisance_, nuisance_)).transpose();
+    }
+    return std::make_unique<SpectralExpansion>(index_, s.lambda, C_ * s.W * s.vectors, std::move(inside));
+  }
 
  private:
+  bool has_bound() const { return index_ == SpectralIndex::o3 || index_ == SpectralIndex::o5; }
+
   struct Spectrum {
     Eigen::VectorXd lambda;  // σ², ascending
     Eigen::MatrixXd vectors, W;

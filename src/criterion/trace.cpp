@@ -50,6 +50,59 @@ class TraceExpansion : public Expansion {
   Eigen::MatrixXd inverse_;  // L⁻ᵀ
 };
 
+// The largest variance is curved by the mean (Σ v_tᵖ)^{1/p} in place of it.
+constexpr double worst_smoothing = 60.0;
+
+/// −ln of a weighted mean of the variances v_t, weights μ_t ∝ v_t^{p−1} that sum to one: no design makes the largest of
+/// them smaller than the mean, so that what bounds the mean bounds the largest.
+class WorstExpansion : public Expansion {
+ public:
+  WorstExpansion(const Eigen::LLT<Eigen::MatrixXd>& llt, const std::vector<Eigen::MatrixXd>& points) {
+    const auto count = Eigen::Index(points.size());
+    Eigen::ArrayXd variance(count);
+    for (Eigen::Index t = 0; t < count; ++t) {
+      halves_.push_back(llt.solve(points[std::size_t(t)].transpose()));
+      variance[t] = points[std::size_t(t)].transpose().cwiseProduct(halves_.back()).sum();
+    }
+    const double largest = variance.maxCoeff();
+    share_ = (variance / largest).pow(worst_smoothing);
+    share_ /= share_.sum();
+    Eigen::Index rows = 0;
+    for (const Eigen::MatrixXd& A : points) rows += A.rows();
+    Eigen::MatrixXd together(rows, llt.rows());
+    rows = 0;
+    for (Eigen::Index t = 0; t < count; ++t) {
+      const Eigen::MatrixXd& A = points[std::size_t(t)];
+      // Points that nothing moves have no variance and no share.
+      together.middleRows(rows, A.rows()) = variance[t] > 0 ? std::sqrt(share_[t] / variance[t]) * A : 0.0 * A;
+      rows += A.rows();
+      halves_[std::size_t(t)] *= variance[t] > 0 ? 1 / std::sqrt(variance[t]) : 0.0;
+    }
+    mean_ = std::make_unique<TraceExpansion>(llt, together);
+    factor = mean_->factor;
+    value = std::log((variance > 0).select(share_ / variance, 0.0).sum());
+  }
+
+  /// Of (Σ v_tᵖ)^{1/p}: the mean's own, and what its weights change.
+  void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
+    mean_->curvature(rows, r, H);
+    const Eigen::Index count = rows.rows() / r;
+    Eigen::MatrixXd d(count, Eigen::Index(halves_.size()));
+    for (Eigen::Index t = 0; t < d.cols(); ++t) {
+      const Eigen::MatrixXd Y = rows * halves_[std::size_t(t)];
+      for (Eigen::Index i = 0; i < count; ++i) d(i, t) = Y.middleRows(i * r, r).squaredNorm();
+    }
+    const Eigen::VectorXd mean = d * share_.matrix();
+    const Eigen::MatrixXd spread = (d.colwise() - mean) * ((worst_smoothing - 1) * share_).sqrt().matrix().asDiagonal();
+    H.noalias() += spread * spread.transpose();
+  }
+
+ private:
+  Eigen::ArrayXd share_;
+  std::vector<Eigen::MatrixXd> halves_;  // V Aᵀ/√v of every point
+  std::unique_ptr<TraceExpansion> mean_;
+};
+
 class WorstTestPoint : public InformationFunction {
  public:
   explicit WorstTestPoint(const CriterionData& data) {
@@ -70,6 +123,14 @@ class WorstTestPoint : public InformationFunction {
   }
 
   bool concave() const override { return true; }
+
+  double degree() const override { return 1.0; }
+
+  std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override {
+    const Eigen::LLT<Eigen::MatrixXd> factor(information);
+    if (!is_regular(factor)) return nullptr;
+    return std::make_unique<WorstExpansion>(factor, points_);
+  }
 
  private:
   std::pair<std::size_t, double> worst(const Eigen::LLT<Eigen::MatrixXd>& factor) const {

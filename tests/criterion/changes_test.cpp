@@ -162,7 +162,10 @@ TEST_P(Changes, GradientIsTheDerivativeAndTheExpansionIsItsFactor) {
     return (J * gradient * J.transpose()).trace();
   };
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(along(i, S), derivative(i, M), 1e-6);
-  if (function.degree() == 0 || GetParam().criterion == "maximin") return;
+  // The worst of several things is expanded as a mean of them near it: its bound is tested by enumeration.
+  for (const char* of_worst : {"maximin", "o3", "test_pose_max"})
+    if (GetParam().criterion == of_worst) return;
+  if (function.degree() == 0) return;
   const auto expansion = function.expand(M);
   EXPECT_NEAR(expansion->value, function.value(M), 1e-10);
   EXPECT_LT((expansion->factor * expansion->factor.transpose() - S).cwiseAbs().maxCoeff(), 1e-10);

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <bit>
 #include <cmath>
 
 #include "posewright/criterion/observability_indices.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/spectral.hpp"
 #include "posewright/criterion/trace.hpp"
+#include "posewright/planning/approximate_design.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
@@ -130,6 +132,50 @@ TEST_P(EveryCriterion, BestSwapIsThatOfExhaustiveSearch) {
     }
     const Swap swap = state->best_swap(p, 1e-9);
     EXPECT_NEAR(swap.enter < 0 ? 1e-9 : swap.gain, best, 1e-7);
+  }
+}
+
+TEST_P(EveryCriterion, NoWeightsAndNoDesignExceedItsBound) {
+  for (const int nuisance : {0, 2}) {
+    const Fixture f(2, nuisance, 7, 12);
+    const auto criterion = make_criterion(GetParam(), f.data);
+    const InformationFunction& function = criterion->function();
+    if (function.degree() == 0) continue;
+    Random random(9, std::uint64_t(nuisance));
+    const auto information = [&](const std::vector<double>& weights) {
+      Eigen::MatrixXd M = Eigen::MatrixXd::Zero(criteria_columns, criteria_columns);
+      for (std::size_t i = 0; i < f.white.count(); ++i)
+        M += weights[i] * f.white.block(i).transpose() * f.white.block(i);
+      return M;
+    };
+    const auto draw = [&] {
+      std::vector<double> weights;
+      for (std::size_t i = 0; i < f.white.count(); ++i) weights.push_back(std::pow(random.uniform(), 3));
+      return weights;
+    };
+    // The inequality that every bound rests on, from any weights to any others.
+    for (int k = 0; k < 50; ++k) {
+      const auto expansion = function.expand(information(draw()));
+      ASSERT_NE(expansion, nullptr);
+      const Eigen::MatrixXd M = information(draw());
+      const double d = (expansion->factor.transpose() * M * expansion->factor).trace();
+      EXPECT_LE(function.value(M),
+                expansion->value + function.degree() * std::log(d / function.degree()) + 1e-10 * criteria_columns);
+    }
+    // All plans of six of the twelve.
+    double best = -1e300;
+    for (unsigned set = 0; set < 1U << 12; ++set) {
+      if (std::popcount(set) != 6) continue;
+      std::vector<double> weights(12);
+      for (std::size_t i = 0; i < 12; ++i) weights[i] = double(set >> i & 1U);
+      best = std::max(best, function.value(information(weights)));
+    }
+    ApproximateDesignOptions options;
+    options.cap = 1.0 / 6;
+    const double bound = solve_approximate_design(f.white, function, options, Monitor{}).bound_for(6);
+    EXPECT_GE(bound, best);
+    // A bound that says nothing would hold as well.
+    EXPECT_LT((bound - best) / function.degree(), 0.7);
   }
 }
 

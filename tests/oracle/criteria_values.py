@@ -3,7 +3,7 @@ import numpy as np
 
 from statistics_by_definition import STEP, Poses, derivative, whitening
 
-LOG_DETERMINANTS, TRACES, INDICES = ("o1", "ds"), ("a", "test_pose"), ("o2", "o3", "o4", "o5")
+LOG_DETERMINANTS, TRACES, INDICES = ("o1", "ds"), ("a", "test_pose", "test_pose_max"), ("o2", "o3", "o4", "o5")
 
 
 def columns(arm, variant, poses, names):
@@ -198,7 +198,8 @@ class Design:
         raise ValueError(name)
 
     def degree(self, name):
-        return self.fit.size if name in LOG_DETERMINANTS else 1
+        # Singular values are roots of what grows with the information.
+        return self.fit.size if name in LOG_DETERMINANTS else 0.5 if name in INDICES else 1
 
     def potential(self, name, value, sets=None):
         """Φ, which the certificate bounds, from a criterion's value."""

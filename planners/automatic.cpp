@@ -12,6 +12,7 @@
 #include "posewright/support/parallel.hpp"
 #include "reduced_task.hpp"
 #include "restarts.hpp"
+#include "starts.hpp"
 #include "tabu.hpp"
 
 namespace posewright {
@@ -108,6 +109,9 @@ class Run {
     Outcome outcome = outcome_of(*state, 0);
     outcome.members = reduced.original(outcome.members);
     take(outcome);
+    // Nothing else comes after this: the optimal weights are there already, and often the better plan.
+    if (monitor_.should_stop() && task_.approximate != nullptr && !task_.approximate->support.empty())
+      take(outcome_of(*task_.criterion->start(task_.candidates, rounded_start(task_)), 0));
     record("greedy");
   }
 

@@ -11,8 +11,9 @@ namespace {
 
 constexpr int most_singular_passes = 50;
 
-/// One pass over all positions; returns the number of accepted swaps.
-int exchange_pass(DesignState& state, std::vector<int>& order, const Monitor& monitor) {
+/// One pass over all positions; returns the number of accepted swaps. The first pass of a start is a whole one, so that
+/// whoever stops early still gets a plan.
+int exchange_pass(DesignState& state, std::vector<int>& order, bool whole, const Monitor& monitor) {
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> loss(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) loss[i] = state.loss(int(i));
@@ -20,7 +21,7 @@ int exchange_pass(DesignState& state, std::vector<int>& order, const Monitor& mo
                    [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
   int accepted = 0;
   for (const int position : order) {
-    if (monitor.should_stop()) break;
+    if (!whole && monitor.should_stop()) break;
     const Swap swap = state.best_swap(position, smallest_gain);
     if (swap.enter < 0) continue;
     state.apply(position, swap.enter);
@@ -38,11 +39,11 @@ Outcome outcome_of(const DesignState& state, long exchanges) {
 long settle(DesignState& state, const Monitor& monitor) {
   std::vector<int> order(state.members().size());
   long total = 0;
-  int singular = 0;
+  int singular = 0, passes = 0;
   while (true) {
     int accepted = 0, now = 0;
     do {
-      now = exchange_pass(state, order, monitor);
+      now = exchange_pass(state, order, passes++ == 0, monitor);
       accepted += now;
       // Gains of a singular set are those of M plus a ridge; if no set is regular they may go round for ever.
       if (!std::isfinite(state.value()) && ++singular >= most_singular_passes) break;

@@ -38,7 +38,7 @@ class SpectralExpansion : public Expansion {
   /// and what the elimination of nuisance columns curves besides.
   void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
     const BlockArray::RowMatrix Y = rows * left_;
-    const Eigen::Index s = Y.cols(), count = rows.rows() / r;
+    const Eigen::Index count = rows.rows() / r;
     // As T's, where the weights of o3 sum to one.
     const double scale = share_.sum() / (0.5 * mu_.array().pow(-p_ - 1).sum() / sum_);
     Eigen::VectorXd d(count);
@@ -47,6 +47,16 @@ class SpectralExpansion : public Expansion {
     if (inside_.cols() > 0)
       product_curvature(rows.leftCols(inside_.rows()) * inside_, Y * (share_ / scale).cwiseSqrt().asDiagonal(), r, H);
     else H.setZero(count, count);
+    add_pairs(Y, r, H);
+    H.selfadjointView<Eigen::Lower>().rankUpdate(d, -2 * p_);
+    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+    H *= scale;
+  }
+
+ private:
+  /// The sum over pairs of eigenvectors, lower triangle.
+  void add_pairs(const BlockArray::RowMatrix& Y, int r, Eigen::MatrixXd& H) const {
+    const Eigen::Index s = Y.cols(), count = Y.rows() / r;
     Eigen::MatrixXd products(count, std::min(pairs_at_once, s * (s + 1) / 2));
     Eigen::Index held = 0;
     const auto add = [&] {
@@ -56,20 +66,13 @@ class SpectralExpansion : public Expansion {
     for (Eigen::Index b = 0; b < s; ++b)
       for (Eigen::Index a = 0; a <= b; ++a) {
         const double weight = std::sqrt((a == b ? 1.0 : 2.0) * difference(a, b) / (2 * p_ * sum_));
-        for (Eigen::Index i = 0; i < count; ++i) {
-          double product = 0;
-          for (int k = 0; k < r; ++k) product += Y(i * r + k, a) * Y(i * r + k, b);
-          products(i, held) = weight * product;
-        }
+        for (Eigen::Index i = 0; i < count; ++i)
+          products(i, held) = weight * Y.col(a).segment(i * r, r).dot(Y.col(b).segment(i * r, r));
         if (++held == products.cols()) add();
       }
     if (held > 0) add();
-    H.selfadjointView<Eigen::Lower>().rankUpdate(d, -2 * p_);
-    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
-    H *= scale;
   }
 
- private:
   double difference(Eigen::Index a, Eigen::Index b) const {
     const double x = mu_[a], y = mu_[b];
     if (std::abs(x - y) < 1e-5 * (x + y)) return p_ * (p_ + 1) * std::pow(0.5 * (x + y), -p_ - 2);

@@ -124,8 +124,11 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, const Infor
   std::vector<double> d(n);
   double gap = 1.0;
   int unchanged = 0;
+  const Monitor unstopped;
   for (int round = 1;; ++round) {
-    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)), monitor);
+    // Whoever stops before the first round is done still gets a bound that says something.
+    const double wanted = std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0));
+    result.newton_steps += restricted.solve(wanted, round == 1 ? unstopped : monitor);
     sensitivities(blocks, restricted.factor(), options.threads, d);
     const double ratio = std::max(1.0, (best_mean(d, options.cap) + restricted.prior_sensitivity()) / degree);
     const double bound = with_margin(restricted.value() + degree * std::log(ratio));

@@ -1,6 +1,7 @@
 #include "posewright/planning/extended_bound.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -11,6 +12,7 @@ namespace posewright {
 namespace {
 
 constexpr int most_rounds = 10;
+constexpr auto grace = std::chrono::milliseconds(300);
 
 BlockArray joined(const BlockArray& candidates, const std::vector<int>& kept, const BlockArray& more) {
   const BlockArray part = candidates.subset(kept);
@@ -46,11 +48,15 @@ std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
 ApproximateDesign extended_bound(const BlockArray& candidates, const ApproximateDesign& design, const BlockArray& more,
                                  const InformationFunction& function, const ApproximateDesignOptions& options,
                                  const Monitor& monitor) {
+  // Of a search that was stopped the bound is what is stated: it gets a moment of its own.
+  Monitor moment;
+  moment.deadline = Monitor::Clock::now() + grace;
+  const Monitor& watch = monitor.should_stop() ? moment : monitor;
   const auto room = std::max(std::size_t(10 * candidates.columns()), std::size_t(4 / options.cap));
   std::vector<int> kept = united(largest(design.sensitivity, room), design.support);
   ApproximateDesign best;
   for (int round = 0; round < most_rounds; ++round) {
-    ApproximateDesign now = solve_approximate_design(joined(candidates, kept, more), function, options, monitor);
+    ApproximateDesign now = solve_approximate_design(joined(candidates, kept, more), function, options, watch);
     std::vector<double> d;
     sensitivities(candidates, now.factor, options.threads, d);
     std::vector<double> all = d;
@@ -60,7 +66,7 @@ ApproximateDesign extended_bound(const BlockArray& candidates, const Approximate
     now.bound = with_margin(now.value + now.degree * std::log(now.max_sensitivity_ratio));
     const bool first = round == 0;
     if (first || now.bound < best.bound) best = std::move(now);
-    if (best.max_sensitivity_ratio <= 1 + std::max(options.tolerance, 1e-9) || monitor.should_stop()) break;
+    if (best.max_sensitivity_ratio <= 1 + std::max(options.tolerance, 1e-9) || watch.should_stop()) break;
     std::vector<int> next = united(kept, largest(d, room));
     if (next == kept) break;
     kept = std::move(next);

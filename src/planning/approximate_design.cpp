@@ -41,8 +41,9 @@ std::vector<int> first_working_set(const BlockArray& blocks, std::size_t size) {
   for (std::size_t i = 0; i < n; ++i) length[i] = blocks.block(i).squaredNorm();
   std::vector<int> set = largest(length, all, size / 2);
   Random random(0, size);
-  const double stretch = double(n) / double(size - size / 2);
-  for (std::size_t i = 0; i < size - size / 2; ++i)
+  const std::size_t drawn = size - size / 2;
+  const double stretch = double(n) / double(drawn);
+  for (std::size_t i = 0; i < drawn; ++i)
     set.push_back(std::min(int(n) - 1, int(stretch * (double(i) + random.uniform()))));
   std::sort(set.begin(), set.end());
   set.erase(std::unique(set.begin(), set.end()), set.end());

@@ -15,10 +15,10 @@ namespace posewright {
 ///          + Σ k q_other                                   (coupling with another joint)
 ///          ∓ b/2 where it arrived rising, falling          (backlash: b is the play)
 ///          + t (T − T_reference)                           (temperature).
-/// Parameters NAME.{cos1, sin1, cos2, sin2}, NAME.{cos_g, sin_g} (rad), NAME.coupling.OTHER (own unit per other's), as
+/// Parameters NAME.{cos1, sin1, cos2, sin2}, NAME.{cos_g, sin_g} (rad), NAME.coupling.OTHER (own unit per other's),
 /// NAME.backlash (own unit), NAME.temperature (own unit/K), as the problem lists them, before tool.*; nominal 0. Joints
 /// with backlash add a choice NAME.approach to the configuration, temperature one `temperature` (°C). Loads bend the
-/// arm as it reads. Their twists are those of the joints' readings times the function.
+/// arm as it reads. Twists of the parameters are those of the joints' readings times the function.
 class JointEffects : public TipModel {
  public:
   /// @param arm  the chain whose coordinates are the joints' readings

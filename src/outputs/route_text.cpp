@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "nearest.hpp"
 #include "posewright/outputs/route.hpp"
@@ -58,8 +57,7 @@ std::string conditions_text(const Conditions& conditions) {
   std::string text;
   for (const auto& [name, choice] : conditions)
     text += (text.empty() ? "" : ", ") +
-            (name.ends_with(approach_suffix) ? name.substr(0, name.size() - std::strlen(approach_suffix)) : name) +
-            " " + choice;
+            (is_approach(name) ? name.substr(0, name.size() - approach_suffix.size()) : name) + " " + choice;
   return text;
 }
 

@@ -107,7 +107,7 @@ class Router {
 
   /// Nobody knows from where the robot comes to a first pose.
   void require_beginning() const {
-    const auto arrives = [](const auto& condition) { return condition.first.ends_with(approach_suffix); };
+    const auto arrives = [](const auto& condition) { return is_approach(condition.first); };
     const Conditions& conditions = stops_.back().pose.conditions;
     if (!options_.from_home && std::any_of(conditions.begin(), conditions.end(), arrives))
       throw CannotDo("joints with backlash arrive from a stated side, also at the first pose: begin --from-home");
@@ -133,7 +133,7 @@ class Router {
     if (space_.is_free(lead, q)) return {};
     std::string sides;
     for (const auto& [name, side] : stops_[stop].pose.conditions)
-      if (name.ends_with(approach_suffix)) sides += (sides.empty() ? "" : ", ") + name + " " + side;
+      if (is_approach(name)) sides += (sides.empty() ? "" : ", ") + name + " " + side;
     const std::string why = space_.violation(lead);
     return "no room to arrive as stated (" + sides + "): " + (why.empty() ? "collision on the way" : why);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace posewright {
 /// Names and choices, in the order of the robot's coordinates.
 using Conditions = std::vector<std::pair<std::string, std::string>>;
 /// Of a condition's name: the side that a joint arrives from (model/identification_model.hpp, make_approach).
-inline constexpr const char* approach_suffix = ".approach";
+inline constexpr std::string_view approach_suffix = ".approach";
+inline bool is_approach(std::string_view condition) { return condition.ends_with(approach_suffix); }
 
 /// A named value with its unit: one entry of a configuration or an actuator.
 struct NamedValue {

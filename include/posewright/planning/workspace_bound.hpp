@@ -29,7 +29,6 @@ struct WorkspaceBoundOptions {
   double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
   int evaluations = 400;    ///< of one local search
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
-  bool prove = true;        ///< the largest d, where it can be
   ProofLimits proof{};
   std::uint64_t seed = 0;
   int threads = 0;

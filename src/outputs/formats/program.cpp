@@ -33,8 +33,6 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   return name;
 }
 
-bool is_approach(const std::string& condition) { return condition.ends_with(approach_suffix); }
-
 /// What somebody changes by hand between poses.
 Conditions others(const SequencePose& pose) {
   Conditions result = pose.conditions;

@@ -4,12 +4,11 @@
 
 namespace posewright {
 
-/// The proved optimum over the candidates, for small tasks (Welch 1982, Technometrics 24(1); Ahipaşaoğlu 2021). Each
-/// node fixes how often some candidates are chosen at least and at most; its bound is the approximate optimum of the
-/// rest with what is fixed as prior. Sensitivities also fix candidates that cannot be in, or cannot be missing from,
-/// anything better than the best design known, which `exchange` finds first. Criteria without a bound are enumerated;
-/// throws CannotDo if that would be more than a few million sets. Ends early when the monitor says so; `optimal`
-/// tells.
+/// The proved optimum over the candidates (Welch 1982, Technometrics 24(1)). Each node fixes how often some candidates
+/// are chosen at least and at most (DesignTree); its bound is the optimum over numbers that need not be whole
+/// (NodeRelaxation), which knows how few rows are left to choose (RankLimitedLogDet). `exchange` finds the design to
+/// begin with. Criteria without a bound are enumerated; throws CannotDo if that would be more than a few million sets.
+/// Ends early when the monitor says so: `optimal` tells, and `bound` what no design exceeds.
 class BranchAndBoundPlanner : public Planner {
  public:
   std::string name() const override { return "branch_and_bound"; }

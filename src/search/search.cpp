@@ -288,6 +288,9 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
     result.certificate.count += more.count();
     result.certificate.found = more.count();
   }
+  // A planner that proves something knows more than the weights alone.
+  if (result.design.bound && !request.reserve)
+    result.certificate.bound = std::min(result.certificate.bound, *result.design.bound + offset);
   if (workspace) result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->is_box());
   // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
   // miss.
@@ -306,7 +309,9 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
 
 void certify(Certificate& certificate, double phi, double degree) {
   if (!certificate.proved) return;
-  certificate.efficiency = std::min(1.0, std::exp((phi - certificate.bound) / degree));
+  // Below 1e-9 the difference is that of two ways to compute one number.
+  const double short_of = certificate.bound - phi;
+  certificate.efficiency = short_of < 1e-9 ? 1.0 : std::exp(-short_of / degree);
   if (certificate.workspace)
     certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "planners/continuous.hpp"
+#include "planners/design_tree.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -41,6 +42,78 @@ TEST(BranchAndBound, ProvesFiftySmallProblemsAndAutoFindsTheOptimumOfNearlyAll) 
     if (searched.value > proved.value - 1e-8) ++found;
   }
   EXPECT_GE(found, 48) << "of 50";
+}
+
+/// Best of all designs in a box, by enumeration.
+double best_in_box(const DesignTask& task, const ChoiceBox& box, std::size_t first, std::vector<int>& members) {
+  double best = -std::numeric_limits<double>::infinity();
+  if (first == box.least.size())
+    return int(members.size()) == task.poses ? task.criterion->start(task.candidates, members)->value() : best;
+  const std::vector<int> before = members;
+  for (int count = box.least[first]; count <= box.most[first]; ++count) {
+    members = before;
+    members.insert(members.end(), std::size_t(count), int(first));
+    if (int(members.size()) <= task.poses) best = std::max(best, best_in_box(task, box, first + 1, members));
+  }
+  members = before;
+  return best;
+}
+
+TEST(BranchAndBound, NoDesignOfABoxIsBetterThanItsBoundAndTighteningLosesNoneThatIs) {
+  int tightened = 0, ruled_out = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    Random random(seed, 3);
+    const int columns = 3 + int(seed % 4), rows = seed % 5 == 0 ? 2 : 1, repeats = seed % 3 == 0 ? 2 : 1;
+    const BlockArray blocks = random_blocks(11, rows, columns, 700 + seed);
+    const auto criterion = make_criterion(seed % 7 == 6 ? "a" : "o1", plain_data(columns));
+    DesignTask task{{&blocks, 0, repeats}, criterion.get(), std::max(4, columns + int(seed % 2)), nullptr};
+    ChoiceBox box{std::vector<std::uint16_t>(11, 0), std::vector<std::uint16_t>(11, std::uint16_t(repeats))};
+    for (int k = 0; k < int(seed % 5); ++k) {
+      const auto c = std::size_t(random.index(11));
+      if (random.uniform() < 0.6) box.least[c] = box.most[c] = std::uint16_t(std::max<int>(1, box.most[c]));
+      else box.most[c] = box.least[c];
+    }
+    std::vector<int> members;
+    const double best = best_in_box(task, box, 0, members);
+    // What is known already lies below, above, or nowhere near.
+    const double known = best + (random.uniform() < 0.7 ? -1 : 1) * 0.3 * random.uniform();
+    NodeRelaxation relaxation(task);
+    RelaxedBox relaxed;
+    relaxed.numbers.assign(11, task.poses / 11.0);
+    if (!relaxation.solve(box, relaxed, std::isfinite(best) ? known : -100.0)) {
+      EXPECT_FALSE(best > known + 1e-9) << seed;
+      ++ruled_out;
+      continue;
+    }
+    EXPECT_GE(relaxed.bound, best - 1e-9) << seed;
+    if (best <= known) continue;
+    EXPECT_NEAR(best_in_box(task, box, 0, members), best, 1e-12) << seed;
+    if (box.most != std::vector<std::uint16_t>(11, std::uint16_t(repeats))) ++tightened;
+  }
+  EXPECT_GT(tightened, 50);
+  EXPECT_GT(ruled_out, 50);
+}
+
+TEST(BranchAndBound, FindsTheOptimumFromTheWorstDesignOnAnyNumberOfThreads) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const int columns = 4 + int(seed % 3);
+    const BlockArray blocks = random_blocks(16, 1, columns, 900 + seed);
+    const auto criterion = make_criterion("o1", plain_data(columns));
+    DesignTask task{{&blocks, 0, 1}, criterion.get(), columns + int(seed % 2), nullptr};
+    ChoiceBox whole{std::vector<std::uint16_t>(16, 0), std::vector<std::uint16_t>(16, 1)};
+    std::vector<int> members;
+    const double optimum = best_in_box(task, whole, 0, members);
+    Design first;
+    for (const int threads : {1, 3}) {
+      Design design;
+      design.value = -50.0;
+      EXPECT_TRUE(DesignTree(task, threads, Monitor{}, design).run());
+      EXPECT_NEAR(design.value, optimum, 2e-9) << seed;
+      EXPECT_EQ(design.bound, design.value);
+      if (threads == 1) first = design;
+      else EXPECT_EQ(design.members, first.members);
+    }
+  }
 }
 
 TEST(BranchAndBound, ReplicatedDesignReachesTheReplicationBound) {

@@ -55,6 +55,8 @@ struct Design {
   long exchanges = 0;                        ///< accepted over all restarts
   bool stopped = false;                      ///< by the monitor, before all was done
   bool optimal = false;                      ///< proved: no design of these candidates is better by more than 1e-9
+  /// No design of these candidates exceeds it, by the planner's own proof; none where it proves nothing.
+  std::optional<double> bound{};
   std::vector<SearchStage> stages{};
 };
 

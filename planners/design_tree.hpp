@@ -1,0 +1,53 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "node_relaxation.hpp"
+
+namespace posewright {
+
+/// Branch and bound over the sets of N candidates, best bound first. Nodes are split in rounds of a fixed number, each
+/// by itself and merged in order, so that the tree is the same on any number of threads.
+class DesignTree {
+ public:
+  /// @param best  a design to begin with; whatever is better replaces it
+  DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best);
+  /// True if `best` is proved; else best.bound is what no design exceeds.
+  bool run();
+
+ private:
+  struct Node {
+    ChoiceBox box;
+    RelaxedBox relaxed;
+  };
+  struct Split {
+    std::vector<std::unique_ptr<Node>> children;
+    Design best;
+    bool stopped = false;
+  };
+
+  void split(const Node& node, NodeRelaxation& relaxation, Split& result) const;
+  /// Null if nothing in the box is better than `best`.
+  std::unique_ptr<Node> look_into(ChoiceBox box, std::vector<double> numbers, NodeRelaxation& relaxation,
+                                  Design& best) const;
+  bool settle_spacing(ChoiceBox& box) const;
+  bool leaf(const ChoiceBox& box, Design& best) const;
+  void offer(std::vector<int> members, Design& best) const;
+  void push(std::unique_ptr<Node> node);
+  std::vector<std::unique_ptr<Node>> next_round();
+  void merge(std::vector<std::unique_ptr<Node>>& round, std::vector<Split>& splits);
+
+  const DesignTask& task_;
+  int threads_;
+  const Monitor& monitor_;
+  Design& best_;
+  std::vector<std::unique_ptr<NodeRelaxation>> relaxations_;       // one per thread
+  std::map<std::pair<double, long>, std::unique_ptr<Node>> open_;  // by −bound, then age
+  std::map<long, double> bounds_;                                  // of the open nodes, by age
+  long nodes_ = 0;
+};
+
+}  // namespace posewright

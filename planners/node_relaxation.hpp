@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "posewright/planning/design_task.hpp"
+#include "rank_limited.hpp"
+
+namespace posewright {
+
+/// How often each candidate is chosen at least and at most.
+struct ChoiceBox {
+  std::vector<std::uint16_t> least, most;
+};
+
+/// What the relaxation of a box says: numbers n_i that need not be whole, and no design in the box above `bound`.
+struct RelaxedBox {
+  double bound = 0.0;
+  std::vector<double> numbers;  ///< n_i of every candidate, Σ n_i = N
+  int branch = -1;              ///< candidate whose number is best made whole; −1: all are
+};
+
+/// The optimum of Φ(M0 + Σ n_i J_iᵀJ_i) over least ≤ n ≤ most, Σ n_i = N: sequential quadratic programming with exact
+/// second derivatives, from the numbers of the box around it. Every iterate also bounds the optimum (its sensitivities
+/// d_i, concavity of e^{Φ/h}), and most boxes end at the first such bound. One per thread: it keeps its memory.
+class NodeRelaxation {
+ public:
+  /// Criteria with a degree only.
+  explicit NodeRelaxation(const DesignTask& task);
+
+  /// Bounds the box; tightens it by what the sensitivities rule out in anything better than `best`. `relaxed.numbers`
+  /// is where to begin. False if nothing in the box is better than `best`.
+  bool solve(ChoiceBox& box, RelaxedBox& relaxed, double best);
+
+ private:
+  using RowMatrix = BlockArray::RowMatrix;
+
+  void gather(const ChoiceBox& box);
+  bool make_feasible(const ChoiceBox& box, std::vector<double>& numbers) const;
+  void add_information(const std::vector<double>& numbers);
+  std::unique_ptr<Expansion> expand_at(const Eigen::MatrixXd& information) const;
+  void find_sensitivities(const std::vector<double>& numbers);
+  /// From here on the tighter bound of few remaining rows, where there is one.
+  void limit_rank();
+  bool start_regular(const ChoiceBox& box, std::vector<double>& numbers);
+  /// Σ of the largest d_i that the box allows and Φ's bound from it.
+  double bound();
+  /// The sum that anything better than `best` must reach.
+  double needed(double best) const;
+  bool step(std::vector<double>& numbers);
+  bool search_along(std::vector<double>& numbers);
+  void choose_working_set(const std::vector<double>& numbers);
+  void solve_quadratic(const std::vector<double>& numbers);
+  bool tighten(ChoiceBox& box, double best) const;
+  int branching_candidate(const std::vector<double>& numbers);
+  void copy_working_rows();
+
+  const DesignTask& task_;
+  const BlockArray& blocks_;
+  const InformationFunction& function_;
+  int r_, m_;
+  bool log_det_;                   // of all columns
+  std::vector<int> free_;          // candidates whose number is open
+  std::vector<int> least_, room_;  // of each free candidate
+  int left_ = 0;                   // poses to choose among them
+  RowMatrix rows_;                 // of the free candidates
+  RowMatrix projected_;            // rows_ T
+  Eigen::MatrixXd fixed_, information_;
+  std::unique_ptr<Expansion> expansion_;
+  Eigen::VectorXd d_;  // of the free candidates
+  std::unique_ptr<RankLimitedLogDet> limited_;
+  double fixed_share_ = 0.0;  // tr(S M) of what is fixed; nothing where the rank is limited
+  double open_share_ = 0.0;   // Σ n_i d_i of what is not
+  std::vector<int> order_, granted_;
+  double weakest_ = 0.0, next_ = 0.0, most_possible_ = 0.0;
+  std::vector<int> working_;  // positions in free_
+  RowMatrix working_rows_;
+  Eigen::MatrixXd curvature_;
+  Eigen::VectorXd change_;  // of the working candidates' numbers
+};
+
+}  // namespace posewright

@@ -1,5 +1,6 @@
 #include "node_relaxation.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -128,7 +128,7 @@ int LineOfSight::hidden_by(const Sight& s) const {
 }
 
 Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station,
-                         const Target& target, bool on_tip) const {
+                         const Target& target, bool on_tip, bool past_bodies) const {
   const Eigen::Isometry3d& X_Carrier = X_CarrierStation_[std::size_t(station)];
   const Eigen::Isometry3d X_Station = station_on_tip_ ? Eigen::Isometry3d(X_MeasureTip * X_Carrier) : X_Carrier;
   const Eigen::Vector3d p = on_tip ? X_MeasureTip * target.position : target.position;
@@ -144,7 +144,7 @@ Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_M
     s.incidence = std::atan2(n.cross(way).norm(), n.dot(way));
   }
   s.hidden_by = hidden_by(s);
-  if (s.hidden_by < 0 && collision_ != nullptr && s.distance > spec_.target_radius &&
+  if (s.hidden_by < 0 && past_bodies && collision_ != nullptr && s.distance > spec_.target_radius &&
       collision_->blocked(q, X_Station.translation(), p + way.normalized() * (spec_.target_radius + spec_.beam),
                           spec_.beam, station_names_[std::size_t(station)]))
     s.hidden_by = occluded;
@@ -153,11 +153,11 @@ Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_M
 }
 
 bool LineOfSight::seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station,
-                            std::span<char> seen, int* reason) const {
+                            std::span<char> seen, int* reason, bool past_bodies) const {
   const int needed = spec_.visible == 0 ? targets() : spec_.visible;
   int found = 0, hidden = 0;
   for (std::size_t t = 0; t < targets_.size(); ++t) {
-    const int why = sight(q, X_Tip, station, targets_[t], targets_on_tip_).hidden_by;
+    const int why = sight(q, X_Tip, station, targets_[t], targets_on_tip_, past_bodies).hidden_by;
     if (!seen.empty()) seen[t] = char(why < 0 && seen[t] != 0);
     found += why < 0;
     hidden += why >= 0;
@@ -172,15 +172,15 @@ void LineOfSight::visible(std::span<const double> q, std::span<char> seen) const
   std::fill(seen.begin(), seen.end(), char(1));
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
   const auto [first, last] = stations_of(q);
-  for (int s = first; s <= last; ++s) seen_from(q, X_Tip, s, seen, nullptr);
+  for (int s = first; s <= last; ++s) seen_from(q, X_Tip, s, seen, nullptr, true);
 }
 
-int LineOfSight::violation(std::span<const double> q) const {
+int LineOfSight::violation(std::span<const double> q, bool past_bodies) const {
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
   const auto [first, last] = stations_of(q);
   for (int s = first; s <= last; ++s) {
     int reason = -1;
-    if (!seen_from(q, X_Tip, s, {}, &reason)) return reason;
+    if (!seen_from(q, X_Tip, s, {}, &reason, past_bodies)) return reason;
   }
   return -1;
 }
@@ -188,14 +188,14 @@ int LineOfSight::violation(std::span<const double> q) const {
 std::vector<Sight> LineOfSight::sights(std::span<const double> q, int station) const {
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
   std::vector<Sight> result;
-  for (const Target& target : targets_) result.push_back(sight(q, X_Tip, station, target, targets_on_tip_));
+  for (const Target& target : targets_) result.push_back(sight(q, X_Tip, station, target, targets_on_tip_, true));
   return result;
 }
 
 std::vector<Sight> LineOfSight::reference_sights(std::span<const double> q, int station) const {
   const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
   std::vector<Sight> result;
-  for (const Target& target : references_) result.push_back(sight(q, X_Tip, station, target, false));
+  for (const Target& target : references_) result.push_back(sight(q, X_Tip, station, target, false, true));
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlopt.hpp>
 #include <stdexcept>
+#include <tuple>
 
 namespace posewright {
 namespace {
@@ -16,7 +17,7 @@ constexpr double difference_step = 1e-5;
 // First step of SBPLX, in units of the range.
 constexpr double first_step = 0.05;
 
-/// f on the unit box of the continuous axes; keeps the best feasible configuration seen.
+/// f on the unit box of the continuous axes; keeps what improved on the start.
 class Evaluator {
  public:
   Evaluator(const ConfigurationSpace& space, ConfigurationSpace::Probe& probe, BlockObjective& objective, int rows,
@@ -33,8 +34,8 @@ class Evaluator {
       if (axes_[k].continuous && axes_[k].upper > axes_[k].lower) moving_.push_back(k);
     best_.q = std::move(start);
     best_.value = -std::numeric_limits<double>::infinity();
-    if (probe_.feasible(q_) && block_.at(probe_, q_)) best_.value = objective_.value(block_.map());
-    floor_ = best_.value;
+    if (probe_.perhaps_feasible(q_) && block_.at(probe_, q_)) best_.value = objective_.value(block_.map());
+    floor_ = highest_ = best_.value;
   }
 
   std::vector<double> unit_start() const {
@@ -52,7 +53,16 @@ class Evaluator {
     return std::isfinite(value) ? value : floor_ - 1 - std::abs(floor_);
   }
 
-  const AscentResult& best() const { return best_; }
+  /// The highest that is feasible in every respect: what takes long to check is asked of few.
+  const AscentResult& best() {
+    for (; !improvements_.empty(); improvements_.pop_back()) {
+      if (!probe_.feasible(improvements_.back().second)) continue;
+      std::tie(best_.value, best_.q) = improvements_.back();
+      break;
+    }
+    improvements_.clear();
+    return best_;
+  }
   bool can_move() const { return !moving_.empty() && std::isfinite(best_.value); }
 
  private:
@@ -66,11 +76,15 @@ class Evaluator {
   }
 
   double evaluate() {
-    if (!probe_.feasible(q_) || !block_.at(probe_, q_)) return -std::numeric_limits<double>::infinity();
+    constexpr double infeasible = -std::numeric_limits<double>::infinity();
+    if (!block_.at(probe_, q_)) return infeasible;
     const double value = objective_.value(block_.map());
-    if (value > best_.value && (!accept_ || accept_(q_))) {
-      best_.value = value;
-      best_.q = q_;
+    // No step is taken to where it is worse than at the start: whether one could, nobody needs to know.
+    if (value <= floor_) return value;
+    if (!probe_.perhaps_feasible(q_)) return infeasible;
+    if (value > highest_ && (!accept_ || accept_(q_))) {
+      highest_ = value;
+      improvements_.emplace_back(value, q_);
     }
     return value;
   }
@@ -101,7 +115,8 @@ class Evaluator {
   std::vector<double> q_;
   std::vector<std::size_t> moving_;
   AscentResult best_;
-  double floor_ = 0.0;
+  std::vector<std::pair<double, std::vector<double>>> improvements_;  // each higher than the one before
+  double floor_ = 0.0, highest_ = 0.0;
 };
 
 double call(const std::vector<double>& u, std::vector<double>& gradient, void* data) {

@@ -263,6 +263,11 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   shifted.on_progress = [&](Progress progress) {
     if (progress.best) *progress.best += offset;
     if (progress.bound) *progress.bound += offset;
+    // Poses between the candidates may be better than any of those: then their bound says nothing.
+    if (progress.best && progress.bound && *progress.best > *progress.bound) {
+      progress.bound.reset();
+      progress.efficiency.reset();
+    }
     monitor.report(progress);
   };
   result.design = make_planner(request.method)->plan(task, request.planner, shifted);

@@ -1,5 +1,6 @@
 #include "posewright/study/space.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -33,11 +34,13 @@ class StudyProbe : public ConfigurationSpace::Probe {
   }
 
   bool feasible(std::span<const double> q) override {
-    for (const SpacePart& part : parts_)
-      if (part.workspace->violation(q) >= 0) return false;
-    for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
-      if (spacing_.too_near(measured_[i], q)) return false;
-    return true;
+    return is_new(q) && std::all_of(parts_.begin(), parts_.end(),
+                                    [&](const auto& part) { return part.workspace->violation(q) < 0; });
+  }
+
+  bool perhaps_feasible(std::span<const double> q) override {
+    return is_new(q) &&
+           std::all_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part.workspace->is_free_at(q); });
   }
 
   bool block(std::span<const double> q, double* rows, int stride) override {
@@ -66,6 +69,13 @@ class StudyProbe : public ConfigurationSpace::Probe {
   }
 
  private:
+  /// Far enough from every pose that is measured.
+  bool is_new(std::span<const double> q) const {
+    for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
+      if (spacing_.too_near(measured_[i], q)) return false;
+    return true;
+  }
+
   /// X R⁻¹, row by row: blocks are small, and a library's solver for large ones takes longer to begin than this to end.
   void divide_by_upper(BlockArray::RowMatrix& X) const {
     const Eigen::Index m = X.cols();

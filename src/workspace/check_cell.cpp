@@ -15,13 +15,18 @@ class CollisionCheck : public ValidityCheck {
 
 class SightCheck : public ValidityCheck {
  public:
-  explicit SightCheck(const LineOfSight& sight) : sight_(sight) {}
+  SightCheck(const LineOfSight& sight, bool past_bodies) : sight_(sight), past_bodies_(past_bodies) {}
   std::vector<std::string> reasons() const override { return sight_.reasons(); }
-  int violation(std::span<const double> q) const override { return sight_.violation(q); }
+  int violation(std::span<const double> q) const override { return sight_.violation(q, past_bodies_); }
 
  private:
   const LineOfSight& sight_;
+  bool past_bodies_;
 };
+
+bool sight_is_asked(const CheckContext& context) {
+  return context.cell != nullptr && context.cell->sight != nullptr && context.cell->sight_is_asked;
+}
 
 }  // namespace
 
@@ -30,9 +35,14 @@ void add_collision_check(const CheckContext& context, Checks& checks) {
     checks.push_back(std::make_unique<CollisionCheck>(*context.cell->collision));
 }
 
+void add_direction_check(const CheckContext& context, Checks& checks) {
+  // Without bodies there is nothing more to a sight.
+  if (sight_is_asked(context) && context.cell->collision != nullptr)
+    checks.push_back(std::make_unique<SightCheck>(*context.cell->sight, false));
+}
+
 void add_sight_check(const CheckContext& context, Checks& checks) {
-  if (context.cell != nullptr && context.cell->sight != nullptr && context.cell->sight_is_asked)
-    checks.push_back(std::make_unique<SightCheck>(*context.cell->sight));
+  if (sight_is_asked(context)) checks.push_back(std::make_unique<SightCheck>(*context.cell->sight, true));
 }
 
 }  // namespace posewright

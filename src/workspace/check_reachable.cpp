@@ -26,6 +26,7 @@ class ReachableCheck : public SingleCheck {
     Roadmap roadmap(space_, milestones, roadmap_seed, unwatched);
     milestones_ = roadmap.connected(home);
   }
+  bool follows_motions() const override { return true; }
 
  private:
   bool holds(std::span<const double> q) const override {

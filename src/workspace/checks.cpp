@@ -21,6 +21,7 @@ Checks pose_checks(const CheckContext& context) {
   add_measurable_check(context, checks);
   add_tool_check(context, checks);
   add_singularity_check(context, checks);
+  add_direction_check(context, checks);
   add_collision_check(context, checks);
   add_sight_check(context, checks);
   add_reachable_check(context, checks);

@@ -31,6 +31,8 @@ void add_approach_check(const CheckContext& context, Checks& checks);
 void add_measurable_check(const CheckContext& context, Checks& checks);
 void add_tool_check(const CheckContext& context, Checks& checks);
 void add_singularity_check(const CheckContext& context, Checks& checks);
+/// What of a sight needs no bodies: most of what is hidden is turned away, and collisions take a hundred times as long.
+void add_direction_check(const CheckContext& context, Checks& checks);
 void add_collision_check(const CheckContext& context, Checks& checks);
 void add_sight_check(const CheckContext& context, Checks& checks);
 void add_reachable_check(const CheckContext& context, Checks& checks);

@@ -28,8 +28,13 @@ class FeasibilityChecker : public ob::StateValidityChecker {
   FeasibilityChecker(const ob::SpaceInformationPtr& space, Checks checks, const Collision* collision)
       : ob::StateValidityChecker(space), checks_(std::move(checks)), collision_(collision) {
     for (const auto& check : checks_) {
-      first_.push_back(int(reasons_.size()));
-      for (const std::string& reason : check->reasons()) reasons_.push_back(reason);
+      reasons_of_check_.emplace_back();
+      for (const std::string& reason : check->reasons()) {
+        // Two checks may have one reason: what a quick one leaves open, a slow one decides.
+        const auto known = std::find(reasons_.begin(), reasons_.end(), reason);
+        reasons_of_check_.back().push_back(int(known - reasons_.begin()));
+        if (known == reasons_.end()) reasons_.push_back(reason);
+      }
     }
   }
 
@@ -47,9 +52,11 @@ class FeasibilityChecker : public ob::StateValidityChecker {
     return collision_->slack({values, si_->getStateDimension()}, most_clearance);
   }
 
-  int violation(std::span<const double> q) const {
+  int violation(std::span<const double> q, bool motions = true) const {
     for (std::size_t i = 0; i < checks_.size(); ++i)
-      if (const int reason = checks_[i]->violation(q); reason >= 0) return first_[i] + reason;
+      if (!motions && checks_[i]->follows_motions()) continue;
+      else if (const int reason = checks_[i]->violation(q); reason >= 0)
+        return reasons_of_check_[i][std::size_t(reason)];
     return -1;
   }
 
@@ -58,7 +65,7 @@ class FeasibilityChecker : public ob::StateValidityChecker {
  private:
   Checks checks_;
   const Collision* collision_;
-  std::vector<int> first_;  // of each check's reasons
+  std::vector<std::vector<int>> reasons_of_check_;  // as indices into all
   std::vector<std::string> reasons_;
 };
 
@@ -119,6 +126,9 @@ const std::vector<Coordinate>& Workspace::coordinates() const { return implement
 const std::vector<Coordinate>& Workspace::proposed() const { return implementation_->proposed; }
 const std::vector<std::string>& Workspace::reasons() const { return implementation_->reasons; }
 int Workspace::violation(std::span<const double> q) const { return implementation_->checker->violation(q); }
+bool Workspace::is_free_at(std::span<const double> q) const {
+  return implementation_->checker->violation(q, false) < 0;
+}
 const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() const {
   return implementation_->sampler_shares;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -36,6 +37,10 @@ class WaveSpace : public ConfigurationSpace {
   }
 
   const BlockArray& blocks() const { return blocks_; }
+  /// What of the oracle is checked quickly: true wherever the oracle is.
+  void check_first(Oracle quick) { quick_ = std::move(quick); }
+  /// How often the whole oracle was asked for.
+  long asked() const { return asked_; }
   void allow_repeats() { spacing_.unit.resize(0); }
 
   const std::vector<Axis>& axes() const override { return axes_; }
@@ -55,7 +60,15 @@ class WaveSpace : public ConfigurationSpace {
   class WaveProbe : public Probe {
    public:
     explicit WaveProbe(const WaveSpace& space) : space_(space) {}
-    bool feasible(std::span<const double> q) override { return space_.inside(q); }
+    bool feasible(std::span<const double> q) override {
+      ++space_.asked_;
+      return space_.inside(q);
+    }
+    bool perhaps_feasible(std::span<const double> q) override {
+      return space_.quick_
+                 ? std::all_of(q.begin(), q.end(), [](double x) { return x >= 0 && x <= 1; }) && space_.quick_(q)
+                 : feasible(q);
+    }
     bool block(std::span<const double> q, double* rows, int stride) override {
       space_.write(q, rows, stride);
       return true;
@@ -76,7 +89,8 @@ class WaveSpace : public ConfigurationSpace {
   }
 
   int rows_, columns_;
-  Oracle oracle_;
+  Oracle oracle_, quick_;
+  mutable std::atomic<long> asked_{0};
   std::vector<double> waves_;
   std::vector<Axis> axes_;
   Spacing spacing_;

@@ -139,6 +139,29 @@ bool hostile(std::span<const double> q) {
   return std::abs(ring - 0.3) < 0.02 || std::sin(40 * q[0]) * std::sin(40 * q[1]) > 0.9;
 }
 
+TEST(Continuous, WhatTakesLongToCheckIsAskedOfFewAndHoldsAllTheSame) {
+  const auto quick = [](std::span<const double> q) { return std::abs(q[0] - 0.5) > 0.1; };
+  const auto whole = [&](std::span<const double> q) { return quick(q) && q[1] > 0.3 * q[0]; };
+  int moved = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    WaveSpace space(2, 2, 6, 60, seed, whole);
+    space.check_first(quick);
+    const auto criterion = make_criterion("o1", plain_data(6));
+    DesignTask task{{&space.blocks(), 0, 1}, criterion.get(), 7, nullptr};
+    task.space = &space;
+    PlannerOptions options;
+    options.restarts = 1;
+    const Design exchanged = make_planner("exchange")->plan(task, options, Monitor{});
+    const Design design = make_planner("continuous")->plan(task, options, Monitor{});
+    EXPECT_GE(design.value, exchanged.value - 1e-9);
+    for (const auto& q : design.added) EXPECT_TRUE(space.inside(q)) << seed;
+    moved += int(design.added.size());
+    // 300 evaluations a pose and round otherwise.
+    EXPECT_LT(space.asked(), 1500) << seed;
+  }
+  EXPECT_GT(moved, 30);
+}
+
 TEST(Continuous, NeverLeavesAHostileFeasibleSetAndNeverReturnsLess) {
   for (const bool box : {true, false})
     for (std::uint64_t seed = 0; seed < 20; ++seed) {

@@ -45,7 +45,7 @@ class LineOfSight : public Visibility {
   /// "occluded from station A", "out of range of station A", …, station by station.
   const std::vector<std::string>& reasons() const { return reasons_; }
   /// −1 where as many targets are visible as must be; else the reason that hides the first hidden one.
-  int violation(std::span<const double> q) const;
+  int violation(std::span<const double> q, bool past_bodies = true) const;
   /// Every target from one station, also where q belongs to another.
   std::vector<Sight> sights(std::span<const double> q, int station) const;
   /// Whether the problem asks for line of sight; else every target counts as visible.
@@ -73,9 +73,9 @@ class LineOfSight : public Visibility {
   void add_points(const InstrumentView& view);
   void add_normals(const Problem& problem);
   bool seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station, std::span<char> seen,
-                 int* reason) const;
+                 int* reason, bool past_bodies) const;
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
-              bool on_tip) const;
+              bool on_tip, bool past_bodies) const;
   int hidden_by(const Sight& sight) const;
 
   LineOfSightSpec spec_;

@@ -14,6 +14,8 @@ class ValidityCheck {
   virtual std::vector<std::string> reasons() const = 0;
   /// Index into reasons() of what forbids q, or −1.
   virtual int violation(std::span<const double> q) const = 0;
+  /// Whether it follows motions, and so takes a hundred times as long as checks of one configuration.
+  virtual bool follows_motions() const { return false; }
 };
 
 /// A constraint with one reason.

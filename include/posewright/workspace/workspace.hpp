@@ -37,6 +37,8 @@ class Workspace {
   const std::vector<std::string>& reasons() const;
   /// Index of the first reason that forbids q, or −1.
   int violation(std::span<const double> q) const;
+  /// Whether all checks but those that follow motions allow q: true wherever violation() is −1.
+  bool is_free_at(std::span<const double> q) const;
   /// Null if there is none.
   const Cell* cell() const;
   /// Whether collisions or sights constrain configurations: checks then cost much more.

@@ -13,6 +13,9 @@ namespace {
 constexpr int always_samples = 1000;
 constexpr double always_share = 0.95;
 constexpr std::uint64_t contact_seed = 271828;
+// Whether a pair is never near is not asked at any price; limits written with fewer digits reach a little further.
+constexpr long most_steps = 2000;
+constexpr double beyond_limits = 1e-3;
 // Kept by what is near by design, m: less is contact.
 constexpr double least_reduced = 1e-3;
 
@@ -34,6 +37,7 @@ class SceneBuilder {
     add_obstacle_pairs();
     add_margins();
     settle_self_pairs();
+    find_never_near();
     return std::move(scene_);
   }
 
@@ -167,6 +171,26 @@ class SceneBuilder {
     for (const auto& [a, b] : always) scene_.always.push_back(a + " and " + b);
     for (const auto& [names, kept] : reduced)
       if (always.count(names) == 0) scene_.reduced.push_back({names.first, names.second, kept});
+  }
+
+  /// A tool that only the last joint turns past the wrist: one turn through the whole range answers for all poses.
+  void find_never_near() {
+    const std::vector<Coordinate>& coordinates = model_.coordinates();
+    if (scene_.frames->poses_per_configuration() != 1) return;
+    std::vector<double> middle;
+    for (const Coordinate& c : coordinates)
+      middle.push_back(c.discrete() ? c.values.front() : 0.5 * (c.lower + c.upper));
+    for (BodyPair& pair : scene_.pairs) {
+      const Eigen::VectorXd& travel = pair.travel.front();
+      Eigen::Index moving = 0;
+      travel.maxCoeff(&moving);
+      const Coordinate& c = coordinates[std::size_t(moving)];
+      if ((travel.array() != 0).count() != 1 || c.discrete()) continue;
+      std::vector<double> first = middle, last = middle;
+      first[std::size_t(moving)] = c.lower - beyond_limits;
+      last[std::size_t(moving)] = c.upper + beyond_limits;
+      pair.never_near = keeps_apart(scene_, pair, 0, first, last, most_steps);
+    }
   }
 
   const std::string& name(int body) const { return scene_.bodies[std::size_t(body)].name; }

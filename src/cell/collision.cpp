@@ -12,8 +12,6 @@ namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
 
-// Distances are asked for up to this much beyond the clearance: further ones cost more than the steps they save.
-constexpr double look_ahead = 0.08;  // m
 // What is further apart is not near anything.
 constexpr double most_distance = 10.0;  // m
 // States looked at before a motion is followed from its beginning: most that collide do so at one of these.
@@ -41,41 +39,10 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
   for (int pose = 0; pose < scene.frames->poses_per_configuration(); ++pose) {
     const Poses& X = place_bodies(scene, q, pose);
     for (const BodyPair& pair : scene.pairs)
-      if (distance_of(scene, pair, X, pair.clearance) < pair.clearance) return &pair;
+      if (!pair.never_near && distance_of(scene, pair, X, pair.clearance) < pair.clearance) return &pair;
   }
   return nullptr;
 }
-
-/// One pair followed along a straight motion.
-class PairOnMotion {
- public:
-  PairOnMotion(const Scene& scene, std::span<const double> from, std::span<const double> to)
-      : scene_(scene), from_(from), to_(to), q_(from.size()), frames_(std::size_t(scene.frames->count())) {}
-
-  /// From state to state: where the pair is d apart, it keeps its clearance until it has moved by what d has to spare.
-  bool keeps_apart(const BodyPair& pair, int pose, double rate) {
-    if (!(rate > 0)) return true;
-    const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
-    for (double t = 0; t < 1;) {
-      for (std::size_t i = 0; i < q_.size(); ++i) q_[i] = from_[i] + t * (to_[i] - from_[i]);
-      scene_.frames->poses(q_, pose, frames_);
-      const Eigen::Isometry3d X_a = frames_[std::size_t(a.frame)] * a.X_FrameBody;
-      const Eigen::Isometry3d X_b = frames_[std::size_t(b.frame)] * b.X_FrameBody;
-      double spare = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
-      if (!(spare > look_ahead))
-        spare = distance(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
-      if (spare < 0) return false;
-      t += (spare + motion_resolution) / rate;
-    }
-    return true;
-  }
-
- private:
-  const Scene& scene_;
-  std::span<const double> from_, to_;
-  std::vector<double> q_;
-  Poses frames_;
-};
 
 /// The nearest pair of one or many states.
 class SmallestDistance {
@@ -198,18 +165,15 @@ std::optional<Separation> Collision::nearest(std::span<const double> from, std::
 }
 
 bool Collision::motion_is_free(std::span<const double> from, std::span<const double> to) const {
-  const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
-  const Eigen::VectorXd change = (b - a).cwiseAbs();
   if (first_violation(*scene_, to) != nullptr) return false;
   std::vector<double> q(from.size());
   for (const double t : first_looks) {
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
     if (first_violation(*scene_, q) != nullptr) return false;
   }
-  PairOnMotion motion(*scene_, from, to);
   for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose)
     for (const BodyPair& pair : scene_->pairs)
-      if (!motion.keeps_apart(pair, pose, pair.travel[std::size_t(pose)].dot(change))) return false;
+      if (!pair.never_near && !keeps_apart(*scene_, pair, pose, from, to)) return false;
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,10 @@ namespace posewright {
 /// Half of what bodies may move between two checks of a motion, m: added to every clearance, so that the clearance
 /// asked for holds between the checks too.
 inline constexpr double motion_resolution = 0.5e-3;
+
+/// Distances on a motion are asked for up to this much beyond the clearance, m: further ones cost more than the steps
+/// they save.
+inline constexpr double look_ahead = 0.08;
 
 /// One solid on a frame. Links, tool parts and obstacles are made of them; what they belong to has the name.
 struct Body {
@@ -34,6 +39,7 @@ struct BodyPair {
   double clearance = 0.0;               ///< m, margins included
   double asked = 0.0;                   ///< m, without margins
   std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
+  bool never_near = false;              ///< keeps its clearance wherever the robot may stand: need not be looked at
 };
 
 /// Links, tool and obstacles, and which pairs of them must keep apart.
@@ -46,6 +52,12 @@ struct Scene {
   std::vector<ReducedClearance> reduced;
   double margin = 0.0;  ///< m, largest that was added for a robot that is not calibrated yet
 };
+
+/// Whether a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it
+/// is d apart, it cannot come too near before it has moved by what d has to spare.
+/// @param most_steps  states looked at before the answer is no
+bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
+                 std::span<const double> to, long most_steps = std::numeric_limits<long>::max());
 
 /// @param model  nominal one of the problem; must outlive the scene
 /// Throws InputError and CannotDo for meshes, links and packages that are not there.

@@ -3,6 +3,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
@@ -22,6 +23,9 @@ namespace {
 
 using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
 using Geometry = fcl::CollisionGeometryd;
+
+// What the iteration for the distance of two hulls may be off by, and more, m.
+constexpr double hull_tolerance = 1e-5;
 
 double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geometry& b, const Eigen::Isometry3d& X_b,
                     double cap) {
@@ -45,6 +49,10 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
 class FclSolid : public Solid {
  public:
   const Geometry& geometry() const { return *geometry_; }
+  /// Convex, with the solid in it: of a mesh its hull, else itself. Null for a mesh whose points lie in one plane.
+  virtual const Geometry* hull() const { return geometry_.get(); }
+  const Eigen::Vector3d& middle() const { return middle_; }
+  const Eigen::Vector3d& half_extent() const { return half_extent_; }
   double at_least(const Eigen::Vector3d& p) const override {
     return ((p - middle_).cwiseAbs() - half_extent_).cwiseMax(0.0).norm();
   }
@@ -132,7 +140,7 @@ class MeshSolid : public FclSolid {
     model->endModel();
     model->computeLocalAABB();
     geometry_ = model;
-    corners_ = mesh_.vertices;
+    put_hull_around();
     put_box_around();
     Eigen::AlignedBox3d box;
     for (const auto& v : mesh_.vertices) box.extend(v);
@@ -140,6 +148,8 @@ class MeshSolid : public FclSolid {
     for (const auto& v : mesh_.vertices) radius_ = std::max(radius_, (v - centre_).norm());
     closed_ = is_closed();
   }
+
+  const Geometry* hull() const override { return hull_.get(); }
 
   /// By the solid angle that the triangles span (van Oosterom & Strackee 1983): ±4π inside a closed surface, 0 outside.
   bool holds(const Eigen::Vector3d& p) const override {
@@ -154,6 +164,31 @@ class MeshSolid : public FclSolid {
   }
 
  private:
+  /// Corners are those of the hull: where a mesh is lowest or farthest, it touches its hull.
+  void put_hull_around() {
+    TriangleMesh hull;
+    try {
+      hull = convex_hull(mesh_);
+    } catch (const std::invalid_argument&) {
+      corners_ = mesh_.vertices;
+      return;
+    }
+    std::vector<int> number(hull.vertices.size(), -1);
+    const auto faces = std::make_shared<std::vector<int>>();
+    for (const auto& triangle : hull.triangles) {
+      faces->push_back(3);
+      for (const int v : triangle) {
+        if (number[std::size_t(v)] < 0) {
+          number[std::size_t(v)] = int(corners_.size());
+          corners_.push_back(hull.vertices[std::size_t(v)]);
+        }
+        faces->push_back(number[std::size_t(v)]);
+      }
+    }
+    hull_ = std::make_shared<fcl::Convexd>(std::make_shared<const std::vector<Eigen::Vector3d>>(corners_),
+                                           int(hull.triangles.size()), faces);
+    hull_->computeLocalAABB();
+  }
   const Eigen::Vector3d& vertex(int i) const { return mesh_.vertices[std::size_t(i)]; }
   Eigen::Vector3d normal_of(const std::array<int, 3>& t) const {
     return (vertex(t[1]) - vertex(t[0])).cross(vertex(t[2]) - vertex(t[0]));
@@ -170,6 +205,7 @@ class MeshSolid : public FclSolid {
   }
 
   TriangleMesh mesh_;
+  std::shared_ptr<Geometry> hull_;
   bool closed_ = false;
 };
 
@@ -187,6 +223,28 @@ double above(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_plane, cons
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& corner : solid.corners()) lowest = std::min(lowest, along.dot(corner - solid.centre()));
   return centre + lowest;
+}
+
+/// Largest gap between the boxes around two solids on the 15 axes where boxes that do not meet can be told apart
+/// (Gottschalk, Lin & Manocha 1996): a lower bound of the distance of what is in them.
+double gap_between_boxes(const FclSolid& a, const Eigen::Isometry3d& X_a, const FclSolid& b,
+                         const Eigen::Isometry3d& X_b) {
+  const Eigen::Matrix3d R = X_a.linear().transpose() * X_b.linear();
+  const Eigen::Matrix3d size = R.cwiseAbs();
+  const Eigen::Vector3d t = X_a.linear().transpose() * (X_b * b.middle() - X_a * a.middle());
+  const Eigen::Vector3d &g = a.half_extent(), &h = b.half_extent();
+  double gap = std::max((t.cwiseAbs() - g - size * h).maxCoeff(),
+                        ((R.transpose() * t).cwiseAbs() - h - size.transpose() * g).maxCoeff());
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double squared = 1 - R(i, j) * R(i, j);  // of e_i × b_j
+      if (squared < 1e-6) continue;
+      const int u = (i + 1) % 3, v = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
+      const double between = std::abs(t[v] * R(u, j) - t[u] * R(v, j));
+      const double reach = g[u] * size(v, j) + g[v] * size(u, j) + h[k] * size(i, l) + h[l] * size(i, k);
+      if (between > reach) gap = std::max(gap, (between - reach) / std::sqrt(squared));
+    }
+  return gap;
 }
 
 bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
@@ -216,7 +274,16 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
   double bound = (centre_a - centre_b).norm() - a.radius() - b.radius();
   if (std::isfinite(b.radius())) bound = std::max(bound, a.at_least(seen(X_a, centre_b)) - b.radius());
   if (std::isfinite(a.radius())) bound = std::max(bound, b.at_least(seen(X_b, centre_a)) - a.radius());
-  return bound;
+  if (!std::isfinite(a.radius()) || !std::isfinite(b.radius())) return bound;
+  return std::max(bound, gap_between_boxes(static_cast<const FclSolid&>(a), X_a, static_cast<const FclSolid&>(b), X_b));
+}
+
+double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
+                         double cap) {
+  if (!std::isfinite(a.radius()) || !std::isfinite(b.radius())) return distance(a, X_a, b, X_b, cap);
+  const Geometry *first = static_cast<const FclSolid&>(a).hull(), *second = static_cast<const FclSolid&>(b).hull();
+  if (first == nullptr || second == nullptr) return 0.0;
+  return std::max(0.0, fcl_distance(*first, X_a, *second, X_b, cap + hull_tolerance) - hull_tolerance);
 }
 
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
@@ -227,8 +294,10 @@ double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, co
   if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
   if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
   if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
-  const double found = fcl_distance(static_cast<const FclSolid&>(a).geometry(), X_a,
-                                    static_cast<const FclSolid&>(b).geometry(), X_b, cap);
+  const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
+  const bool has_mesh = first.hull() != &first.geometry() || second.hull() != &second.geometry();
+  if (has_mesh && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
+  const double found = fcl_distance(first.geometry(), X_a, second.geometry(), X_b, cap);
   if (found <= 0) return 0.0;
   // Surfaces that do not meet: one may still be in the other.
   return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;

@@ -35,9 +35,8 @@ void Motions::look_ahead(const std::vector<Pair>& pairs) {
 }
 
 Roadmap& Motions::roadmap() {
-  if (roadmap_ == nullptr) {
-    roadmap_ = std::make_unique<Roadmap>(space_, milestones_, seed_, monitor_);
-  }
+  if (roadmap_ == nullptr)
+    roadmap_ = std::make_unique<Roadmap>(space_, milestones_, seed_, RoadmapUse::motions, monitor_);
   return *roadmap_;
 }
 

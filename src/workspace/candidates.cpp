@@ -221,11 +221,11 @@ class Sampler {
     for (int i = 0; i < steps; ++i) {
       const double middle = 0.5 * (feasible + infeasible);
       along(middle);
-      (workspace_.violation(trial) < 0 ? feasible : infeasible) = middle;
+      (workspace_.is_free_at(trial) ? feasible : infeasible) = middle;
     }
     along(feasible);
     std::copy(trial.begin(), trial.end(), q.begin());
-    return -1;
+    return workspace_.violation(q);
   }
 
   [[noreturn]] void fail() const {

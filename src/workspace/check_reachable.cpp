@@ -23,7 +23,7 @@ class ReachableCheck : public SingleCheck {
     if (const std::string why = space_.violation(home); !why.empty())
       throw CannotDo("home is not free: " + why + "; set workspace: motion: home to a configuration that is");
     const Monitor unwatched;
-    Roadmap roadmap(space_, milestones, roadmap_seed, unwatched);
+    Roadmap roadmap(space_, milestones, roadmap_seed, RoadmapUse::connection, unwatched);
     milestones_ = roadmap.connected(home);
   }
   bool follows_motions() const override { return true; }

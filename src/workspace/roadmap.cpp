@@ -118,7 +118,8 @@ class CountedPrm : public og::PRM {
 
 class Roadmap::Implementation {
  public:
-  Implementation(const MotionSpace& motion_space, int milestones, std::uint64_t seed, const Monitor& monitor_in)
+  Implementation(const MotionSpace& motion_space, int milestones, std::uint64_t seed, RoadmapUse use,
+                 const Monitor& monitor_in)
       : motions(motion_space), monitor(monitor_in) {
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     ompl::RNG::setSeed(std::uint_fast32_t(mix_bits(seed) % 4294967291U) + 1);
@@ -132,6 +133,8 @@ class Roadmap::Implementation {
     information->setup();
     prm = std::make_shared<CountedPrm>(information);
     prm->setMaxNearestNeighbors(6);
+    if (use == RoadmapUse::connection)
+      prm->setConnectionFilter([this](const auto& a, const auto& b) { return !prm->same(a, b); });
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     definition->setOptimizationObjective(std::make_shared<ob::PathLengthOptimizationObjective>(information));
     prm->setProblemDefinition(definition);
@@ -204,8 +207,8 @@ class Roadmap::Implementation {
   std::vector<CountedPrm::Vertex> order;
 };
 
-Roadmap::Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, const Monitor& monitor)
-    : implementation_(std::make_unique<Implementation>(space, milestones, seed, monitor)) {}
+Roadmap::Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, RoadmapUse use, const Monitor& monitor)
+    : implementation_(std::make_unique<Implementation>(space, milestones, seed, use, monitor)) {}
 Roadmap::~Roadmap() = default;
 
 Motion Roadmap::motion(std::span<const double> from, std::span<const double> to) {

@@ -97,6 +97,22 @@ TEST(Collision, SrdfAndIgnoreTakePairsAway) {
   EXPECT_EQ(make_cell(s.problem)->collision->violation(folded), -1);
 }
 
+TEST(Collision, OfAPairThatOneJointMovesIsNotLookedAtOnlyWhereNoPositionComesNear) {
+  // Folded back by 3 rad, the hand is 0.8 sin 3 beside the middle of the upper arm.
+  const double nearest = 0.8 * std::sin(3.0) - 0.05 - 0.01;
+  for (const double spare : {-3e-3, 3e-3}) {
+    const auto s =
+        planar_setup(fmt::format("  collision: {{self_clearance: {}, tool: [{{name: hand, sphere: 0.01}}]}}\n",
+                                 nearest - motion_resolution - spare));
+    const Scene& scene = s->collision().scene();
+    for (const BodyPair& pair : scene.pairs)
+      if (scene.bodies[std::size_t(pair.a)].name == "upper") EXPECT_EQ(pair.never_near, spare > 0);
+      else EXPECT_FALSE(pair.never_near) << "two joints move it";
+    EXPECT_EQ(s->collision().colliding(std::vector<double>{0, 3}), spare > 0 ? "" : "hand and upper");
+    EXPECT_EQ(s->collision().motion_is_free(std::vector<double>{0, 0}, std::vector<double>{0, -3}), spare > 0);
+  }
+}
+
 TEST(Collision, AMirroredCellCollidesInMirroredConfigurations) {
   const auto s = planar_setup(
       "  collision: {clearance: 0.02, obstacles: [{name: a, box: [0.3, 0.2, 1], at: [0.7, 0.9, 0], rpy: [0, 0, "

@@ -156,8 +156,8 @@ TEST(Mesh, WithoutAreaIsRefusedAndSomeDegenerateTrianglesAreLeftOut) {
   EXPECT_NEAR(distance(*mesh(good), at(0, 0, 0), *sphere(0.1), at(1, 0, 0), 5), 0.4, 1e-9);
 }
 
-TEST(ConvexHull, FillsWhatTheMeshLeavesOpen) {
-  // Two boxes that touch in an L: the inner corner is free of the mesh and inside the hull.
+/// Two boxes that touch in an L: the inner corner is free of the mesh and inside the hull.
+TriangleMesh bracket() {
   TriangleMesh l = box_mesh({2, 0.2, 0.2});
   const TriangleMesh upright = box_mesh({0.2, 2, 0.2});
   for (const auto& v : upright.vertices) l.vertices.push_back(v + Vector3d(-0.9, 0.9, 0));
@@ -165,6 +165,30 @@ TEST(ConvexHull, FillsWhatTheMeshLeavesOpen) {
     for (int& i : t) i += 8;
     l.triangles.push_back(t);
   }
+  return l;
+}
+
+TEST(Distance, OfABracketIsThatOfTheNearerOfItsTwoBoxesAndItsHullIsNoFarther) {
+  const SolidPointer l = mesh(bracket()), flat = box(2, 0.2, 0.2), upright = box(0.2, 2, 0.2);
+  Random random(5, 0);
+  int in_the_corner = 0;
+  for (const SolidPointer& other : one_of_each())
+    for (int i = 0; i < 150; ++i) {
+      const Isometry3d X = random_pose(random, 1), Y = random_pose(random, 1);
+      const double by_boxes =
+          std::min(distance(*flat, X, *other, Y, 3), distance(*upright, X * at(-0.9, 0.9, 0), *other, Y, 3));
+      const double d = distance(*l, X, *other, Y, 3), hull = distance_of_hulls(*l, X, *other, Y, 3);
+      EXPECT_NEAR(d, by_boxes, 2e-6);
+      EXPECT_NEAR(distance(*l, X, *other, Y, 0.1), std::min(0.1, by_boxes), 2e-6);
+      EXPECT_LE(hull, d);
+      EXPECT_LE(distance_at_least(*l, X, *other, Y), hull + 3e-5);
+      in_the_corner += hull == 0 && d > 0.05;
+    }
+  EXPECT_GT(in_the_corner, 20);
+}
+
+TEST(ConvexHull, FillsWhatTheMeshLeavesOpen) {
+  const TriangleMesh l = bracket();
   EXPECT_GT(distance(*mesh(l), at(0, 0, 0), *sphere(0.01), at(-0.3, 0.4, 0), 1), 0.2);
   EXPECT_EQ(distance(*mesh(convex_hull(l)), at(0, 0, 0), *sphere(0.01), at(-0.3, 0.4, 0), 1), 0.0);
   TriangleMesh flat;

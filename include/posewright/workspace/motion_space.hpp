@@ -60,12 +60,16 @@ struct Motion {
   const char* found_by = "straight";        ///< straight, roadmap or rrt_connect
 };
 
+/// What a roadmap is asked for. Motions are short where milestones are joined on several ways; to know what is
+/// connected, one way is enough, and most straight motions need no look.
+enum class RoadmapUse { motions, connection };
+
 /// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run),
 /// and RRT-Connect where it does not connect. Not for several threads.
 class Roadmap {
  public:
   /// @param space, monitor  must outlive the roadmap; where the monitor says stop, it stays smaller and finds less
-  Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, const Monitor& monitor);
+  Roadmap(const MotionSpace& space, int milestones, std::uint64_t seed, RoadmapUse use, const Monitor& monitor);
   ~Roadmap();
   Roadmap(const Roadmap&) = delete;
   Roadmap& operator=(const Roadmap&) = delete;

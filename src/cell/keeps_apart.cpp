@@ -1,0 +1,39 @@
+#include "posewright/support/dense.hpp"
+#include "scene.hpp"
+
+namespace posewright {
+namespace {
+
+// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
+constexpr double near_enough = 0.01;
+
+}  // namespace
+
+bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
+                 std::span<const double> to, long most_steps) {
+  static thread_local std::vector<double> q;
+  static thread_local std::vector<Eigen::Isometry3d> frames;
+  const Eigen::Map<const Eigen::VectorXd> begin(from.data(), Eigen::Index(from.size())), end(to.data(), begin.size());
+  const double rate = pair.travel[std::size_t(pose)].dot((end - begin).cwiseAbs());
+  if (!(rate > 0)) return true;
+  q.resize(from.size());
+  frames.resize(std::size_t(scene.frames->count()));
+  const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+  for (double t = 0; t < 1; --most_steps) {
+    if (most_steps <= 0) return false;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
+    scene.frames->poses(q, pose, frames);
+    const Eigen::Isometry3d X_a = frames[std::size_t(a.frame)] * a.X_FrameBody;
+    const Eigen::Isometry3d X_b = frames[std::size_t(b.frame)] * b.X_FrameBody;
+    double spare = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
+    if (!(spare > look_ahead))
+      spare = distance_of_hulls(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
+    if (!(spare > near_enough))
+      spare = distance(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
+    if (spare < 0) return false;
+    t += (spare + motion_resolution) / rate;
+  }
+  return true;
+}
+
+}  // namespace posewright

@@ -55,6 +55,7 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
                      "stations of trackers belong to measurement.device");
   all_stations_ = view.all_places;
   station_on_tip_ = view.places_on_tip;
+  half_angle_ = spec_.field_of_view ? spec_.field_of_view : view.half_angle;
   if (!spec_.axis) spec_.axis = view.axis;
   std::vector<InstrumentView::Place> places = view.places;
   for (const StationSpec& station : spec_.stations)

@@ -75,6 +75,7 @@ InstrumentView view_of(const CameraMeasurement& camera) {
   view.points_at = camera.board;
   view.points_parameters = "board";
   view.axis = Eigen::Vector3d::UnitZ();
+  view.half_angle = std::atan(0.5 * std::min(camera.width / camera.fx, camera.height / camera.fy));
   for (int r = 0; r < camera.rows; ++r)
     for (int c = 0; c < camera.columns; ++c)
       view.points.push_back({"point " + std::to_string(r + 1) + "," + std::to_string(c + 1),

@@ -94,8 +94,9 @@ SingularitySpec read_singularity(const Value& value) {
 
 std::vector<std::pair<SamplerKind, double>> read_samplers(const Section& section) {
   using Kind = SamplerKind;
-  section.allow({"even", "boundary", "obstacle_based", "gaussian", "clearance"});
-  const std::array<std::pair<const char*, Kind>, 5> kinds = {{{"even", Kind::even},
+  section.allow({"even", "boundary", "look_at", "obstacle_based", "gaussian", "clearance"});
+  const std::array<std::pair<const char*, Kind>, 6> kinds = {{{"even", Kind::even},
+                                                              {"look_at", Kind::look_at},
                                                               {"boundary", Kind::boundary},
                                                               {"obstacle_based", Kind::obstacle_based},
                                                               {"gaussian", Kind::gaussian},

@@ -46,7 +46,11 @@ Motion Motions::direct(int i, int j) {
   look_ahead({{i, j}});
   if (straight_[{std::min(i, j), std::max(i, j)}]) return {{from, to}, space_.seconds(from, to), "straight"};
   if (!space_.is_free(from) || !space_.is_free(to)) return {};
-  return roadmap().motion(from, to);
+  Motion motion = roadmap().motion(from, to);
+  if (!motion.points.empty()) return motion;
+  // Everything is connected with the hub or with nothing: one search a stop, not one a pair.
+  if (i == hub_ || j == hub_) return roadmap().grow(from, to);
+  return reachable(i) && reachable(j) ? roadmap().motion(from, to) : Motion{};
 }
 
 void Motions::add_ends(Motion& motion, int i, int j) const {

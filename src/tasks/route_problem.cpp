@@ -165,7 +165,7 @@ class Router {
   /// Leaves out poses that no motion connects with the hub: home if that is free, else the pose that most others are
   /// connected with.
   void keep_reachable() {
-    std::vector<int> hubs, best, poses = open_;
+    std::vector<int> hubs, best, seen, poses = open_;
     int best_hub = 0;
     std::erase(poses, 0);
     if (space_.is_free(space_.home())) hubs.push_back(0);
@@ -173,10 +173,13 @@ class Router {
     for (const int hub : hubs) {
       motions_->set_hub(hub);
       std::vector<int> reached;
-      for (const int i : poses) {
+      // Who is connected with an earlier hub reaches what that one does.
+      if (std::find(seen.begin(), seen.end(), hub) != seen.end()) continue;
+      for (const int& i : poses) {
         if (motions_->reachable(i)) reached.push_back(i);
         monitor_.report({"reachable poses", double(&i - poses.data()) + 1, double(poses.size()), {}, {}, {}});
       }
+      seen.insert(seen.end(), reached.begin(), reached.end());
       if (reached.size() > best.size()) {
         best = reached;
         best_hub = hub;

@@ -15,6 +15,7 @@
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
 #include "valid_samples.hpp"
+#include "view_sampler.hpp"
 
 namespace posewright {
 namespace {
@@ -30,7 +31,13 @@ constexpr int ompl_run = 16;
 constexpr double least_yield = 0.01;
 // Corners of a box of more dimensions are drawn, not enumerated.
 constexpr std::size_t max_enumerated = 10;
-constexpr std::uint64_t interior_stream = 1, boundary_stream = 2;
+constexpr std::uint64_t interior_stream = 1, boundary_stream = 2, view_stream = 4;
+// What an instrument sees is proposed where fewer of so many even draws are feasible.
+constexpr std::size_t pilot_draws = 1024;
+constexpr double scarce = 0.05;
+// Views that nothing reaches are not tried as often as plain draws, which take a thousandth of their time.
+constexpr std::size_t views_per_candidate = 40;
+constexpr const char* out_of_reach_of_view = "no joint angles for a view of the targets";
 
 /// Collects drawn configurations batch by batch; validity is judged in parallel, the order stays that of the draws.
 class Sampler {
@@ -40,6 +47,7 @@ class Sampler {
     result_.dimension = int(workspace.proposed().size());
     for (std::size_t k = 0; k < workspace.proposed().size(); ++k)
       if (const Coordinate& c = workspace.proposed()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
+    reasons_.push_back(out_of_reach_of_view);
     reasons_.push_back("drawn before");
     reasons_.push_back(passed_over_reason);
     rejected_.assign(reasons_.size(), 0);
@@ -49,24 +57,68 @@ class Sampler {
     // A second go must not draw the same again.
     LowDiscrepancy points(result_.dimension, result_.count() == 0 ? options_.seed : mix_bits(options_.seed + 3));
     draw(
-        wanted, monitor, [&](std::size_t, std::span<double> q) { points.next(q); }, false);
+        wanted, monitor, options_.draws_per_candidate, [&](std::size_t, std::span<double> q) { points.next(q); },
+        [&](std::size_t, std::span<double> q) {
+          scale(q);
+          return workspace_.violation(q);
+        });
+  }
+
+  /// Share of even draws that is feasible, by a few.
+  double feasible_share() const {
+    LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + view_stream));
+    const auto d = std::size_t(result_.dimension);
+    std::vector<double> drawn(pilot_draws * d);
+    for (std::size_t i = 0; i < pilot_draws; ++i) points.next(std::span(drawn).subspan(i * d, d));
+    std::vector<char> good(pilot_draws, 0);
+    parallel_for(pilot_draws / 64, thread_count(options_.threads), [&](std::size_t chunk, int) {
+      for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i) {
+        const std::span<double> q = std::span(drawn).subspan(i * d, d);
+        scale(q);
+        good[i] = char(workspace_.violation(q) < 0);
+      }
+    });
+    return double(std::count(good.begin(), good.end(), char(1))) / double(pilot_draws);
+  }
+
+  /// Where the instrument sees its targets: from even draws the joints go to views, drawn by (seed, draw) alone.
+  void views(std::size_t wanted, const Monitor& monitor) {
+    has_views_ = true;
+    const std::uint64_t seed = mix_bits(options_.seed + view_stream + result_.count());
+    LowDiscrepancy points(result_.dimension, seed);
+    draw(
+        wanted, monitor, std::min(options_.draws_per_candidate, views_per_candidate),
+        [&](std::size_t, std::span<double> q) { points.next(q); },
+        [&](std::size_t i, std::span<double> q) {
+          scale(q);
+          Random random(seed, mix_bits(i));
+          const bool there = workspace_.views()->move_to_view(q, random);
+          const int verdict = workspace_.violation(q);
+          return verdict >= 0 && !there ? int(workspace_.reasons().size()) : verdict;
+        });
   }
 
   void boundary(std::size_t wanted, const Monitor& monitor) {
     LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + boundary_stream));
     anchors_ = result_.count();
     draw(
-        wanted, monitor,
+        wanted, monitor, options_.draws_per_candidate,
         [&](std::size_t i, std::span<double> q) {
           points.next(q);
           pin(i, q);
         },
-        true);
+        [&](std::size_t i, std::span<double> q) {
+          scale(q);
+          const int verdict = workspace_.violation(q);
+          return verdict < 0 || anchors_ == 0 ? verdict : draw_back(i, q);
+        });
   }
 
   /// What samplers did not find is drawn evenly.
   void fill_up(std::size_t count, const Monitor& monitor) {
-    if (result_.count() > 0 && result_.count() < count && has_ompl_) interior(count - result_.count(), monitor);
+    if (result_.count() == 0 || result_.count() >= count) return;
+    if (has_views_) views(count - result_.count(), monitor);
+    else if (has_ompl_) interior(count - result_.count(), monitor);
   }
 
   /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
@@ -90,6 +142,8 @@ class Sampler {
       monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
     }
   }
+
+  bool is_empty() const { return result_.count() == 0; }
 
   Configurations take() {
     for (std::size_t r = 0; r < rejected_.size(); ++r)
@@ -173,11 +227,14 @@ class Sampler {
     return seen_.insert(hash).second;
   }
 
-  template <class Generate>
-  void draw(std::size_t wanted, const Monitor& monitor, const Generate& generate, bool to_boundary) {
+  /// @param generate  a point of the unit box, draw after draw
+  /// @param judge     makes it a configuration and says what forbids it; in several threads
+  template <class Generate, class Judge>
+  void draw(std::size_t wanted, const Monitor& monitor, std::size_t draws_per_candidate, const Generate& generate,
+            const Judge& judge) {
     const auto d = std::size_t(result_.dimension);
     const std::size_t target = result_.count() + wanted;
-    const std::size_t limit = wanted * options_.draws_per_candidate;
+    const std::size_t limit = wanted * draws_per_candidate;
     std::vector<double> points(batch * d);
     std::vector<int> verdict(batch);
     for (std::size_t first = 0;
@@ -185,7 +242,7 @@ class Sampler {
       for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
       parallel_for(batch / 64, thread_count(options_.threads), [&](std::size_t chunk, int) {
         for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i)
-          verdict[i] = judge(first + i, std::span(points).subspan(i * d, d), to_boundary);
+          verdict[i] = judge(first + i, std::span(points).subspan(i * d, d));
       });
       for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
         ++result_.drawn;
@@ -200,15 +257,17 @@ class Sampler {
     }
   }
 
-  /// Scales a unit point to the limits and tests it; an infeasible boundary point is drawn back to the feasible set.
-  int judge(std::size_t index, std::span<double> q, bool to_boundary) const {
+  /// From the unit box to the limits.
+  void scale(std::span<double> q) const {
     for (std::size_t k = 0; k < q.size(); ++k) {
       const Coordinate& c = workspace_.proposed()[k];
       if (c.discrete()) q[k] = c.values[std::min(std::size_t(q[k] * double(c.values.size())), c.values.size() - 1)];
       else q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
     }
-    const int verdict = workspace_.violation(q);
-    if (verdict < 0 || !to_boundary || anchors_ == 0) return verdict;
+  }
+
+  /// Draws an infeasible boundary point back to the feasible set, towards a candidate.
+  int draw_back(std::size_t index, std::span<double> q) const {
     Random random(options_.seed, mix_bits(index) + boundary_stream);
     const std::span<const double> inside = result_[std::size_t(random.index(int(anchors_)))];
     std::vector<double> trial(q.size());
@@ -228,12 +287,32 @@ class Sampler {
     return workspace_.violation(q);
   }
 
+  /// What helps where views were proposed and this rejects most of them.
+  static std::string cure_of(const std::string& reason) {
+    if (reason == out_of_reach_of_view)
+      return "; no joint angles lead to where the targets would be seen: move them or the instrument into reach, or "
+             "widen "
+             "line_of_sight: range and acceptance";
+    if (reason.starts_with("occluded"))
+      return "; a body stands before the instrument: mark its own with station: NAME, or move it";
+    return "; this was drawn where the targets would be seen: " + reason + " is what to change";
+  }
+
+  /// Says what rejects most, a view's reasons each with its share, and what helps.
   [[noreturn]] void fail() const {
-    const auto most = std::max_element(rejected_.begin(), rejected_.end() - 1);
-    const double share = result_.drawn > 0 ? 100.0 * double(*most) / double(result_.drawn) : 0.0;
-    throw CannotDo("no feasible configuration among " + std::to_string(result_.drawn) + " drawn: '" +
-                   reasons_[std::size_t(most - rejected_.begin())] + "' rejects " +
-                   std::to_string(int(std::lround(share))) + " % of them");
+    std::vector<std::size_t> order;
+    for (std::size_t r = 0; r + 1 < rejected_.size(); ++r)
+      if (rejected_[r] > 0) order.push_back(r);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return rejected_[a] > rejected_[b]; });
+    constexpr std::size_t most = 4;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, order.size()); ++i)
+      text += fmt::format("{}'{}' rejects {:.0f} %", i == 0 ? "" : ", ", reasons_[order[i]],
+                          100.0 * double(rejected_[order[i]]) / double(result_.drawn));
+    std::string cure;
+    if (has_views_ && !order.empty()) cure = cure_of(reasons_[order.front()]);
+    throw CannotDo(fmt::format("no feasible configuration among {} drawn: {} of them{}", result_.drawn, text, cure));
   }
 
   const Workspace& workspace_;
@@ -244,24 +323,42 @@ class Sampler {
   std::vector<std::size_t> bounded_;        // coordinates with ends
   std::unordered_set<std::uint64_t> seen_;  // hashes of accepted configurations
   std::size_t anchors_ = 0;
-  bool has_ompl_ = false;
+  bool has_ompl_ = false, has_views_ = false;
 };
+
+}  // namespace
+
+namespace {
+
+/// Where little is feasible and the instrument says where to look from, that comes first; the boundary is drawn from
+/// what is found.
+std::vector<std::pair<SamplerKind, double>> shares_of(const Workspace& workspace, const Sampler& sampler) {
+  using Kind = SamplerKind;
+  if (workspace.samplers_are_given() || workspace.views() == nullptr || sampler.feasible_share() >= scarce)
+    return workspace.sampler_shares();
+  return {{Kind::look_at, 3}, {Kind::boundary, 2}};
+}
 
 }  // namespace
 
 Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
                                      const Monitor& monitor) {
   Sampler sampler(workspace, options);
+  const auto shares = shares_of(workspace, sampler);
   double open_share = 0;
-  for (const auto& [kind, share] : workspace.sampler_shares()) open_share += share;
+  for (const auto& [kind, share] : shares) open_share += share;
   std::size_t open = options.count;
-  for (const auto& [kind, share] : workspace.sampler_shares()) {
+  for (const auto& [kind, share] : shares) {
     const auto wanted = std::size_t(std::lround(double(open) * share / open_share));
     open -= wanted;
     open_share -= share;
     if (kind == SamplerKind::even) sampler.interior(wanted, monitor);
     else if (kind == SamplerKind::boundary) sampler.boundary(wanted, monitor);
-    else sampler.valid_states(kind, wanted, monitor);
+    else if (kind == SamplerKind::look_at) {
+      sampler.views(wanted, monitor);
+      // Other samplers start from what is feasible, or draw what views have shown not to be.
+      if (sampler.is_empty()) break;
+    } else sampler.valid_states(kind, wanted, monitor);
   }
   sampler.fill_up(options.count, monitor);
   return sampler.take();

@@ -110,6 +110,12 @@ class CountedPrm : public og::PRM {
   using og::PRM::PRM;
   Vertex add(const ob::State* state) { return addMilestone(si_->cloneState(state)); }
   ob::PathPtr path(Vertex a, Vertex b) { return same(a, b) ? constructSolution(a, b) : nullptr; }
+  /// Whoever adds it knows that the motion is free.
+  void join(Vertex a, Vertex b) {
+    const ob::Cost weight = opt_->motionCost(stateProperty_[a], stateProperty_[b]);
+    boost::add_edge(a, b, Graph::edge_property_type(weight), g_);
+    uniteComponents(a, b);
+  }
   bool same(Vertex a, Vertex b) { return sameComponent(a, b); }
   const ob::State* state(Vertex v) const { return stateProperty_[v]; }
 };
@@ -213,12 +219,16 @@ Roadmap::~Roadmap() = default;
 
 Motion Roadmap::motion(std::span<const double> from, std::span<const double> to) {
   Implementation& own = *implementation_;
-  const auto a = own.vertex(from), b = own.vertex(to);
-  if (const ob::PathPtr path = own.prm->path(a, b)) {
-    Motion motion = own.finish(*path->as<og::PathGeometric>(), "roadmap");
-    if (!motion.points.empty()) return motion;
-  }
-  return own.connect(from, to);
+  const ob::PathPtr path = own.prm->path(own.vertex(from), own.vertex(to));
+  return path == nullptr ? Motion{} : own.finish(*path->as<og::PathGeometric>(), "roadmap");
+}
+
+Motion Roadmap::grow(std::span<const double> from, std::span<const double> to) {
+  Implementation& own = *implementation_;
+  Motion motion = own.connect(from, to);
+  for (std::size_t i = 1; i < motion.points.size(); ++i)
+    own.prm->join(own.vertex(motion.points[i - 1]), own.vertex(motion.points[i]));
+  return motion;
 }
 
 std::vector<std::vector<double>> Roadmap::connected(std::span<const double> q) {

@@ -12,7 +12,9 @@
 #include "checks.hpp"
 #include "limits.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/support/error.hpp"
 #include "valid_samples.hpp"
+#include "view_sampler.hpp"
 
 namespace posewright {
 namespace {
@@ -99,9 +101,22 @@ class Workspace::Implementation {
     space->setStateValidityCheckingResolution(0.04);
     space->setup();
     reasons = checker->reasons();
-    sampler_shares = problem.workspace.samplers;
-    if (!sampler_shares.empty()) return;
+    if (cell != nullptr && cell->sight != nullptr && cell->sight->can_propose())
+      views = std::make_unique<ViewSampler>(model, *cell->sight, proposed);
+    choose_samplers(problem);
+  }
+
+  void choose_samplers(const Problem& problem) {
     using Kind = SamplerKind;
+    sampler_shares = problem.workspace.samplers;
+    samplers_are_given = !sampler_shares.empty();
+    const auto asks_for_views = [](const auto& share) { return share.first == Kind::look_at; };
+    if (views == nullptr && std::any_of(sampler_shares.begin(), sampler_shares.end(), asks_for_views))
+      throw CannotDo(
+          "workspace: samplers: look_at: nothing says where this instrument looks; cameras do, and targets whose "
+          "normals "
+          "and acceptance line_of_sight gives");
+    if (samplers_are_given) return;
     if (cut_by_cell())
       sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};
     else sampler_shares = {{Kind::even, 1}, {Kind::boundary, 1}};
@@ -116,6 +131,8 @@ class Workspace::Implementation {
   std::shared_ptr<FeasibilityChecker> checker;
   std::vector<std::string> reasons;
   std::vector<std::pair<SamplerKind, double>> sampler_shares;
+  bool samplers_are_given = false;
+  std::unique_ptr<ViewSampler> views;
 };
 
 Workspace::Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell)
@@ -132,6 +149,8 @@ bool Workspace::is_free_at(std::span<const double> q) const {
 const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() const {
   return implementation_->sampler_shares;
 }
+bool Workspace::samplers_are_given() const { return implementation_->samplers_are_given; }
+const ViewSampler* Workspace::views() const { return implementation_->views.get(); }
 bool Workspace::cut_by_cell() const { return implementation_->cut_by_cell(); }
 const Cell* Workspace::cell() const { return implementation_->cell.get(); }
 const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_information() const {

@@ -15,6 +15,7 @@
 namespace posewright {
 
 class Collision;
+class Random;
 
 /// One target as one station sees it.
 struct Sight {
@@ -61,7 +62,15 @@ class LineOfSight : public Visibility {
 
   Eigen::Isometry3d X_MeasureStation(std::span<const double> q, int station) const;
 
+  /// Whether propose_tip() knows more than chance: an instrument that looks along an axis, or targets with a front.
+  bool can_propose() const;
+  /// A pose of the tip in the measurement frame from which the instrument sees its targets as far as distance, field of
+  /// view and incidence go, drawn evenly over them; what they leave open stays as it is at q. For a camera in the hand:
+  /// places on a dome before the board. Bodies and the robot's reach are not looked at.
+  Eigen::Isometry3d propose_tip(std::span<const double> q, Random& random) const;
+
  private:
+  struct Bundle;
   struct Target {
     std::string name;
     Eigen::Vector3d position;
@@ -77,8 +86,14 @@ class LineOfSight : public Visibility {
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
               bool on_tip, bool past_bodies) const;
   int hidden_by(const Sight& sight) const;
+  Bundle bundle() const;
+  double distance_to(const Bundle& bundle, Random& random) const;
+  Eigen::Isometry3d station_before_targets(const Eigen::Isometry3d& X_Station, Random& random) const;
+  Eigen::Isometry3d targets_before_station(const Eigen::Isometry3d& X_Station, const Eigen::Isometry3d& X_Tip,
+                                           Random& random) const;
 
   LineOfSightSpec spec_;
+  std::optional<double> half_angle_;  // rad, of what is in the picture
   const IdentificationModel& model_;
   const Collision* collision_;
   std::vector<std::string> station_names_, reasons_;

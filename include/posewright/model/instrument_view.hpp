@@ -37,6 +37,7 @@ struct InstrumentView {
   std::string points_parameters;                    ///< prefix of those that move that frame ("board"); empty: none
   bool points_on_tip = true;                        ///< the points ride on the tip
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of its field of view, frame of the place
+  std::optional<double> half_angle;                 ///< rad, of the cone about `axis` that is in the picture everywhere
 };
 
 /// The view of a problem file's instrument.

@@ -47,8 +47,9 @@ struct CoordinateLimits {
   Quantity quantity = Quantity::number;  ///< kind of unit written (length, angle); number: none, so SI
 };
 
-/// How candidates are drawn: evenly, on the boundary of what is feasible, and by OMPL's samplers of valid states.
-enum class SamplerKind { even, boundary, obstacle_based, gaussian, clearance };
+/// How candidates are drawn: evenly, on the boundary of what is feasible, where the instrument sees its targets, and by
+/// OMPL's samplers of valid states.
+enum class SamplerKind { even, boundary, look_at, obstacle_based, gaussian, clearance };
 
 struct WorkspaceSpec {
   /// Kept from both ends of limits by what is proposed: rad of revolute joints, m of prismatic ones. Not given: 1 % of

@@ -64,8 +64,8 @@ struct Motion {
 /// connected, one way is enough, and most straight motions need no look.
 enum class RoadmapUse { motions, connection };
 
-/// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run),
-/// and RRT-Connect where it does not connect. Not for several threads.
+/// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run), and
+/// that grows by what RRT-Connect finds where it does not connect. Not for several threads.
 class Roadmap {
  public:
   /// @param space, monitor  must outlive the roadmap; where the monitor says stop, it stays smaller and finds less
@@ -74,8 +74,10 @@ class Roadmap {
   Roadmap(const Roadmap&) = delete;
   Roadmap& operator=(const Roadmap&) = delete;
 
-  /// A motion between two free configurations, simplified; empty `points` if none is found.
+  /// A motion between two free configurations along the roadmap, simplified; empty `points` if it connects them not.
   Motion motion(std::span<const double> from, std::span<const double> to);
+  /// The same by RRT-Connect, seconds where there is none; the way that it finds belongs to the roadmap from now on.
+  Motion grow(std::span<const double> from, std::span<const double> to);
   /// Milestones that are connected with `q`, q first.
   std::vector<std::vector<double>> connected(std::span<const double> q);
 

@@ -15,6 +15,8 @@ class SpaceInformation;
 
 namespace posewright {
 
+class ViewSampler;
+
 /// The one definition of a feasible configuration: an OMPL state space whose bounds are the robot's limits, narrowed
 /// by the problem file and the margin, and an OMPL validity checker that runs a list of checks and knows which one
 /// failed.
@@ -46,6 +48,10 @@ class Workspace {
   /// Shares of the candidates that each sampler draws: the problem's, or half evenly and half on the boundary, with a
   /// part near obstacles where collisions or sights cut the space.
   const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;
+  /// Whether the problem names the samplers.
+  bool samplers_are_given() const;
+  /// Proposes configurations from which the instrument sees; null for an instrument that sees from everywhere.
+  const ViewSampler* views() const;
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True if q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be

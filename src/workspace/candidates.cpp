@@ -311,7 +311,12 @@ class Sampler {
       text += fmt::format("{}'{}' rejects {:.0f} %", i == 0 ? "" : ", ", reasons_[order[i]],
                           100.0 * double(rejected_[order[i]]) / double(result_.drawn));
     std::string cure;
-    if (has_views_ && !order.empty()) cure = cure_of(reasons_[order.front()]);
+    if (has_views_ && !order.empty()) {
+      // What was reached and still not feasible says more than what was not reached.
+      const bool reached = order.size() > 1 && rejected_[order[1]] > result_.drawn / 100;
+      const bool unreached_first = reasons_[order.front()] == out_of_reach_of_view;
+      cure = cure_of(reasons_[order[reached && unreached_first ? 1 : 0]]);
+    }
     throw CannotDo(fmt::format("no feasible configuration among {} drawn: {} of them{}", result_.drawn, text, cure));
   }
 

@@ -144,7 +144,9 @@ void bind_observation(py::module_& m) {
           "near_dependencies",
           [](const O& o) { return o.practical ? named(o.practical->near, o.kept) : std::vector<NamedDependency>(); },
           "of kept ones that mostly look like others")
-      .def("summary", &observation_text, "The table that the command line prints.")
+      .def(
+          "summary", [](const Observation& o) { return observation_text(o); },
+          "The table that the command line prints.")
       .def("to_dict", [](const O& o) { return parsed(json_text(observation_json(o), JsonLayout::one_line)); })
       .def("__repr__", [](const O& o) {
         return py::str("<Observation of {}: rank {} of {} parameters>")

@@ -12,10 +12,11 @@ namespace {
 
 po::options_description observe_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                        //
-      ("variant", text("V"), "only this variant (all)")                        //
-      ("candidates", text("n"), "feasible configurations in the pool (2000)")  //
-      ("poses", text("N"), "number of poses that σ is predicted for (design: poses)");
+  options.add_options()                                                                //
+      ("variant", text("V"), "only this variant (all)")                                //
+      ("candidates", text("n"), "feasible configurations in the pool (2000)")          //
+      ("poses", text("N"), "number of poses that σ is predicted for (design: poses)")  //
+      ("spectrum", "print the singular values of G too");
   options.add(problem_options());
   return options;
 }
@@ -39,7 +40,7 @@ int run_observe(const po::variables_map& values, const Words& positional) {
   }
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (i > 0) fmt::print("\n");
-    print_report(observation_text(observations[i]));
+    print_report(observation_text(observations[i], values.count("spectrum") > 0));
   }
   return done;
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 
 #include "command.hpp"
 
@@ -13,12 +14,26 @@ namespace {
 std::atomic<bool> asked_to_stop{false};
 std::atomic<int> signals_so_far{0};
 std::atomic<SignalStage> current_stage{SignalStage::nothing_to_lose};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-                  std::atomic<SignalStage>::is_always_lock_free,
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free &&
+                  std::atomic<int>::is_always_lock_free && std::atomic<SignalStage>::is_always_lock_free,
               "they are used in a signal handler");
 
+// Some send one to the process and one to its group: so soon, s, the second is not a second wish.
+constexpr double same_wish = 0.3;
+std::atomic<double> first_signal{0.0};
+
+double seconds_now() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
 extern "C" void on_signal(int) {
-  if (signals_so_far.fetch_add(1) > 0 || current_stage == SignalStage::nothing_to_lose) ::_exit(interrupted);
+  const double now = seconds_now();
+  const int before = signals_so_far.fetch_add(1);
+  if (before == 0) first_signal = now;
+  else if (first_signal == 0 || now - first_signal < same_wish) return;
+  if (before > 0 || current_stage == SignalStage::nothing_to_lose) ::_exit(interrupted);
   if (current_stage == SignalStage::searching) asked_to_stop = true;
 }
 

@@ -61,9 +61,9 @@ std::string near_text(const Observation& o) {
     if (d.terms.size() > most_terms) shown.back().terms.resize(most_terms);
   }
   if (shown.empty()) return {};
-  return "Near dependencies (the parameter on the left mostly looks like those on the right; largest terms):\n" +
-         equations(shown, o.kept) +
-         (more > 0 ? fmt::format("  and {} more, weaker ones (--json has all)\n", more) : "");
+  return "Near dependencies:\n" + equations(shown, o.kept) +
+         (more > 0 ? fmt::format("  and {} more, weaker ones (--json has all)\n", more) : "") +
+         "  (a parameter on the left mostly looks like those on its right, the largest terms of which are shown)\n";
 }
 
 std::string names(const Observation& o, bool recommended) {
@@ -109,23 +109,43 @@ std::string practical_text(const Observation& o) {
 
 }  // namespace
 
-std::string observation_text(const Observation& o) {
+namespace {
+
+/// What matters first: how many of the parameters that are asked for can be told, and from how many poses.
+std::string verdict_text(const Observation& o) {
+  const auto all = [&](Role role) {
+    return std::count_if(o.parameters.begin(), o.parameters.end(), [&](const Parameter& p) { return p.role == role; });
+  };
+  const auto kept = [&](Role role) {
+    const std::vector<int>& found = o.identifiability.kept;
+    return std::count_if(found.begin(), found.end(), [&](int j) { return o.parameters[std::size_t(j)].role == role; });
+  };
+  std::string text = fmt::format("Variant {}: {} of {} parameters can be identified", o.variant, kept(Role::interest),
+                                 all(Role::interest));
+  if (all(Role::nuisance) > 0)
+    text += fmt::format(", beside {} of {} nuisance parameters", kept(Role::nuisance), all(Role::nuisance));
+  return text + (o.smallest_poses ? fmt::format("; {} poses at least.\n", *o.smallest_poses)
+                                  : "; from how many poses, the pool cannot show: draw more candidates.\n");
+}
+
+}  // namespace
+
+std::string observation_text(const Observation& o, bool with_singular_values) {
   const Identifiability& found = o.identifiability;
-  std::string text = fmt::format("Variant {}: rank {} of {} parameters, {} configurations × {} rows\n", o.variant,
-                                 found.rank, o.parameters.size(), o.configurations, o.rows);
+  std::string text = verdict_text(o) + fmt::format("Rank {} of {} in all, from {} configurations × {} rows.\n",
+                                                   found.rank, o.parameters.size(), o.configurations, o.rows);
   if (o.exact_rank != found.rank)
     text += fmt::format("  ({} by exact arithmetic; {} more are separated only by less than 1e-4 of their effect)\n",
                         o.exact_rank, o.exact_rank - found.rank);
-  text += "Singular values of G, columns in units of tolerance:\n" + spectrum_text(found.singular_values);
+  if (with_singular_values)
+    text += "Singular values of G, columns in units of tolerance:\n" + spectrum_text(found.singular_values);
   text += fmt::format("Pool: O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}\n", o.indices.o1, o.indices.o2,
                       o.indices.o3, o.indices.o4, o.indices.o5);
-  if (o.smallest_poses) text += fmt::format("Smallest number of poses: {}\n", *o.smallest_poses);
-  else text += "Smallest number of poses: more than the pool can show; draw more candidates\n";
   if (found.dependencies.empty()) {
     text += "No dependencies.\n";
   } else {
-    text += "Dependencies (the parameter on the left cannot be identified separately from those on the right):\n";
-    text += equations(found.dependencies, o.parameters);
+    text += "Dependencies:\n" + equations(found.dependencies, o.parameters);
+    text += "  (a parameter on the left cannot be identified separately from those on its right)\n";
   }
   return o.practical ? text + practical_text(o) : text;
 }

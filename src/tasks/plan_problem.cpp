@@ -186,7 +186,8 @@ class PlanSearch {
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;
     plan.proved_optimal = found.design.optimal;
-    plan.interrupted = found.stopped;
+    // A search that had its say before the signal came is not distinguished: the run was ended.
+    plan.interrupted = found.stopped || monitor_.was_interrupted();
     return plan;
   }
 

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-constexpr double degree = M_PI / 180;
+constexpr double one_degree = M_PI / 180;
 const char* const board_on_floor = "position: [1.6, 0, 0.1], rpy: [0, 0, 0]";
 
 /// KR 270 with all of its own limits, and something that looks.
@@ -66,7 +66,7 @@ TEST(Views, OfACameraInTheHandAreEvenOnTheDomeBeforeTheBoard) {
     const Vector3d way = middle - X.translation();
     EXPECT_GE(way.norm(), 0.6 - 1e-9);
     EXPECT_LE(way.norm(), 1.2 + 1e-9);
-    EXPECT_LE(angle_between(-way, Vector3d::UnitZ()), 45 * degree + 1e-6);
+    EXPECT_LE(angle_between(-way, Vector3d::UnitZ()), 45 * one_degree + 1e-6);
     // The ball around the board is in the picture.
     const double aside = angle_between(way, X.linear().col(2)) + std::atan2(radius, way.norm());
     EXPECT_LE(aside, std::atan(0.4) + 1e-6);
@@ -74,7 +74,7 @@ TEST(Views, OfACameraInTheHandAreEvenOnTheDomeBeforeTheBoard) {
     distances += way.norm() / draws;
     off_axis = std::max(off_axis, aside);
   }
-  EXPECT_NEAR(cosines, (1 + std::cos(45 * degree)) / 2, 0.01) << "even over the dome";
+  EXPECT_NEAR(cosines, (1 + std::cos(45 * one_degree)) / 2, 0.01) << "even over the dome";
   EXPECT_NEAR(distances, 0.9, 0.02);
   EXPECT_GT(off_axis, 0.95 * std::atan(0.4)) << "also at the rim of the picture";
 }
@@ -88,7 +88,7 @@ TEST(Views, OfATrackerTurnReflectorsTowardsItAndLeaveThemWhereTheyAre) {
     const Vector3d before = s.variant.model->tool_pose(q) * Vector3d(0.2, 0.1, 0);
     const Isometry3d X = s.cell->sight->propose_tip(q, random);
     const Vector3d way = Vector3d(4, 1, 0.5) - X * Vector3d(0.2, 0.1, 0);
-    EXPECT_LE(angle_between(X.linear().col(1), way), 30 * degree + 1e-6);
+    EXPECT_LE(angle_between(X.linear().col(1), way), 30 * one_degree + 1e-6);
     if ((Vector3d(4, 1, 0.5) - before).norm() > 1) EXPECT_LT((X * Vector3d(0.2, 0.1, 0) - before).norm(), 1e-9);
   }
 }

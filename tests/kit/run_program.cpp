@@ -26,7 +26,7 @@ void redirect(const std::filesystem::path& file, int descriptor) {
 }  // namespace
 
 ProgramRun run_program(const std::filesystem::path& folder, const std::vector<std::string>& words,
-                       double interrupt_after) {
+                       double interrupt_after, int signals) {
   // Beside the folder, so that tests can count what the program leaves in it.
   const std::filesystem::path out = folder.string() + ".out", err = folder.string() + ".err";
   const pid_t child = ::fork();
@@ -45,7 +45,7 @@ ProgramRun run_program(const std::filesystem::path& folder, const std::vector<st
   }
   if (interrupt_after > 0) {
     std::this_thread::sleep_for(std::chrono::duration<double>(interrupt_after));
-    ::kill(child, SIGINT);
+    for (int i = 0; i < signals; ++i) ::kill(child, SIGINT);
   }
   int status = 0;
   ::waitpid(child, &status, 0);

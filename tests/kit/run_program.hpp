@@ -11,8 +11,9 @@ struct ProgramRun {
   std::string out, err;
 };
 
-/// Runs the command-line program in `folder`; SIGINT is sent after `interrupt_after` seconds where that is positive.
+/// Runs the command-line program in `folder`; SIGINT is sent after `interrupt_after` seconds where that is positive,
+/// `signals` times in a row.
 ProgramRun run_program(const std::filesystem::path& folder, const std::vector<std::string>& words,
-                       double interrupt_after = 0);
+                       double interrupt_after = 0, int signals = 1);
 
 }  // namespace posewright

@@ -177,7 +177,7 @@ TEST(Refusals, EachSaysWhatDoesNotFit) {
   EXPECT_THAT(
       refusal("instruments/camera_on_hand.yaml",
               [](Problem& p) { std::get<CameraMeasurement>(p.measurement.instrument).board.position.x() = -2.6; }),
-      testing::HasSubstr("'board not in the image or behind the camera' rejects 100 %"));
+      testing::HasSubstr("'no joint angles for a view of the targets' rejects 100 %"));
   EXPECT_THAT(refusal("instruments/cables.yaml",
                       [](Problem& p) {
                         auto& distance = std::get<DistanceMeasurement>(p.measurement.instrument);

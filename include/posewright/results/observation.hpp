@@ -9,7 +9,8 @@
 namespace posewright {
 
 /// What a person reads of one variant: rank, spectrum, dependencies, what is worth identifying.
-std::string observation_text(const Observation& observation);
+/// @param with_singular_values  of G too
+std::string observation_text(const Observation& observation, bool with_singular_values = false);
 
 /// The same for machines, nothing left out.
 nlohmann::ordered_json observation_json(const Observation& observation);

@@ -64,8 +64,8 @@ struct Motion {
 /// connected, one way is enough, and most straight motions need no look.
 enum class RoadmapUse { motions, connection };
 
-/// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run), and
-/// that grows by what RRT-Connect finds where it does not connect. Not for several threads.
+/// One roadmap that serves all queries (PRM with a fixed number of milestones, so that it is the same on every run),
+/// and that grows by what RRT-Connect finds where it does not connect. Not for several threads.
 class Roadmap {
  public:
   /// @param space, monitor  must outlive the roadmap; where the monitor says stop, it stays smaller and finds less

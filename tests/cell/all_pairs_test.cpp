@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "posewright/cell/cell.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/support/random.hpp"
+#include "src/cell/scene.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+/// The definition: no two bodies of a pair nearer than its clearance, every pair asked for its whole distance.
+bool collides(const Scene& scene, const std::vector<double>& q, double beside) {
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count()));
+  scene.frames->poses(q, 0, X);
+  for (const BodyPair& pair : scene.pairs) {
+    const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+    const double d = distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                              X[std::size_t(b.frame)] * b.X_FrameBody, 100);
+    if (d < pair.clearance + beside) return true;
+  }
+  return false;
+}
+
+void expect_the_definition(const Problem& problem, int draws) {
+  const auto cell = make_cell(problem);
+  const Collision& collision = *cell->collision;
+  Random random(7, 0);
+  int free = 0, hit = 0;
+  for (int i = 0; i < draws; ++i) {
+    std::vector<double> q;
+    for (const Coordinate& c : cell->model->coordinates())
+      q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+    const bool found = collision.violation(q) >= 0;
+    // Where the distance is within the accuracy of its iteration from the clearance, either answer holds.
+    if (found) EXPECT_TRUE(collides(collision.scene(), q, 1e-5)) << i;
+    else EXPECT_FALSE(collides(collision.scene(), q, -1e-5)) << i;
+    (found ? hit : free) += 1;
+  }
+  EXPECT_GT(free, draws / 20);
+  EXPECT_GT(hit, draws / 20);
+}
+
+TEST(Collision, OfTheExampleCellIsThatOfAllItsPairs) {
+  expect_the_definition(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 4000);
+}
+
+TEST(Collision, OfAVendorsMeshesIsThatOfAllTheirPairs) {
+  const std::filesystem::path robots = std::filesystem::path(POSEWRIGHT_SHARED_DIR) / "robots";
+  if (!std::filesystem::exists(robots)) GTEST_SKIP() << "the folder of shared robots is absent";
+  const TemporaryFolder folder;
+  const auto problem = [&](const std::string& urdf, const std::string& tool) {
+    return read_problem(folder.write(
+        "p.yaml",
+        "posewright: 1\nrobot: {urdf: " + (robots / urdf).string() +
+            ", tip: tool0}\nmeasurement: {type: position, target: [0.1, 0, 0], device: {type: isotropic, noise: "
+            "0.1 mm}}\nvariants: {all: {parameters: auto}}\nworkspace:\n  collision: {clearance: 30 mm, tool: "
+            "[{name: plate, box: " +
+            tool + "}], obstacles: [{name: floor, plane: [0, 0, 1], at: [0, 0, -0.01]}, {name: table, box: " +
+            "[1.2, 0.8, 0.7], at: [1.9, 0.3, 0.35]}, {name: post, cylinder: {radius: 0.08, length: 2.5}, at: " +
+            "[0.6, 0.6, 1.25]}]}\n"));
+  };
+  expect_the_definition(
+      problem("kuka_kr300_r2700_2/kuka_quantec_support/urdf/kr300_r2700_2.urdf", "[0.3, 0.3, 0.03], at: [0, 0, 0.03]"),
+      150);
+  expect_the_definition(problem("ur10/example-robot-data/robots/ur_description/urdf/ur10_robot.urdf",
+                                "[0.1, 0.05, 0.04], at: [0, 0.06, 0]"),
+                        150);
+}
+
+}  // namespace
+}  // namespace posewright

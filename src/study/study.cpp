@@ -135,7 +135,7 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   Study study;
   study.cell = make_cell(problem);
   for (const DesignSpec::Weighted& wanted : settings.variants) {
-    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell);
+    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell, monitor);
     variant.weight = wanted.weight;
     study.variants.push_back(std::move(variant));
     require_same_coordinates(study.first(), study.variants.back());

@@ -28,7 +28,8 @@ VariantColumns named_columns(const VariantColumns& all, const std::vector<std::s
 
 }  // namespace
 
-Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell) {
+Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
+                      const Monitor& monitor) {
   Variant variant{&spec, cell, make_model(problem, spec), nullptr};
   if (cell != nullptr && cell->sight_is_asked) {
     if (variant.model->rows_per_target() > 0 &&
@@ -37,7 +38,7 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
     variant.model->set_visibility({cell, cell->sight.get()});
   }
   variant.repeatability = problem.measurement.repeatability;
-  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell);
+  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor);
   return variant;
 }
 
@@ -46,7 +47,7 @@ std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::stri
 }
 
 Variant make_variant(const Problem& problem, const VariantOptions& options, const Monitor& monitor) {
-  Variant variant = place_variant(problem, find_variant(problem, options.variant), make_cell(problem));
+  Variant variant = place_variant(problem, find_variant(problem, options.variant), make_cell(problem), monitor);
   variant.columns = select_columns(*variant.model, problem, *variant.spec);
   if (!options.parameters.empty()) {
     variant.columns = named_columns(variant.columns, options.parameters);

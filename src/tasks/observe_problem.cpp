@@ -67,7 +67,7 @@ std::vector<Observation> observe_problem(const Problem& problem, const ObserveOp
   std::vector<Observation> observations;
   for (const VariantSpec& spec : problem.variants) {
     if (!options.variant.empty() && spec.name != options.variant) continue;
-    const Variant variant = place_variant(problem, spec, cell);
+    const Variant variant = place_variant(problem, spec, cell, monitor);
     observations.push_back(
         observe(variant, sample_configurations(*variant.workspace, sampling, monitor), problem, options, monitor));
   }

@@ -32,6 +32,12 @@ std::string temperature_of(const PlannedPose& pose) {
   return {};
 }
 
+/// What can be reached is what the route finds out: no roadmap is made beside its own.
+Problem without_roadmap(Problem problem) {
+  problem.workspace.motion.reachable = false;
+  return problem;
+}
+
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
@@ -40,7 +46,8 @@ class Router {
         options_(options),
         monitor_(monitor),
         cell_(make_cell(problem)),
-        variant_(place_variant(problem, find_variant(problem, ""), cell_)),
+        without_roadmap_(without_roadmap(problem)),
+        variant_(place_variant(without_roadmap_, find_variant(problem, ""), cell_)),
         space_(problem, cell_) {
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
@@ -311,6 +318,7 @@ class Router {
   const RouteOptions& options_;
   const Monitor& monitor_;
   std::shared_ptr<const Cell> cell_;
+  Problem without_roadmap_;
   Variant variant_;
   MotionSpace space_;
   Route route_;

@@ -16,14 +16,14 @@ constexpr std::size_t tries = 8;
 /// reachable by a way that the roadmap does not know: the check errs on the safe side.
 class ReachableCheck : public SingleCheck {
  public:
-  ReachableCheck(const Problem& problem, const Cell* cell)
+  ReachableCheck(const Problem& problem, const Cell* cell, const Monitor& monitor)
       : SingleCheck("not reachable from home"),
         space_(problem, std::shared_ptr<const Cell>(std::shared_ptr<void>(), cell)) {
     const std::vector<double> home = space_.home();
     if (const std::string why = space_.violation(home); !why.empty())
       throw CannotDo("home is not free: " + why + "; set workspace: motion: home to a configuration that is");
-    const Monitor unwatched;
-    Roadmap roadmap(space_, milestones, roadmap_seed, RoadmapUse::connection, unwatched);
+    Roadmap roadmap(space_, milestones, roadmap_seed, RoadmapUse::connection, monitor);
+    if (monitor.should_stop()) throw CannotDo("stopped before it was known what can be reached from home");
     milestones_ = roadmap.connected(home);
   }
   bool follows_motions() const override { return true; }
@@ -46,8 +46,10 @@ class ReachableCheck : public SingleCheck {
 }  // namespace
 
 void add_reachable_check(const CheckContext& context, Checks& checks) {
-  if (context.problem.workspace.motion.reachable)
-    checks.push_back(std::make_unique<ReachableCheck>(context.problem, context.cell));
+  if (!context.problem.workspace.motion.reachable) return;
+  const Monitor unwatched;
+  const Monitor& monitor = context.monitor == nullptr ? unwatched : *context.monitor;
+  checks.push_back(std::make_unique<ReachableCheck>(context.problem, context.cell, monitor));
 }
 
 }  // namespace posewright

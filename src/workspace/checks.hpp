@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewright/cell/cell.hpp"
+#include "posewright/support/monitor.hpp"
 #include "posewright/workspace/validity_check.hpp"
 
 namespace posewright {
@@ -16,6 +17,7 @@ struct CheckContext {
   const Problem& problem;
   const std::vector<Coordinate>& coordinates;  ///< with the limits in force
   const Cell* cell;                            ///< null: no bodies, no sights
+  const Monitor* monitor = nullptr;            ///< of checks that take long to make; null: none watches
 };
 
 /// What must hold on the way from pose to pose too: limits, coupled limits, reach and travel of actuators, collision.

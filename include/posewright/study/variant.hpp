@@ -45,7 +45,8 @@ struct Variant {
 
 /// Robot and workspace of one variant, as the cell lets it be; no columns yet. Blocks of the model count visible
 /// targets only, if line of sight is asked for.
-Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell);
+Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
+                      const Monitor& monitor = Monitor());
 
 /// What lists of poses of a problem are read with: names, units, limits and labels of a variant's coordinates (empty:
 /// the first). Throws as place_variant().

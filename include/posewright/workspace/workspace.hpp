@@ -8,6 +8,7 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
 
 namespace ompl::base {
 class SpaceInformation;
@@ -25,8 +26,10 @@ class Workspace {
   /// @param model  must outlive the workspace
   /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are
   /// empty once the margin is taken off.
-  /// @param cell  bodies and sights; null: neither constrains
-  Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr);
+  /// @param cell     bodies and sights; null: neither constrains
+  /// @param monitor  of the roadmap that says what can be reached from home; where it says stop, CannotDo is thrown
+  Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr,
+            const Monitor& monitor = Monitor());
   ~Workspace();
 
   /// Limits in force, in the order of a configuration: those of the robot, narrowed by the problem.

@@ -6,12 +6,27 @@ import * as say from '../text/sentences.js';
 const tile = (value, title, hint) =>
   h('div', { class: 'tile' }, h('b', {}, value), h('span', {}, title), h('small', {}, hint));
 
+/** The smaller of what is known over the candidates and over the whole workspace: with few candidates the best of them
+ * may be far from the best there is. @param {any} certificate */
+function nearness({ candidates, workspace }) {
+  const title = 'of the best plan';
+  if (!candidates) return tile('no bound', 'for this criterion', 'how near the best plan is unknown');
+  if (!workspace || workspace.efficiency >= candidates.efficiency)
+    return tile(`≥ ${percentDown(candidates.efficiency)}`, title, 'proved over the candidates');
+  return workspace.proved
+    ? tile(`≥ ${percentDown(workspace.efficiency, 1)}`, title, 'proved over the whole workspace')
+    : tile(
+        percentDown(Math.min(1, workspace.efficiency + 5e-4), 0),
+        title,
+        'over the whole workspace, by a search',
+      );
+}
+
 /** @param {import('../pose_list.js').PoseList} list */
 function tiles(list) {
   const { plan } = list.report;
   const kept = plan.parameters.filter((p) => p.identifiable);
   const nuisance = kept.filter((p) => p.role === 'nuisance').length;
-  const { candidates } = plan.certificate;
   const known = kept.filter((p) => p.role === 'interest');
   const gained = known.filter((p) => p.worth_identifying).length;
   return h(
@@ -26,9 +41,7 @@ function tiles(list) {
     plan.accuracy.rho0 !== null
       ? tile(quantity(plan.accuracy.rho0, 'm', 3), 'position error', 'expected after calibration, 1σ')
       : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
-    candidates
-      ? tile(`≥ ${percentDown(candidates.efficiency)}`, 'of the best plan', 'proved over the candidates')
-      : tile('no bound', 'for this criterion', 'how near the best plan is unknown'),
+    nearness(plan.certificate),
   );
 }
 

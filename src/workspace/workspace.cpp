@@ -95,8 +95,9 @@ class Workspace::Implementation {
     state_space->setBounds(bounds);
     state_space->setStateSamplerAllocator([this](const ob::StateSpace* of) { return allocate_sampler(of, proposed); });
     space = std::make_shared<ob::SpaceInformation>(state_space);
-    checker = std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get(), &monitor}),
-                                                   cell == nullptr ? nullptr : cell->collision.get());
+    checker =
+        std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get(), &monitor}),
+                                             cell == nullptr ? nullptr : cell->collision.get());
     space->setStateValidityChecker(checker);
     // Only samplers walk along segments here, and only to come near an obstacle; motions are checked exactly.
     space->setStateValidityCheckingResolution(0.04);

@@ -1,0 +1,175 @@
+#include "sampler.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "low_discrepancy.hpp"
+#include "posewright/support/parallel.hpp"
+#include "posewright/support/random.hpp"
+#include "view_sampler.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::size_t batch = 2048;
+// Halvings of the way from a feasible point to an infeasible one: 2⁻³⁰ of the way is finer than any controller's step.
+constexpr int bisections = 30;
+// Where each step asks for collisions: 2⁻¹³ of the way.
+constexpr int bisections_in_cell = 13;
+// Corners of a box of more dimensions are drawn, not enumerated.
+constexpr std::size_t max_enumerated = 10;
+constexpr std::uint64_t interior_stream = 1, boundary_stream = 2, view_stream = 4;
+// Even draws that tell how much is feasible.
+constexpr std::size_t pilot_draws = 1024;
+// Views that nothing reaches are not tried as often as plain draws, which take a thousandth of their time.
+constexpr std::size_t views_per_candidate = 40;
+// A batch that is begun is finished, unless it takes longer than who stops it would wait.
+constexpr std::chrono::milliseconds patience{400};
+
+}  // namespace
+
+void Sampler::interior(std::size_t wanted, const Monitor& monitor) {
+  // A second go must not draw the same again.
+  LowDiscrepancy points(result_.dimension, result_.count() == 0 ? options_.seed : mix_bits(options_.seed + 3));
+  draw(
+      wanted, monitor, options_.draws_per_candidate, [&](std::size_t, std::span<double> q) { points.next(q); },
+      [&](std::size_t, std::span<double> q) {
+        scale(q);
+        return workspace_.violation(q);
+      });
+}
+
+double Sampler::feasible_share() const {
+  LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + view_stream));
+  const auto d = std::size_t(result_.dimension);
+  std::vector<double> drawn(pilot_draws * d);
+  for (std::size_t i = 0; i < pilot_draws; ++i) points.next(std::span(drawn).subspan(i * d, d));
+  std::vector<char> good(pilot_draws, 0);
+  parallel_for(pilot_draws / 64, thread_count(options_.threads), [&](std::size_t chunk, int) {
+    for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i) {
+      const std::span<double> q = std::span(drawn).subspan(i * d, d);
+      scale(q);
+      good[i] = char(workspace_.violation(q) < 0);
+    }
+  });
+  return double(std::count(good.begin(), good.end(), char(1))) / double(pilot_draws);
+}
+
+void Sampler::views(std::size_t wanted, const Monitor& monitor) {
+  has_views_ = true;
+  const std::uint64_t seed = mix_bits(options_.seed + view_stream + result_.count());
+  LowDiscrepancy points(result_.dimension, seed);
+  draw(
+      wanted, monitor, std::min(options_.draws_per_candidate, views_per_candidate),
+      [&](std::size_t, std::span<double> q) { points.next(q); },
+      [&](std::size_t i, std::span<double> q) {
+        scale(q);
+        Random random(seed, mix_bits(i));
+        const bool there = workspace_.views()->move_to_view(q, random);
+        const int verdict = workspace_.violation(q);
+        return verdict >= 0 && !there ? int(workspace_.reasons().size()) : verdict;
+      });
+}
+
+void Sampler::boundary(std::size_t wanted, const Monitor& monitor) {
+  LowDiscrepancy points(result_.dimension, mix_bits(options_.seed + boundary_stream));
+  anchors_ = result_.count();
+  draw(
+      wanted, monitor, options_.draws_per_candidate,
+      [&](std::size_t i, std::span<double> q) {
+        points.next(q);
+        pin(i, q);
+      },
+      [&](std::size_t i, std::span<double> q) {
+        scale(q);
+        const int verdict = workspace_.violation(q);
+        return verdict < 0 || anchors_ == 0 ? verdict : draw_back(i, q);
+      });
+}
+
+void Sampler::fill_up(std::size_t count, const Monitor& monitor) {
+  if (result_.count() == 0 || result_.count() >= count) return;
+  if (has_views_) views(count - result_.count(), monitor);
+  else if (has_ompl_) interior(count - result_.count(), monitor);
+}
+
+void Sampler::pin(std::size_t i, std::span<double> q) const {
+  const std::size_t ends = bounded_.size();
+  const bool all_corners = ends <= max_enumerated;
+  if (all_corners && i < (std::size_t(1) << ends)) {
+    for (std::size_t k = 0; k < ends; ++k) q[bounded_[k]] = double((i >> k) & 1U);
+    return;
+  }
+  Random random(options_.seed, mix_bits(i + interior_stream));
+  const std::size_t most = all_corners && ends > 1 ? ends - 1 : ends;
+  std::size_t pinned = most == 0 ? 0 : 1 + i % most;
+  for (std::size_t k = 0; k < ends; ++k) {
+    // Selection sampling: coordinate k is among those still to be pinned with the right probability.
+    if (random.uniform() * double(ends - k) >= double(pinned)) continue;
+    q[bounded_[k]] = random.bits() >> 63 ? 1.0 : 0.0;
+    --pinned;
+  }
+}
+
+void Sampler::draw(std::size_t wanted, const Monitor& monitor, std::size_t draws_per_candidate,
+                   const Generate& generate, const Judge& judge) {
+  const auto d = std::size_t(result_.dimension);
+  const std::size_t target = result_.count() + wanted;
+  const std::size_t limit = wanted * draws_per_candidate;
+  std::vector<double> points(batch * d);
+  std::vector<int> verdict(batch);
+  for (std::size_t first = 0;
+       result_.count() < target && first < limit && (result_.drawn == 0 || !monitor.should_stop()); first += batch) {
+    for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
+    std::atomic<bool> cut = false;
+    const auto begin = Monitor::Clock::now();
+    parallel_for(batch / 16, thread_count(options_.threads), [&](std::size_t chunk, int) {
+      if (monitor.should_stop() && Monitor::Clock::now() - begin > patience) cut = true;
+      for (std::size_t i = 16 * chunk; i < 16 * (chunk + 1) && !cut; ++i)
+        verdict[i] = judge(first + i, std::span(points).subspan(i * d, d));
+    });
+    // A part of a batch would depend on the number of threads.
+    if (cut) break;
+    for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
+      ++result_.drawn;
+      const std::span<const double> q = std::span(points).subspan(i * d, d);
+      if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
+      else if (!is_new(q)) ++rejected_[drawn_before()];
+      else
+        result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
+                              points.begin() + std::ptrdiff_t((i + 1) * d));
+    }
+    monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
+  }
+}
+
+void Sampler::scale(std::span<double> q) const {
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const Coordinate& c = workspace_.proposed()[k];
+    if (c.discrete()) q[k] = c.values[std::min(std::size_t(q[k] * double(c.values.size())), c.values.size() - 1)];
+    else q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
+  }
+}
+
+int Sampler::draw_back(std::size_t index, std::span<double> q) const {
+  Random random(options_.seed, mix_bits(index) + boundary_stream);
+  const std::span<const double> inside = result_[std::size_t(random.index(int(anchors_)))];
+  std::vector<double> trial(q.size());
+  const auto along = [&](double t) {
+    for (std::size_t k = 0; k < q.size(); ++k)
+      trial[k] = workspace_.proposed()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
+  };
+  const int steps = workspace_.cut_by_cell() ? bisections_in_cell : bisections;
+  double feasible = 0.0, infeasible = 1.0;
+  for (int i = 0; i < steps; ++i) {
+    const double middle = 0.5 * (feasible + infeasible);
+    along(middle);
+    (workspace_.is_free_at(trial) ? feasible : infeasible) = middle;
+  }
+  along(feasible);
+  std::copy(trial.begin(), trial.end(), q.begin());
+  return workspace_.violation(q);
+}
+
+}  // namespace posewright

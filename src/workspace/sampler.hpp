@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+
+/// Collects drawn configurations batch by batch; validity is judged in parallel, the order stays that of the draws.
+class Sampler {
+ public:
+  /// Both must outlive the sampler.
+  Sampler(const Workspace& workspace, const SamplingOptions& options);
+
+  void interior(std::size_t wanted, const Monitor& monitor);
+  void boundary(std::size_t wanted, const Monitor& monitor);
+  /// Where the instrument sees its targets: from even draws the joints go to views, drawn by (seed, draw) alone.
+  void views(std::size_t wanted, const Monitor& monitor);
+  /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
+  void valid_states(SamplerKind kind, std::size_t wanted, const Monitor& monitor);
+  /// What samplers did not find is drawn evenly, or where the instrument sees.
+  void fill_up(std::size_t count, const Monitor& monitor);
+
+  /// Share of even draws that is feasible, by a few.
+  double feasible_share() const;
+  bool is_empty() const { return result_.count() == 0; }
+  /// Throws CannotDo if nothing feasible was drawn: what rejects most, and what helps.
+  Configurations take();
+
+ private:
+  struct Run {
+    std::vector<double> values;
+    std::vector<long> rejected;
+    long drawn = 0;
+  };
+  /// A point of the unit box, draw after draw.
+  using Generate = std::function<void(std::size_t, std::span<double>)>;
+  /// Makes it a configuration and says what forbids it; in several threads.
+  using Judge = std::function<int(std::size_t, std::span<double>)>;
+
+  void draw(std::size_t wanted, const Monitor& monitor, std::size_t draws_per_candidate, const Generate& generate,
+            const Judge& judge);
+  /// From the unit box to the limits.
+  void scale(std::span<double> q) const;
+  /// Moves unit coordinates to 0 or 1: all of them for the first draws (every corner once, if they are not too many),
+  /// then 1, 2, … of them in turn. Periodic coordinates have no ends.
+  void pin(std::size_t i, std::span<double> q) const;
+  /// Draws an infeasible boundary point back to the feasible set, towards a candidate.
+  int draw_back(std::size_t index, std::span<double> q) const;
+  Run run(SamplerKind kind, std::size_t number) const;
+  void add(const Run& done, std::size_t target);
+  /// A configuration that is there already would be a repeat under another name.
+  bool is_new(std::span<const double> q);
+  std::size_t drawn_before() const { return rejected_.size() - 2; }
+  [[noreturn]] void fail() const;
+
+  const Workspace& workspace_;
+  const SamplingOptions& options_;
+  Configurations result_;
+  std::vector<std::string> reasons_;
+  std::vector<long> rejected_;
+  std::vector<std::size_t> bounded_;        // coordinates with ends
+  std::unordered_set<std::uint64_t> seen_;  // hashes of accepted configurations
+  std::size_t anchors_ = 0;
+  bool has_ompl_ = false, has_views_ = false;
+};
+
+}  // namespace posewright

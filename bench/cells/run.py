@@ -49,7 +49,7 @@ def main():
             "report": ["report", plan, "-o", folder / f"{cell.stem}.html", *common, *packages],
         }
         if "stations:" in problem.read_text().split("workspace:")[1]:
-            commands["stations"] = ["stations", problem, *common, *packages]
+            commands["stations"] = ["stations", problem, "--quiet", *packages]
         for name in options.commands.split(","):
             if name not in commands:
                 continue

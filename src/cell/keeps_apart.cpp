@@ -5,7 +5,7 @@ namespace posewright {
 namespace {
 
 // Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
-constexpr double near_enough = 0.01;
+constexpr double near_enough = 0.002;
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/candidates.hpp"
+#include "without_roadmap.hpp"
 
 namespace posewright {
 namespace {
@@ -78,7 +79,11 @@ Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
 class Ranking {
  public:
   Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
-      : problem_(problem), options_(options), monitor_(monitor), places_(problem.workspace.stations->list) {
+      : problem_(problem),
+        unconnected_(without_roadmap(problem)),
+        options_(options),
+        monitor_(monitor),
+        places_(problem.workspace.stations->list) {
     const std::string criterion =
         options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
     const auto* entry = find_criterion(criterion);
@@ -99,7 +104,7 @@ class Ranking {
     for (std::size_t i = 0; i < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))); ++i) {
       if (!ranks[i].why_not.empty() || monitor_.should_stop()) break;
       monitor_.report({"full plans", double(i), double(options_.full), {}, {}, {}});
-      ranks[i] = judge(ranks[i].stations, full);
+      ranks[i] = judge(problem_, ranks[i].stations, full);
       ranks[i].in_full = true;
     }
     sort(ranks);
@@ -166,19 +171,20 @@ class Ranking {
       monitor_.report({"places", double(ranks.size()), double(sets.size()), {}, {}, {}});
       std::vector<StationSpec> stations;
       for (const std::size_t i : set) stations.push_back(places_[i]);
-      ranks.push_back(judge(stations, quick));
+      ranks.push_back(judge(unconnected_, stations, quick));
     }
     return ranks;
   }
 
-  StationRank judge(const std::vector<StationSpec>& stations, const PlanOptions& plan_options) const {
+  StationRank judge(const Problem& problem, const std::vector<StationSpec>& stations,
+                    const PlanOptions& plan_options) const {
     StationRank rank;
     rank.stations = stations;
     Monitor quiet;  // its plan's own stages would hide how many places are done
     quiet.interrupted = monitor_.interrupted;
     quiet.deadline = monitor_.deadline;
     try {
-      const Plan plan = plan_problem(with_stations(problem_, stations), plan_options, quiet);
+      const Plan plan = plan_problem(with_stations(problem, stations), plan_options, quiet);
       for (const PlannedParameter& p : plan.parameters)
         rank.parameters += p.sigma.has_value() && p.label.role == Role::interest;
       rank.criterion_value = plan.criterion_value;
@@ -213,6 +219,7 @@ class Ranking {
   static void sort(std::vector<StationRank>& ranks) { std::stable_sort(ranks.begin(), ranks.end(), better); }
 
   const Problem& problem_;
+  Problem unconnected_;  // of the quick plans: few poses are unreachable, and at every place the same
   const StationOptions& options_;
   const Monitor& monitor_;
   const std::vector<StationSpec>& places_;

@@ -13,6 +13,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
+#include "without_roadmap.hpp"
 
 namespace posewright {
 namespace {
@@ -30,12 +31,6 @@ std::string temperature_of(const PlannedPose& pose) {
   for (const auto& [name, choice] : pose.conditions)
     if (name == "temperature") return choice;
   return {};
-}
-
-/// What can be reached is what the route finds out: no roadmap is made beside its own.
-Problem without_roadmap(Problem problem) {
-  problem.workspace.motion.reachable = false;
-  return problem;
 }
 
 /// Orders the stops that can be reached, and collects what is written of the way.

@@ -17,7 +17,7 @@ constexpr double close_enough = 0.01;
 constexpr double unit = 0.5;
 constexpr double step = 1e-6;
 constexpr int most_steps = 40;
-// A way that halves the error so seldom leads nowhere.
+// A step that takes away less than this share of the error leads nowhere: the view is out of reach.
 constexpr double least_gain = 0.02;
 
 Error error_of(const Eigen::Isometry3d& X, const Eigen::Isometry3d& wanted) {

@@ -66,8 +66,11 @@ class ReportBuilder {
   }
 
   Report make() {
-    report_.title = problem_.file.parent_path().filename().string();
-    if (report_.title.empty()) report_.title = problem_.file.stem().string();
+    // A folder that has its robot's name holds one "problem.yaml"; other files have names of their own.
+    report_.title = problem_.file.stem().string();
+    if (const std::string folder = problem_.file.parent_path().filename().string();
+        report_.title == "problem" && !folder.empty())
+      report_.title = folder;
     const Judgement judgement = judge(study_, new_, settings_);
     note_changes(judgement);
     note_effect(judgement);

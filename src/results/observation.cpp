@@ -107,10 +107,6 @@ std::string practical_text(const Observation& o) {
   return text + recommendation_text(o);
 }
 
-}  // namespace
-
-namespace {
-
 /// What matters first: how many of the parameters that are asked for can be told, and from how many poses.
 std::string verdict_text(const Observation& o) {
   const auto all = [&](Role role) {

@@ -173,10 +173,10 @@ class Router {
     if (space_.is_free(space_.home())) hubs.push_back(0);
     if (!options_.from_home) hubs.insert(hubs.end(), poses.begin(), poses.end());
     for (const int hub : hubs) {
-      motions_->set_hub(hub);
-      std::vector<int> reached;
       // Who is connected with an earlier hub reaches what that one does.
       if (std::find(seen.begin(), seen.end(), hub) != seen.end()) continue;
+      motions_->set_hub(hub);
+      std::vector<int> reached;
       for (const int& i : poses) {
         if (motions_->reachable(i)) reached.push_back(i);
         monitor_.report({"reachable poses", double(&i - poses.data()) + 1, double(poses.size()), {}, {}, {}});

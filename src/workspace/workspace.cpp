@@ -116,8 +116,7 @@ class Workspace::Implementation {
     if (views == nullptr && std::any_of(sampler_shares.begin(), sampler_shares.end(), asks_for_views))
       throw CannotDo(
           "workspace: samplers: look_at: nothing says where this instrument looks; cameras do, and targets whose "
-          "normals "
-          "and acceptance line_of_sight gives");
+          "normals and acceptance line_of_sight gives");
     if (samplers_are_given) return;
     if (cut_by_cell())
       sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};

@@ -10,6 +10,7 @@ find_package(NLopt 2.7 REQUIRED CONFIG)
 find_package(fcl 0.7 REQUIRED CONFIG)
 find_package(assimp 5.2 REQUIRED CONFIG)
 find_package(Qhull REQUIRED CONFIG)
+find_package(sdformat12 REQUIRED CONFIG)
 find_package(Threads REQUIRED)
 
 # libmd ships no CMake file.
@@ -32,4 +33,4 @@ endif()
 
 set(POSEWRIGHT_LIBRARIES
   Boost::headers OMPL::ompl urdfdom::urdfdom_model tinyxml2::tinyxml2 yaml-cpp
-  nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r Threads::Threads libmd::libmd)
+  nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r sdformat12::sdformat12 Threads::Threads libmd::libmd)

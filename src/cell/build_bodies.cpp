@@ -1,7 +1,9 @@
 #include <array>
 #include <map>
+#include <set>
 
 #include "mesh_file.hpp"
+#include "obstacle_files.hpp"
 #include "posewright/model/link_geometry.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"
@@ -17,21 +19,24 @@ class Solids {
 
   std::shared_ptr<const Solid> of(const ShapeSpec& shape, const SourcePlace& place) {
     const auto* file = std::get_if<MeshShape>(&shape);
-    if (file == nullptr) return make_solid(shape, nullptr);
+    if (file == nullptr) return solid_of(shape, "the shape", place);
     const std::filesystem::path found = find_mesh(file->file, problem_, place);
     const Key key{found.string(), {file->scale.x(), file->scale.y(), file->scale.z()}};
     if (const auto known = solids_.find(key); known != solids_.end()) return known->second;
-    try {
-      TriangleMesh mesh = read_mesh(found, file->scale, place);
-      if (hulls_) mesh = convex_hull(mesh);
-      return solids_[key] = make_solid(shape, &mesh);
-    } catch (const std::invalid_argument& error) {
-      throw InputError(place, "mesh '" + found.string() + "' is degenerate: " + error.what(),
-                       "triangles with an area are needed");
-    }
+    return solids_[key] = solid_of(shape, "mesh '" + found.string() + "'", place);
   }
 
  private:
+  std::shared_ptr<const Solid> solid_of(const ShapeSpec& shape, const std::string& what, const SourcePlace& place) {
+    std::optional<TriangleMesh> mesh = mesh_of(shape, problem_, place);
+    try {
+      if (mesh && hulls_) mesh = convex_hull(*mesh);
+      return make_solid(shape, mesh ? &*mesh : nullptr);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(place, what + " is degenerate: " + error.what(), "triangles with an area are needed");
+    }
+  }
+
   const Problem& problem_;
   bool hulls_;
   using Key = std::pair<std::string, std::array<double, 3>>;
@@ -45,6 +50,19 @@ void refuse_moving_branch(const BodyShape& shape) {
                      "link '" + shape.name + "' is moved by joint '" + shape.follower +
                          "', which follows the chain from a branch; such shapes are not checked for collision yet",
                      "remove its <collision>, or choose a tip whose chain has the joint");
+}
+
+void add_obstacles(const ObstacleFileSpec& spec, const Problem& problem, std::vector<BodyShape>& shapes) {
+  std::set<std::string> taken;
+  for (const BodyShape& shape : shapes) taken.insert(shape.name);
+  for (PlacedShape& placed : read_obstacle_file(spec, problem)) {
+    if (taken.count(placed.name) > 0)
+      throw InputError(problem.at(spec.line),
+                       "'" + spec.file.string() + "' has a body called '" + placed.name + "', as another one is",
+                       "except: [" + placed.name + "], or another name");
+    shapes.push_back({placed.name, "", "", BodyShape::Kind::obstacle, 0, isometry(spec.placement) * placed.X,
+                      std::move(placed.shape), SourcePlace{spec.file.string(), placed.line}});
+  }
 }
 
 }  // namespace
@@ -66,6 +84,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
   for (const BodySpec& obstacle : problem.workspace.collision->obstacles)
     shapes.push_back({obstacle.name, obstacle.station, "", BodyShape::Kind::obstacle, 0, isometry(obstacle.placement),
                       obstacle.shape, problem.at(obstacle.line)});
+  for (const ObstacleFileSpec& file : problem.workspace.collision->obstacle_files) add_obstacles(file, problem, shapes);
   return shapes;
 }
 

@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include "posewright/model/srdf.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
 #include "scene.hpp"
@@ -61,9 +62,10 @@ class SceneBuilder {
     }
     for (const CollisionSpec::PairClearance& pair : spec_.pair_clearances)
       require_bodies({pair.first, pair.second}, names);
-    if (spec_.srdf)
-      for (const auto& [a, b] : read_srdf_pairs(spec_.srdf->value, problem_.at(spec_.srdf->line)))
-        ignored_.insert(ordered(a, b));
+    const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot);
+    const auto& srdf = spec_.srdf || arm == nullptr ? spec_.srdf : arm->srdf;
+    if (srdf)
+      for (const auto& [a, b] : read_srdf_pairs(srdf->value, problem_.at(srdf->line))) ignored_.insert(ordered(a, b));
   }
 
   /// What a pair of the robot's own bodies keeps: named, or of all, or (tool against arm) as from obstacles.
@@ -101,17 +103,25 @@ class SceneBuilder {
       }
   }
 
+  /// An obstacle of several shapes is one row in the table of rejections.
+  int reason_of(const std::string& text) {
+    const auto known = std::find(scene_.reasons.begin(), scene_.reasons.end(), text);
+    const int place = int(known - scene_.reasons.begin());
+    if (known == scene_.reasons.end()) scene_.reasons.push_back(text);
+    return place;
+  }
+
   void add_obstacle_pairs() {
     const int count = int(scene_.bodies.size());
     for (int i = 0; i < count; ++i) {
       const Body& obstacle = scene_.bodies[std::size_t(i)];
       if (!obstacle.obstacle) continue;
-      scene_.reasons.push_back("collision with " + obstacle.name);
+      const int reason = reason_of("collision with " + obstacle.name);
       for (int j = 0; j < count; ++j) {
         const Body& body = scene_.bodies[std::size_t(j)];
         // What does not move stands where the user put it: a base on its table touches it.
         if (body.obstacle || body.frame == 0 || ignored_.count(ordered(obstacle.name, body.name)) > 0) continue;
-        add_pair(i, j, int(scene_.reasons.size()) - 1, spec_.clearance);
+        add_pair(i, j, reason, spec_.clearance);
       }
     }
   }
@@ -178,6 +188,7 @@ class SceneBuilder {
     const std::vector<Coordinate>& coordinates = model_.coordinates();
     if (scene_.frames->poses_per_configuration() != 1) return;
     std::vector<double> middle;
+    middle.reserve(coordinates.size());
     for (const Coordinate& c : coordinates)
       middle.push_back(c.discrete() ? c.values.front() : 0.5 * (c.lower + c.upper));
     for (BodyPair& pair : scene_.pairs) {

@@ -72,16 +72,17 @@ Drawing::~Drawing() = default;
 void Drawing::add_bodies(const Problem& problem) {
   if (arm_ == nullptr && tip_ == nullptr) return;
   const Eigen::Isometry3d X_FrameTip = arm_ != nullptr ? arm_->X_FrameTip() : Eigen::Isometry3d::Identity();
-  std::map<std::filesystem::path, TriangleMesh> meshes;
   for (const BodyShape& s : list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip)) {
     DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, {}};
-    if (const auto* file = std::get_if<MeshShape>(&s.shape)) try {
-        const std::filesystem::path found = find_mesh(file->file, problem, s.place);
-        body.mesh = thinned(read_mesh(found, file->scale, s.place), most_triangles);
-      } catch (const InputError& error) {
-        if (warning_.empty()) warning_ = std::string("some shapes are not drawn: ") + error.what();
-        continue;
+    try {
+      if (const std::optional<TriangleMesh> mesh = mesh_of(s.shape, problem, s.place)) {
+        body.mesh = thinned(*mesh, most_triangles);
+        body.shape = MeshShape{};
       }
+    } catch (const InputError& error) {
+      if (warning_.empty()) warning_ = std::string("some shapes are not drawn: ") + error.what();
+      continue;
+    }
     bodies_.push_back(std::move(body));
   }
 }

@@ -79,10 +79,6 @@ struct BodyShape {
 /// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);
 
-/// Pairs that an SRDF file lets touch. Throws InputError with its line.
-std::vector<std::pair<std::string, std::string>> read_srdf_pairs(const std::filesystem::path& file,
-                                                                 const SourcePlace& place);
-
 /// How far a robot that is built within the tolerances of the planned variant may be from where it is thought, `sigmas`
 /// standard deviations: largest over the workspace for a pair's bodies relative to each other.
 class UncalibratedError {

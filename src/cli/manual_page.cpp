@@ -94,7 +94,8 @@ std::string manual_page() {
   text +=
       ".SH ENVIRONMENT\n"
       ".TP\n.B NO_COLOR\nNot empty: no bold or coloured text on a terminal.\n"
-      ".TP\n.B ROS_PACKAGE_PATH\nFolders in which meshes named package://NAME/ are looked for.\n"
+      ".TP\n.B ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH\n"
+      "Folders in which package://NAME/ and model://NAME/ of meshes and models are\nlooked for.\n"
       ".SH FILES\nJSON Schemas of problem, plan and route, for editors and programs, are\nin share/posewright/schemas, "
       "examples "
       "in share/posewright/examples.\n";

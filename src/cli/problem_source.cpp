@@ -34,8 +34,9 @@ void apply(Problem& problem, const std::filesystem::path& file, const std::vecto
 
 po::options_description problem_options() {
   po::options_description options("Problem");
-  options.add_options()("package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-                        "folder of package://NAME/ in the URDF (else ROS_PACKAGE_PATH, and around the URDF)")(
+  options.add_options()(
+      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)")(
       "parameters", po::value<std::string>()->value_name("FILE"),
       "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
   return options;
@@ -83,7 +84,10 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
     if (!file.empty()) files.push_back(file);
   };
   if (problem.parameters) add(problem.parameters->file);
-  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) add(arm->urdf);
+  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
+    add(arm->urdf);
+    if (arm->srdf) add(arm->srdf->value);
+  }
   if (problem.design.candidates_from) add(*problem.design.candidates_from);
   if (problem.design.measured) add(*problem.design.measured);
   if (problem.design.test_poses) add(problem.design.test_poses->file);
@@ -91,6 +95,7 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
   if (!problem.workspace.collision) return files;
   const CollisionSpec& collision = *problem.workspace.collision;
   if (collision.srdf) add(collision.srdf->value);
+  for (const ObstacleFileSpec& obstacles : collision.obstacle_files) add(obstacles.file);
   for (const auto* bodies : {&collision.obstacles, &collision.tool})
     for (const BodySpec& body : *bodies)
       if (const auto* mesh = std::get_if<MeshShape>(&body.shape)) add(mesh->file);

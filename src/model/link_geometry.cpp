@@ -14,8 +14,8 @@ Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 class LinkCollector {
  public:
-  LinkCollector(const SerialArmSpec& arm, const SourcePlace& place)
-      : urdf_(arm, place), folder_(arm.urdf.parent_path()) {
+  LinkCollector(UrdfDocument urdf, std::filesystem::path folder, const Eigen::Isometry3d& X_MeasureBase)
+      : urdf_(std::move(urdf)), folder_(std::move(folder)) {
     int frame = 0;
     for (const auto& joint : urdf_.joints())
       if (joint->type != urdf::Joint::FIXED) frame_after_[joint->name] = ++frame;
@@ -25,7 +25,7 @@ class LinkCollector {
     for (urdf::LinkConstSharedPtr link = urdf_.model().getLink(urdf_.base()); link->parent_joint != nullptr;
          link = urdf_.model().getLink(link->parent_joint->parent_link_name))
       X_RootBase = isometry(link->parent_joint->parent_to_joint_origin_transform) * X_RootBase;
-    collect(*urdf_.model().getRoot(), 0, isometry(arm.placement) * X_RootBase.inverse(), "", "");
+    collect(*urdf_.model().getRoot(), 0, X_MeasureBase * X_RootBase.inverse(), "", "");
   }
 
   std::vector<LinkGeometry> take() { return std::move(links_); }
@@ -78,7 +78,11 @@ class LinkCollector {
 }  // namespace
 
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place) {
-  return LinkCollector(arm, place).take();
+  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement)).take();
+}
+
+std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file) {
+  return LinkCollector(UrdfDocument(file), file.parent_path(), Eigen::Isometry3d::Identity()).take();
 }
 
 }  // namespace posewright

@@ -4,8 +4,10 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 
+#include "posewright/model/srdf.hpp"
 #include "posewright/support/text_file.hpp"
 
 namespace posewright {
@@ -36,6 +38,9 @@ class CapturedMessages : public console_bridge::OutputHandler {
   std::string first_;
 };
 
+/// Lines are those of the text that xacro wrote.
+std::string name_of_text(const SerialArmSpec& arm) { return arm.urdf.string() + (arm.expanded ? " (expanded)" : ""); }
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file) {
   CapturedMessages messages;
   urdf::ModelInterfaceSharedPtr model;
@@ -54,6 +59,30 @@ std::string names_of(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+/// The arm with the base and tip that a group of the SRDF gives: those of its chain, or of the way that its joints lie
+/// on.
+SerialArmSpec with_group(const urdf::ModelInterface& model, SerialArmSpec arm, const SourcePlace& place) {
+  if (!arm.group) return arm;
+  const SrdfGroup group = read_srdf_group(arm.srdf->value, *arm.group, {place.file, arm.srdf->line});
+  std::string base = group.base, tip = group.tip;
+  std::map<int, const urdf::Joint*> by_depth;
+  for (const std::string& name : group.joints) {
+    const urdf::JointConstSharedPtr joint = model.getJoint(name);
+    if (joint == nullptr)
+      throw InputError(group.place, "joint '" + name + "' of the group is not in " + arm.urdf.filename().string(), "");
+    int depth = 0;
+    for (auto above = joint; above != nullptr; above = model.getLink(above->parent_link_name)->parent_joint) ++depth;
+    by_depth[depth] = joint.get();
+  }
+  if (!by_depth.empty()) {
+    base = by_depth.begin()->second->parent_link_name;
+    tip = by_depth.rbegin()->second->child_link_name;
+  }
+  arm.base = Located<std::string>{base, arm.group->line};
+  arm.tip = Located<std::string>{tip, arm.group->line};
+  return arm;
 }
 
 std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, const SourcePlace& place) {
@@ -114,11 +143,18 @@ Eigen::Isometry3d isometry(const urdf::Pose& pose) {
 }
 
 UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
-    : text_(read_xml_text(arm.urdf, largest_urdf)),
-      lines_(text_, arm.urdf.string()),
-      model_(parse(text_, arm.urdf.string())),
-      base_(base_of(*model_, arm, place)),
-      tip_(tip_of(*model_, arm, place)),
+    : text_(arm.expanded ? *arm.expanded : read_xml_text(arm.urdf, largest_urdf)),
+      lines_(text_, name_of_text(arm)),
+      model_(parse(text_, name_of_text(arm))),
+      base_(base_of(*model_, with_group(*model_, arm, place), place)),
+      tip_(tip_of(*model_, with_group(*model_, arm, place), place)),
       joints_(path(*model_, base_, tip_, place)) {}
+
+UrdfDocument::UrdfDocument(const std::filesystem::path& file)
+    : text_(read_xml_text(file, largest_urdf)),
+      lines_(text_, file.string()),
+      model_(parse(text_, file.string())),
+      base_(model_->getRoot()->name),
+      tip_(base_) {}
 
 }  // namespace posewright

@@ -4,6 +4,7 @@
 #include <urdf_world/types.h>
 
 #include <Eigen/Geometry>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ class UrdfDocument {
   /// @param place  where the problem file names the robot
   /// Throws InputError for an unreadable or malformed file and for links that are not there or not on one branch.
   UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place);
+  /// All of a file that is no robot: base and tip are its root.
+  explicit UrdfDocument(const std::filesystem::path& file);
 
   const std::string& text() const { return text_; }
   const UrdfLines& lines() const { return lines_; }

@@ -69,11 +69,36 @@ BodySpec read_body(const Value& value, const std::string& name, const std::files
   return body;
 }
 
-std::vector<BodySpec> read_bodies(const Value& value, const std::string& kind, const std::filesystem::path& folder,
-                                  std::set<std::string>& names) {
+ObstacleFileSpec read_obstacle_file(const Section& section, const std::filesystem::path& folder) {
+  section.allow({"file", "at", "rpy", "except"});
+  ObstacleFileSpec spec;
+  spec.file = folder / section.at("file").text("a file name is expected");
+  spec.line = section.at("file").line();
+  if (const Value* at = section.find("at")) spec.placement.position = at->vector(Quantity::length);
+  if (const Value* rpy = section.find("rpy")) spec.placement.rpy = rpy->vector(Quantity::angle);
+  if (const Value* except = section.find("except")) spec.except = except->texts();
+  return spec;
+}
+
+/// Shapes, and files of many.
+void read_obstacles(const Value& value, const std::filesystem::path& folder, std::set<std::string>& names,
+                    CollisionSpec& collision) {
+  for (const Value& item : value.items("a list of shapes and files is expected")) {
+    if (const Section section(item); section.has("file")) {
+      collision.obstacle_files.push_back(read_obstacle_file(section, folder));
+      continue;
+    }
+    collision.obstacles.push_back(
+        read_body(item, "obstacle " + std::to_string(collision.obstacles.size() + 1), folder));
+    if (!names.insert(collision.obstacles.back().name).second)
+      item.fail("is called " + in_quotes(collision.obstacles.back().name), "every name is allowed once");
+  }
+}
+
+std::vector<BodySpec> read_tool(const Value& value, const std::filesystem::path& folder, std::set<std::string>& names) {
   std::vector<BodySpec> bodies;
   for (const Value& item : value.items("a list of shapes is expected")) {
-    bodies.push_back(read_body(item, kind + " " + std::to_string(bodies.size() + 1), folder));
+    bodies.push_back(read_body(item, "tool " + std::to_string(bodies.size() + 1), folder));
     if (!names.insert(bodies.back().name).second)
       item.fail("is called " + in_quotes(bodies.back().name), "every name is allowed once");
   }
@@ -127,13 +152,12 @@ CollisionSpec read_collision(const Value& value, const std::filesystem::path& fo
     }
   std::set<std::string> names;
   if (const Value* tool = section.find("tool")) {
-    collision.tool = read_bodies(*tool, "tool", folder, names);
+    collision.tool = read_tool(*tool, folder, names);
     for (const BodySpec& body : collision.tool)
       if (std::holds_alternative<HalfSpaceShape>(body.shape))
         tool->fail("has a plane", "a tool has an end: box, cylinder, sphere, mesh");
   }
-  if (const Value* obstacles = section.find("obstacles"))
-    collision.obstacles = read_bodies(*obstacles, "obstacle", folder, names);
+  if (const Value* obstacles = section.find("obstacles")) read_obstacles(*obstacles, folder, names, collision);
   return collision;
 }
 

@@ -70,13 +70,30 @@ TemperatureSpec read_temperature(const Value& value) {
   return spec;
 }
 
+void read_xacro(const Section& robot, const Value& urdf, SerialArmSpec& arm) {
+  const Value* arguments = robot.find("xacro");
+  if (arguments != nullptr && !is_xacro(arm.urdf)) arguments->fail("stands beside a URDF", "urdf: FILE.xacro");
+  if (!is_xacro(arm.urdf)) return;
+  if (arguments != nullptr)
+    for (const yaml::Entry& entry : Section(*arguments).entries())
+      arm.xacro.emplace_back(entry.key, entry.value.text_or_nothing());
+  arm.expanded = std::make_shared<const std::string>(expanded_xacro(arm, urdf));
+}
+
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& folder) {
-  robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "joint_effects",
-               "temperature"});
+  robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "placement", "encoder_noise", "parameter_names",
+               "elastostatic", "joint_effects", "temperature"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
   arm.urdf = folder / urdf.text("a file name is expected");
   arm.line = urdf.line();
+  read_xacro(robot, urdf, arm);
+  if (const Value* srdf = robot.find("srdf")) arm.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
+  if (const Value* group = robot.find("group")) {
+    arm.group = group->exact_name();
+    if (!arm.srdf) group->fail("stands without srdf", "srdf: FILE");
+    if (robot.has("base") || robot.has("tip")) group->fail("stands beside base or tip", "group, or base and tip");
+  }
   if (const Value* base = robot.find("base")) arm.base = base->exact_name();
   if (const Value* tip = robot.find("tip")) arm.tip = tip->exact_name();
   if (const Value* placement = robot.find("placement")) arm.placement = read_placement(Section(*placement));

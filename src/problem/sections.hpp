@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "posewright/problem/problem.hpp"
@@ -13,6 +14,11 @@ namespace posewright {
 
 /// `folder` is what the path of the URDF file is relative to.
 RobotSpec read_robot(const yaml::Value& value, const std::filesystem::path& folder);
+
+bool is_xacro(const std::filesystem::path& file);
+/// What the program `xacro` makes of the arm's file. Throws at `urdf` where arguments without default are missing,
+/// where there is no such program, and where it fails.
+std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf);
 
 MeasurementSpec read_measurement(const yaml::Value& value);
 DistanceMeasurement read_distance(const yaml::Section& section);

@@ -34,6 +34,8 @@ class Value {
 
   /// Text of a scalar: not empty, no control characters. `expected` describes it in the message.
   std::string text(const std::string& expected = "a text is expected") const;
+  /// The same where nothing may be meant, too: prefix: "".
+  std::string text_or_nothing() const;
   Located<std::string> located_text() const { return {text(), line_}; }
   /// Text that names one thing: no `*` or `?`.
   Located<std::string> exact_name() const;

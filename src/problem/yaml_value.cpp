@@ -40,6 +40,11 @@ std::string Value::text(const std::string& expected) const {
   return result;
 }
 
+std::string Value::text_or_nothing() const {
+  const std::string result = scalar("a text is expected");
+  return result.empty() ? result : text();
+}
+
 Located<std::string> Value::exact_name() const {
   std::string result = text("a name is expected");
   if (result.find_first_of("*?") != std::string::npos)

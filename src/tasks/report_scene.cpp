@@ -38,6 +38,7 @@ struct Fill {
     body.shape = ReportBody::Shape::plane;
     body.size = s.normal;
   }
+  void operator()(const std::shared_ptr<const TrianglesShape>&) const { (*this)(MeshShape{}); }
   void operator()(const MeshShape&) const {
     body.shape = ReportBody::Shape::mesh;
     body.vertices = mesh.vertices;

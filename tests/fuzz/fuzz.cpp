@@ -17,12 +17,13 @@
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/srdf.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/calibrated_parameters.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
-#include "src/cell/scene.hpp"
+#include "src/cell/obstacle_files.hpp"
 #include "src/cell/triangle_files.hpp"
 #include "tests/kit/urdf_text.hpp"
 
@@ -103,7 +104,7 @@ void read_sequence(const std::string& bytes) {
 }
 
 using Read = void (*)(const std::string&);
-const std::array<std::pair<const char*, Read>, 12> targets = {{
+const std::array<std::pair<const char*, Read>, 13> targets = {{
     {"problem", [](const std::string& bytes) { parse_problem(bytes, "problem.yaml"); }},
     {"urdf", read_urdf},
     {"stl", [](const std::string& bytes) { read_stl(bytes); }},
@@ -128,6 +129,14 @@ const std::array<std::pair<const char*, Read>, 12> targets = {{
      [](const std::string& bytes) {
        const MemoryFile file(bytes);
        read_srdf_pairs(file.path(), {"p.yaml", 1});
+       read_srdf_group(file.path(), "arm", {"p.yaml", 1});
+     }},
+    {"scene",
+     [](const std::string& bytes) {
+       const MemoryFile file(bytes);
+       ObstacleFileSpec spec;
+       spec.file = file.path();
+       read_moveit_shapes(spec);
      }},
     {"settings", [](const std::string& bytes) { parse_controller_settings(bytes, "controller.yaml"); }},
     {"lists", read_list},

@@ -22,6 +22,10 @@ NPY = b"\x93NUMPY\x01\x00F\x00{'descr': '<f8', 'fortran_order': False, 'shape': 
 MEASURED = (b"id,j1 [deg],j2 [mm],P1.x [mm],P1.y [mm],P1.z [mm],P2.x [mm],P2.y [mm],P2.z [mm]\n1,10,20,1,2,3,4,5,6\n"
             b"1,10,20,1,,3,4,5,6\n2,-10,2.5e1,1,2,3,4,5,nan\n")
 SRDF = b'<robot name="r"><disable_collisions link1="a" link2="b" reason="Never"/></robot>'
+GROUPS = (b'<robot name="r"><group name="arm"><chain base_link="a" tip_link="b"/></group></robot>',
+          b'<robot name="r"><group name="g"><joint name="j"/></group><group name="arm"><group name="g"/></group></robot>')
+SCENE = (b"(noname)+\n* table\n1 2.5 0.8\n0 0 0 1\n1\nbox\n2 1 0.1\n0 0 -0.05\n0 0 0 1\n0 0 0 0\n1\ncorner\n1 0 0\n0 0 0 1\n.\n",
+         b"s\n* m\n2\nmesh\n3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 2\n0 0 0\n0 0 0 1\n1 0 0 1\nplane\n0 0 1 0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n")
 PARAMETERS = b"posewright_parameters: 1\nvariant: all\nvalues:\n  j1.offset: {value: 0.1 deg, nominal: 0, unit: rad}\n"
 SETTINGS = (b"sign: [1, -1]\nzero_deg: [0, 90]\nrange_deg: [[-1, 2], [3, 4]]\ncoupling: -1\naxes: [A1, A2]\ndecimals: 4\n"
             b"pulses_per_degree: [1e3, 2]\npivot_mm: [0, 0, 1]\n")
@@ -48,7 +52,8 @@ SEEDS = {
     "measured": lambda: [MEASURED],
     "sequence": lambda: files("tests/outputs/golden/*.json"),
     "parameters": lambda: [PARAMETERS],
-    "srdf": lambda: [SRDF, *files("tests/outputs/golden/*.srdf")],
+    "scene": lambda: [*SCENE],
+    "srdf": lambda: [SRDF, *GROUPS, *files("tests/outputs/golden/*.srdf")],
     "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/outputs/golden/yaskawa.yaml")],
     "lists": lists,
 }

@@ -27,4 +27,8 @@ struct LinkGeometry {
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 
+/// The same of a file that is no robot but what stands around one, all joints at zero position, in the frame of its
+/// root.
+std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file);
+
 }  // namespace posewright

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,7 +34,13 @@ struct MeshShape {
   std::filesystem::path file;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
 };
-using ShapeSpec = std::variant<BoxShape, CylinderShape, SphereShape, HalfSpaceShape, MeshShape>;
+/// Triangles that a file of a whole scene holds.
+struct TrianglesShape {
+  std::vector<Eigen::Vector3d> vertices;  ///< m
+  std::vector<std::array<int, 3>> triangles;
+};
+using ShapeSpec = std::variant<BoxShape, CylinderShape, SphereShape, HalfSpaceShape, MeshShape,
+                               std::shared_ptr<const TrianglesShape>>;
 
 /// An obstacle (placement in the measurement frame) or a part of the tool (placement in the tip frame).
 struct BodySpec {
@@ -40,6 +48,14 @@ struct BodySpec {
   ShapeSpec shape;
   Placement placement;
   std::string station;  ///< the instrument whose own body this is: it does not hide its own sight; empty: nobody's
+  int line = 0;
+};
+
+/// Obstacles of a file: an SDF or URDF world, a MoveIt scene.
+struct ObstacleFileSpec {
+  std::filesystem::path file;
+  Placement placement;                       ///< of the file's world in the measurement frame
+  std::vector<Located<std::string>> except;  ///< models, links or objects that are left out, such as the robot itself
   int line = 0;
 };
 
@@ -59,6 +75,7 @@ struct CollisionSpec {
   /// Pairs of links or tool parts that may touch.
   std::vector<std::pair<Located<std::string>, Located<std::string>>> ignore;
   std::vector<BodySpec> tool, obstacles;
+  std::vector<ObstacleFileSpec> obstacle_files;
   int line = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -86,6 +87,10 @@ struct SerialArmSpec {
   std::filesystem::path urdf;                     ///< resolved against the problem file's folder
   int line = 0;                                   ///< of the key `urdf`
   std::optional<Located<std::string>> base, tip;  ///< default: root link, the only leaf link
+  std::optional<Located<std::filesystem::path>> srdf;
+  std::optional<Located<std::string>> group;                        ///< of the SRDF, whose chain gives base and tip
+  std::vector<std::pair<Located<std::string>, std::string>> xacro;  ///< arguments, where `urdf` is a xacro file
+  std::shared_ptr<const std::string> expanded;                      ///< what xacro made of it; null: `urdf` is URDF
   Placement placement;         ///< nominal pose of the base in the measurement frame (key `placement`)
   double encoder_noise = 0.0;  ///< 1σ of every joint reading (rad or m), 0 = exact
   /// User's name of a parameter → the model's name, e.g. px1 → joint_a2.x.

@@ -16,9 +16,9 @@ constexpr std::uintmax_t largest_scene = 100'000'000;  // bytes
 constexpr long most_parts = 10'000'000;                // vertices or triangles of one mesh
 
 /// Words and lines of a text, with the line that they stand on.
-class Words {
+class SceneWords {
  public:
-  Words(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+  SceneWords(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
 
   int line() const { return line_; }
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const {
@@ -86,7 +86,7 @@ class Words {
   int line_ = 1;
 };
 
-ShapeSpec read_triangles(Words& words) {
+ShapeSpec read_triangles(SceneWords& words) {
   auto mesh = std::make_shared<TrianglesShape>();
   const long vertices = words.count("vertices"), triangles = words.count("triangles");
   for (long i = 0; i < vertices; ++i) mesh->vertices.push_back(words.vector("a vertex"));
@@ -104,7 +104,7 @@ ShapeSpec read_triangles(Words& words) {
 }
 
 /// `X` gets what the shape itself is moved by.
-ShapeSpec read_scene_shape(Words& words, Eigen::Isometry3d& X) {
+ShapeSpec read_scene_shape(SceneWords& words, Eigen::Isometry3d& X) {
   const std::string kind = words.word("a shape");
   if (kind == "box") {
     const double x = words.length("an edge"), y = words.length("an edge"), z = words.length("an edge");
@@ -126,7 +126,7 @@ ShapeSpec read_scene_shape(Words& words, Eigen::Isometry3d& X) {
 }
 
 /// Whether objects have poses of their own: the line after the first name has more than a number.
-bool has_object_poses(Words words) {
+bool has_object_poses(SceneWords words) {
   if (words.word("an object") != "*") return false;
   words.rest();
   words.word("a pose or a number of shapes");
@@ -136,7 +136,7 @@ bool has_object_poses(Words words) {
 }  // namespace
 
 std::vector<PlacedShape> read_moveit_shapes(const ObstacleFileSpec& spec) {
-  Words words(read_text(spec.file, largest_scene), spec.file.string());
+  SceneWords words(read_text(spec.file, largest_scene), spec.file.string());
   words.rest();  // name of the scene
   const bool poses = has_object_poses(words);
   std::vector<PlacedShape> shapes;

@@ -129,7 +129,7 @@ const std::array<std::pair<const char*, Read>, 13> targets = {{
      [](const std::string& bytes) {
        const MemoryFile file(bytes);
        read_srdf_pairs(file.path(), {"p.yaml", 1});
-       read_srdf_group(file.path(), "arm", {"p.yaml", 1});
+       read_srdf_group(file.path(), {"arm", 1}, {"p.yaml", 1});
      }},
     {"scene",
      [](const std::string& bytes) {

@@ -70,7 +70,8 @@ const BadFile root[] = {
 
 const BadFile serial_robot[] = {
     {"RobotKeyUnknown", arm, "base: base_link", "bse: base_link", 4,
-     "unknown key 'bse'; allowed: urdf, xacro, srdf, group, base, tip, placement, encoder_noise, parameter_names, elastostatic"},
+     "unknown key 'bse'; allowed: urdf, xacro, srdf, group, base, tip, placement, encoder_noise, parameter_names, "
+     "elastostatic"},
     {"RobotKeyTwice", arm, "tip: flange", "base: flange", 5, "duplicate key 'base'; first given on line 4"},
     {"RobotIsText", arm, arm.c_str(), "posewright: 1\nrobot: six_pus\n", 2, "robot is 'six_pus'; a mapping"},
     {"NeitherUrdfNorModel", arm, "  urdf: kr270.urdf\n", "", 2, "has neither urdf nor model; one of both is required"},

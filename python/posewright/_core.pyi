@@ -642,7 +642,7 @@ def export(
     wait: Optional[float] = None,
     digital_output: Union[int, str, None] = None,
     digital_input: Union[int, str, None] = None,
-    tool: Optional[int] = None,
+    tool: Union[int, str, None] = None,
     base: Optional[int] = None,
     coupling: Optional[float] = None,
     controller: Optional[_Path] = None,

@@ -66,7 +66,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
   wanted.settle = within(settle, "settle", 0, 3600);
   wanted.wait = within(wait, "wait", 0.01, 3600);
   wanted.coupling = within(coupling, "coupling", -10, 10);
-  wanted.tool = number_of(tool, "tool");
+  wanted.tool = text_or_none(tool);
   wanted.base = number_of(base, "base");
   wanted.digital_output = text_or_none(digital_output);
   wanted.digital_input = text_or_none(digital_input);

@@ -34,11 +34,11 @@ po::options_description export_command_options() {
       ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")            //
       ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")              //
       ("digital-output", text("N"),
-       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")  //
-      ("digital-input", text("N"), "signals that it has measured")                           //
-      ("tool", text("N"), "tool of the controller")                                          //
-      ("base", text("N"), "base or user frame of the controller")                            //
-      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")  //
+       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")         //
+      ("digital-input", text("N"), "signals that it has measured")                                  //
+      ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")  //
+      ("base", text("N"), "base or user frame of the controller")                                   //
+      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")         //
       ("controller", text("FILE"),
        "YAML: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
       ("group", text("NAME"), "planning group of an SRDF (manipulator)")                          //
@@ -79,7 +79,7 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   result.digital_input = text_of(values, "digital-input");
   result.name = text_of(values, "name");
   result.group = text_of(values, "group");
-  result.tool = whole_number(values, "tool", 0, 255);
+  result.tool = text_of(values, "tool");
   result.base = whole_number(values, "base", 0, 255);
   if (const std::string file = text_of(values, "controller"); !file.empty())
     result.controller = parse_controller_settings(read_text(file, settings_limit), file);

@@ -156,8 +156,10 @@ Program read_rapid(const std::string& module) {
     } else if (line == "PROC CalMain()") inside = true;
     else if (line == "ENDPROC") inside = false;
     else if (!inside) bad(line);
-    else if (match(line, R"(MoveAbsJ (\w+)\\NoEOffs,v1000,fine,tool0;)", m)) handshake.move(points.at(m[1].str()));
-    else if (match(line, "WaitTime " + number + ";", m)) handshake.timer();
+    else if (match(line, R"(MoveAbsJ (\w+)\\NoEOffs,v1000,fine,(\w+);)", m)) {
+      handshake.move(points.at(m[1].str()));
+      program.tools.insert(m[2].str());
+    } else if (match(line, "WaitTime " + number + ";", m)) handshake.timer();
     else if (match(line, R"(SetDO \w+,1;)", m)) handshake.up();
     else if (match(line, R"(SetDO \w+,0;)", m)) handshake.down();
     else if (match(line, R"(WaitDI \w+,1;)", m)) handshake.wait_high();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct Program {
   std::vector<std::size_t> measured;       ///< moves after which the instrument is told to measure
   std::vector<std::size_t> stops;          ///< moves after which a person is waited for (0: before the first)
   std::vector<std::string> comments, messages;
+  std::set<std::string> tools;  ///< named by moves, where the language names them
 };
 
 Program read_krl(const std::string& source, const std::string& data, const std::string& name);

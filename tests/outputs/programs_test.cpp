@@ -232,6 +232,21 @@ TEST(RobotPrograms, ExternalAxesStandWhereTheControllerHasThem) {
   }
 }
 
+TEST(RobotPrograms, MoveWithTheToolThatIsNamed) {
+  ExportOptions options;
+  options.coupling = 0;
+  const PoseFormat& rapid = find_pose_format("abb-rapid");
+  const auto tools = [&] {
+    return readers::read_rapid(rapid.write(random_sequence(6, 3, 1), options).files[0].bytes).tools;
+  };
+  const auto notes = [&] { return testing::PrintToString(rapid.write(random_sequence(6, 3, 1), options).notes); };
+  EXPECT_THAT(tools(), testing::ElementsAre("tool0"));
+  EXPECT_THAT(notes(), HasSubstr("tool0, which weighs nothing"));
+  options.tool = "tReflectors";
+  EXPECT_THAT(tools(), testing::ElementsAre("tReflectors"));
+  EXPECT_THAT(notes(), HasSubstr("tooldata tReflectors must exist"));
+}
+
 TEST(RobotPrograms, TakeSignsAndZerosFromTheSettings) {
   const PoseSequence sequence = random_sequence(6, 5, 6);
   ExportOptions options;
@@ -287,6 +302,10 @@ TEST(RobotPrograms, RefuseWhatWouldBeWrong) {
            {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.digital_input = "8"; },
             "--digital-input '8'; a whole number from 0 to 7"},
            {"staubli-val3", "", [](PoseSequence&, ExportOptions&o) { o.digital_input = "2"; }, "the name of a signal"},
+           {"kuka-krl", "", [](PoseSequence&, ExportOptions&o) { o.tool = "tCal"; },
+            "--tool 'tCal'; a whole number from 0 to 255"},
+           {"abb-rapid", "", [](PoseSequence&, ExportOptions&o) { o.tool = "5", o.coupling = 0; },
+            "--tool '5'; the name of a tool"},
            {"kuka-krl", "", [](PoseSequence&, ExportOptions&o) { o.wait = 1, o.digital_input = "2"; },
             "--wait stands beside --digital-input"},
            {"kuka-krl", "",

@@ -20,7 +20,8 @@ struct ExportOptions {
   std::optional<double> wait;      ///< s for a measurement, instead of an input
   std::optional<double> coupling;  ///< as in ControllerSettings, which it overrules
   std::string digital_output, digital_input, name, group;
-  std::optional<int> tool, base;
+  std::string tool;  ///< number, or name of the tooldata for abb-rapid
+  std::optional<int> base;
   ControllerSettings controller;
 };
 

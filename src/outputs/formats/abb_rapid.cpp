@@ -50,6 +50,7 @@ Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options)
   RobotProgram program = make_program(sequence, options, rapid_rules);
   const std::string output = signal_name(options.digital_output, "--digital-output", "doMeasure");
   const std::string input = signal_name(options.digital_input, "--digital-input", "diMeasured");
+  const std::string tool = tool_name(options, "tool0");
   std::string text = fmt::format("MODULE {}\n  ! {}\n", program.name, export_mark);
   for (const ProgramPoint& point : program.points)
     text += fmt::format("  CONST jointtarget {}:=[[{}],[{}]];\n", point.name, values(program, point, 0),
@@ -58,7 +59,7 @@ Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options)
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) text += "    ! " + program_text(step.comment, 200) + "\n";
     if (step.kind == ProgramStep::Kind::move)
-      text += fmt::format("    MoveAbsJ {}\\NoEOffs,v1000,fine,tool0;\n", program.points[step.point].name);
+      text += fmt::format("    MoveAbsJ {}\\NoEOffs,v1000,fine,{};\n", program.points[step.point].name, tool);
     if (step.kind == ProgramStep::Kind::measure) text += rapid_measure_lines(program, output, input);
     for (const std::string& message : step.messages)
       text += fmt::format("    TPWrite \"{}\";\n", program_text(message, 70));
@@ -68,6 +69,9 @@ Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options)
   program.notes.push_back(
       program.wait ? fmt::format("signal {} must exist in the controller's I/O configuration", output)
                    : fmt::format("signals {} and {} must exist in the controller's I/O configuration", output, input));
+  program.notes.push_back(options.tool.empty() ? "the robot moves with tool0, which weighs nothing: --tool NAME is the "
+                                                 "tooldata that has the load it carries"
+                                               : "tooldata " + tool + " must exist on the controller");
   return one_file(program.name + ".mod", with_crlf(text), program.notes);
 }
 
@@ -79,7 +83,7 @@ PoseFormat abb_rapid() {
           "ABB IRC5, OmniCore",
           ".mod",
           "six joints (external axes with axes); --coupling",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "coupling", "controller"},
+          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling", "controller"},
           true,
           false,
           write_rapid,

@@ -41,7 +41,7 @@ std::vector<std::string> main_lines(const RobotProgram& program, const ExportOpt
   const int input = signal_number(options.digital_input, "--digital-input", 1, 32767, 1);
   std::vector<std::string> lines = {
       fmt::format("  !{} ;", export_mark), fmt::format("  UFRAME_NUM={} ;", options.base.value_or(0)),
-      fmt::format("  UTOOL_NUM={} ;", options.tool.value_or(1)), fmt::format("  DO[{}]=OFF ;", output)};
+      fmt::format("  UTOOL_NUM={} ;", tool_number(options, 1)), fmt::format("  DO[{}]=OFF ;", output)};
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) lines.push_back("  !" + program_text(step.comment, longest_remark) + " ;");
     if (step.kind == ProgramStep::Kind::move)
@@ -82,7 +82,7 @@ Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
   for (std::size_t i = 0; i < lines.size(); ++i) text += fmt::format("{:>4}:{}\n", i + 1, lines[i]);
   text += "/POS\n";
   for (std::size_t k = 0; k < program.points.size(); ++k)
-    text += position(program, k, options.base.value_or(0), options.tool.value_or(1));
+    text += position(program, k, options.base.value_or(0), tool_number(options, 1));
   if (program.name.size() > 8) program.notes.push_back("controllers before R-30iA take names of 8 characters");
   return one_file(program.name + ".LS", with_crlf(text + "/END\n"), program.notes);
 }

@@ -71,7 +71,7 @@ Exported write_krl(const PoseSequence& sequence, const ExportOptions& options) {
   const Signals signals{signal_number(options.digital_output, "--digital-output", 1, 8192, 1),
                         signal_number(options.digital_input, "--digital-input", 1, 8192, 1)};
   return {
-      {{program.name + ".src", with_crlf(source(program, signals, options.tool.value_or(1), options.base.value_or(0)))},
+      {{program.name + ".src", with_crlf(source(program, signals, tool_number(options, 1), options.base.value_or(0)))},
        {program.name + ".dat", with_crlf(data(program))}},
       program.notes};
 }

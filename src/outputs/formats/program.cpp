@@ -175,6 +175,18 @@ std::string signal_name(const std::string& text, const char* option, const char*
   return text;
 }
 
+int tool_number(const ExportOptions& options, int otherwise) {
+  return signal_number(options.tool, "--tool", 0, 255, otherwise);
+}
+
+std::string tool_name(const ExportOptions& options, const char* otherwise) {
+  if (options.tool.empty()) return otherwise;
+  if (!is_identifier(options.tool) || options.tool.size() > 32)
+    throw InputError({}, fmt::format("--tool {}", in_quotes(options.tool)),
+                     "the name of a tool of the controller is expected: a letter, then letters, digits and _");
+  return options.tool;
+}
+
 PoseSequence to_measure(const PoseSequence& sequence) {
   PoseSequence result = sequence;
   std::erase_if(result.poses, [](const SequencePose& pose) { return pose.measured; });

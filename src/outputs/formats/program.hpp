@@ -60,6 +60,10 @@ RobotProgram make_program(const PoseSequence& sequence, const ExportOptions& opt
 int signal_number(const std::string& text, const char* option, int first, int last, int otherwise);
 /// A name of a digital signal.
 std::string signal_name(const std::string& text, const char* option, const char* otherwise);
+/// The number of the tool whose load data the controller uses.
+int tool_number(const ExportOptions& options, int otherwise);
+/// The name of a tool's data, for controllers that call tools by names.
+std::string tool_name(const ExportOptions& options, const char* otherwise);
 /// Without poses that are measured already, and without zeros that are negative.
 PoseSequence to_measure(const PoseSequence& sequence);
 /// What a list does not hold: stations, load cases.

@@ -73,7 +73,7 @@ Exported write_inform(const PoseSequence& sequence, const ExportOptions& options
   RobotProgram program = make_program(sequence, options, inform_rules);
   std::string text =
       fmt::format("/JOB\n//NAME {}\n//POS\n///NPOS {},0,0,0,0,0\n///TOOL {}\n///POSTYPE PULSE\n///PULSE\n",
-                  program.name, program.points.size(), options.tool.value_or(0));
+                  program.name, program.points.size(), tool_number(options, 0));
   for (std::size_t k = 0; k < program.points.size(); ++k)
     text += fmt::format("C{:05}={}\n", k, pulses(program, program.points[k], options.controller.pulses_per_degree));
   text += "//INST\n///DATE 2026/01/01 12:00\n///COMM CALIBRATION POSES\n///ATTR SC,RW\n///GROUP1 RB1\nNOP\n";

@@ -647,6 +647,7 @@ def export(
     coupling: Optional[float] = None,
     controller: Optional[_Path] = None,
     group: Optional[str] = None,
+    station: Optional[str] = None,
 ) -> Exported: ...
 def report(
     problem: Problem,

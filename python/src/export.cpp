@@ -45,7 +45,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
                   bool unchecked, const py::object& name, const py::object& speed, const py::object& settle,
                   const py::object& wait, const py::object& digital_output, const py::object& digital_input,
                   const py::object& tool, const py::object& base, const py::object& coupling,
-                  const py::object& controller, const py::object& group) {
+                  const py::object& controller, const py::object& group, const py::object& station) {
   const PoseFormat& format = find_pose_format(to);
   std::vector<std::string> given;
   const std::pair<const char*, const py::object&> options[] = {{"name", name},
@@ -58,7 +58,8 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
                                                                {"base", base},
                                                                {"coupling", coupling},
                                                                {"controller", controller},
-                                                               {"group", group}};
+                                                               {"group", group},
+                                                               {"station", station}};
   for (const auto& [option, value] : options)
     if (!value.is_none()) given.emplace_back(option);
   ExportOptions wanted;
@@ -72,6 +73,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
   wanted.digital_input = text_or_none(digital_input);
   wanted.name = text_or_none(name);
   wanted.group = text_or_none(group);
+  wanted.station = text_or_none(station);
   if (!controller.is_none())
     wanted.controller =
         parse_controller_settings(read_text(controller.cast<fs::path>(), largest_settings), text_or_none(controller));
@@ -120,7 +122,7 @@ void bind_export(py::module_& m) {
         py::arg("unchecked") = false, py::arg("name") = none, py::arg("speed") = none, py::arg("settle") = none,
         py::arg("wait") = none, py::arg("digital_output") = none, py::arg("digital_input") = none,
         py::arg("tool") = none, py::arg("base") = none, py::arg("coupling") = none, py::arg("controller") = none,
-        py::arg("group") = none,
+        py::arg("group") = none, py::arg("station") = none,
         R"(A Plan, a Route or a file of either as a robot program or a list of a calibration tool (docs/export.md).
 
 Programs are checked against the robot of `problem`, unless unchecked. The rest is as the command's options: speed in

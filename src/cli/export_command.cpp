@@ -41,6 +41,7 @@ po::options_description export_command_options() {
       ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")         //
       ("controller", text("FILE"),
        "YAML: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
+      ("station", text("NAME"), "whose targets a list of targets has")                            //
       ("group", text("NAME"), "planning group of an SRDF (manipulator)")                          //
       ("problem", text("FILE"),
        "problem file of the robot that a program is checked against (the one the plan names)")  //
@@ -62,7 +63,7 @@ std::optional<double> number(const po::variables_map& values, const std::string&
 std::vector<std::string> given_options(const po::variables_map& values) {
   std::vector<std::string> given;
   for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base",
-                             "coupling", "controller", "group"})
+                             "coupling", "controller", "group", "station"})
     if (values.count(option) > 0) given.emplace_back(option);
   return given;
 }
@@ -79,6 +80,7 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   result.digital_input = text_of(values, "digital-input");
   result.name = text_of(values, "name");
   result.group = text_of(values, "group");
+  result.station = text_of(values, "station");
   result.tool = text_of(values, "tool");
   result.base = whole_number(values, "base", 0, 255);
   if (const std::string file = text_of(values, "controller"); !file.empty())

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <numbers>
 #include <regex>
 #include <sstream>
@@ -203,4 +204,37 @@ TEST(PoseLists, ReadersTakeWhatTheToolsOwnFilesLookLike) {
 }
 
 }  // namespace
+
+TEST(TargetLists, AreOfOneStationAndOfTargetsThatItSees) {
+  PoseSequence sequence = random_sequence(6, 2, 1);
+  const auto target = [](const char* name, const char* station, double x, bool hidden) {
+    return SequenceTarget{name, station, Eigen::Vector3d(x, -0.0, 0.0012344), hidden};
+  };
+  sequence.poses[0].targets = {target("ball 1", "left", 1, false), target("ball_1", "left", 2, false),
+                               target("ball 1", "right", 3, true)};
+  sequence.poses[1].targets = {target("ball 1", "left", 4, true), target("ball 1", "right", 5, false)};
+  const auto text = [&](const char* format, const char* station) {
+    ExportOptions options;
+    options.station = station;
+    return export_poses(find_pose_format(format), sequence, options).files.at(0).bytes;
+  };
+  EXPECT_EQ(text("powerinspect", "left"),
+            "P1_ball_1\t1000.000\t0.000\t1.234\r\nP1_ball_1_2\t2000.000\t0.000\t1.234\r\n");
+  EXPECT_THAT(text("spatial-analyzer", "right"), testing::EndsWith("\r\nright,P2_ball_1,5000.000,0.000,1.234\r\n"));
+  EXPECT_EQ(std::ranges::count(text("targets-csv", ""), '\n'), 1 + 3);
+  const auto refusal_of = [&](const char* format, const char* station) -> std::string {
+    try {
+      text(format, station);
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  EXPECT_THAT(refusal_of("spatial-analyzer", ""),
+              HasSubstr("the plan has 2 stations, a list for spatial-analyzer one"));
+  EXPECT_THAT(refusal_of("targets-csv", "top"), HasSubstr("--station 'top'; allowed: left, right"));
+  for (SequencePose& pose : sequence.poses) pose.targets.clear();
+  EXPECT_THAT(refusal_of("targets-csv", ""), HasSubstr("no pose has a target whose position is predicted"));
+}
+
 }  // namespace posewright

@@ -206,7 +206,7 @@ TEST(PoseLists, OfJointsRefusePlatformsAndPairsOfConfigurations) {
     EXPECT_THROW(export_poses(format, platforms, options), CannotDo) << format.name;
     EXPECT_THROW(export_poses(format, pairs, options), CannotDo) << format.name;
   }
-  EXPECT_EQ(open, 3) << "csv, json, hexapod-gcs";
+  EXPECT_EQ(open, 6) << "csv, json, hexapod-gcs, lists of targets";
 }
 
 TEST(RobotPrograms, ExternalAxesStandWhereTheControllerHasThem) {

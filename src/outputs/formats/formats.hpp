@@ -28,5 +28,8 @@ PoseFormat joint_trajectory();
 PoseFormat srdf();
 PoseFormat plain_csv();
 PoseFormat plain_json();
+PoseFormat targets_csv();
+PoseFormat spatial_analyzer();
+PoseFormat powerinspect();
 
 }  // namespace posewright::formats

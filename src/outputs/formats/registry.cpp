@@ -32,7 +32,10 @@ const std::vector<PoseFormat>& pose_formats() {
                                                 lt_irb120(),
                                                 mukca(),
                                                 plain_csv(),
-                                                plain_json()};
+                                                plain_json(),
+                                                targets_csv(),
+                                                spatial_analyzer(),
+                                                powerinspect()};
   return table;
 }
 

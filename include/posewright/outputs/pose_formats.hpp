@@ -20,7 +20,7 @@ struct ExportOptions {
   std::optional<double> wait;      ///< s for a measurement, instead of an input
   std::optional<double> coupling;  ///< as in ControllerSettings, which it overrules
   std::string digital_output, digital_input, name, group;
-  std::string tool;  ///< number, or name of the tooldata for abb-rapid
+  std::string tool;     ///< number, or name of the tooldata for abb-rapid
   std::string station;  ///< whose targets are listed; empty: of the only one, or of all
   std::optional<int> base;
   ControllerSettings controller;

@@ -132,7 +132,10 @@ WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const s
   if (const Value* sight = section.find("line_of_sight")) workspace.line_of_sight = read_line_of_sight(*sight);
   if (const Value* stations = section.find("stations")) workspace.stations = read_station_choice(*stations);
   if (const Value* motion = section.find("motion")) workspace.motion = read_motion(*motion);
-  if (const Value* samplers = section.find("samplers")) workspace.samplers = read_samplers(Section(*samplers));
+  if (const Value* samplers = section.find("samplers")) {
+    workspace.samplers = read_samplers(Section(*samplers));
+    workspace.samplers_line = samplers->line();
+  }
   if (const Value* sigmas = section.find("uncalibrated"))
     workspace.uncalibrated = sigmas->number(Quantity::number, Sign::not_negative);
   return workspace;

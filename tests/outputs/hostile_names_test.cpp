@@ -5,6 +5,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <regex>
+#include <set>
 #include <sstream>
 
 #include "posewright/outputs/pose_formats.hpp"
@@ -55,15 +57,15 @@ const std::vector<std::string> hostile = {"A\nHALT",
 
 /// Two poses at two stations, under two loads, with reference targets; every label is `label` and a number.
 PoseSequence labelled(const std::string& label) {
-  json plan = {{"schema", "posewright/plan/1"}};
+  json written = {{"schema", "posewright/plan/1"}};
   for (const int id : {1, 2}) {
     json pose = {{"id", id},
                  {"names", {"joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6"}},
                  {"units", {"rad", "rad", "rad", "rad", "rad", "rad"}},
                  {"configuration", {0.1 * id, -0.2, 0.3, -0.4, 0.5, -0.6}}};
-    plan["poses"].push_back(pose);
+    written["poses"].push_back(pose);
   }
-  PoseSequence sequence = parse_sequence(plan.dump(), "p.json");
+  PoseSequence sequence = parse_sequence(written.dump(), "p.json");
   for (SequencePose& pose : sequence.poses) {
     // Reading refuses control characters; writers do not rely on it.
     pose.station = label + std::to_string(pose.id);
@@ -144,6 +146,31 @@ TEST(HostileNames, ComeBackFromListsAsTheyWere) {
       if (column == table.names.end()) continue;
       const PoseCell& cell = table.rows[0].cells[std::size_t(column - table.names.begin())];
       EXPECT_EQ(std::get<std::string>(cell), sequence.poses[0].station) << format.name;
+    }
+  }
+}
+
+TEST(HostileNames, OfTargetsAreOneFieldOfTheirList) {
+  const std::regex comment("// [ -~]*"), point("[\\w-]+,P[12]_[\\w-]*(,-?[0-9]+\\.[0-9]{3}){3}"),
+      guided("P[12]_[\\w-]*(\t-?[0-9]+\\.[0-9]{3}){3}");
+  for (const std::string& label : hostile) {
+    PoseSequence sequence = labelled(label);
+    for (SequencePose& pose : sequence.poses)
+      pose.targets = {{label, label, {1, 2, 3}, false}, {label + "2", label, {1, 2, 4}, false}};
+    for (const char* format : {"spatial-analyzer", "powerinspect"}) {
+      std::set<std::string> names;
+      int points = 0;
+      for (std::string line : lines_of(export_poses(find_pose_format(format), sequence, {}).files.front().bytes)) {
+        ASSERT_EQ(line.back(), '\r');
+        line.pop_back();
+        if (std::regex_match(line, comment)) continue;
+        ++points;
+        EXPECT_TRUE(std::regex_match(line, std::string(format) == "powerinspect" ? guided : point)) << line;
+        names.insert(line.substr(
+            0, line.find_first_of(",\t", line.find("P1_") != line.npos ? line.find("P1_") : line.find("P2_"))));
+      }
+      EXPECT_EQ(points, 4);
+      EXPECT_EQ(names.size(), 4U) << label;
     }
   }
 }

@@ -65,6 +65,7 @@ struct WorkspaceSpec {
   std::optional<StationChoiceSpec> stations;  ///< to choose among, for the command `stations`
   MotionSpec motion;
   std::vector<std::pair<SamplerKind, double>> samplers;  ///< shares of the candidates; empty: chosen by the constraints
+  int samplers_line = 0;
   double uncalibrated = 0.0;  ///< margins grow by so many σ of what the tolerances let the robot miss; 0: they don't
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "posewright/model/link_geometry.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -16,6 +18,8 @@ std::vector<PlacedShape> read_urdf_shapes(const ObstacleFileSpec& spec, const Pr
       shapes.push_back({link.name, std::move(shape.shape), shape.X_FrameShape, link.line});
   return shapes;
 }
+
+constexpr std::uintmax_t largest_world = 200'000'000;  // bytes
 
 /// Readers by ending; a new kind of file is one row.
 struct ObstacleReader {
@@ -34,6 +38,11 @@ bool is_within(const std::string& name, const std::string& except) {
   return name == except || name.starts_with(except + "::");
 }
 
+/// Whether a world names the model, though it may have been left out before its shapes were looked for.
+bool names_model(const std::filesystem::path& world, const std::string& name) {
+  return read_xml_text(world, largest_world).find(name) != std::string::npos;
+}
+
 }  // namespace
 
 std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const Problem& problem) {
@@ -47,9 +56,10 @@ std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const 
   if (!std::filesystem::is_regular_file(spec.file, code))
     throw InputError(place, "'" + spec.file.string() + "' is not there", "a file of obstacles is needed");
   std::vector<PlacedShape> shapes = reader->read(spec, problem);
+  const bool is_world = ending == ".sdf" || ending == ".world";
   for (const Located<std::string>& except : spec.except)
     if (std::erase_if(shapes, [&](const PlacedShape& s) { return is_within(s.name, except.value); }) == 0 &&
-        ending != ".sdf" && ending != ".world") {  // a world may name models that are not there
+        !(is_world && names_model(spec.file, except.value))) {
       std::string names;
       for (const PlacedShape& s : shapes) names += (names.empty() ? "" : ", ") + s.name;
       throw InputError(problem.at(except.line), "'" + except.value + "' is not in " + spec.file.filename().string(),

@@ -134,6 +134,8 @@ void expect_table(const PlacedShape& table) {
 TEST(ObstacleFiles, FramesAndLinksOfAnSdfWorldAreWhereTheyAreByHand) {
   FilesOfObstacles files;
   const std::vector<PlacedShape> shapes = files.shapes("cell.sdf", as_sdf, ", except: [robot]");
+  EXPECT_THAT(files.refusal("cell.sdf", as_sdf, ", except: [robto]"),
+              HasSubstr("'robto' is not in cell.sdf; allowed: "));
   expect_table(named(shapes, "table"));
   const PlacedShape& near = named(shapes, "fence::near");
   EXPECT_DOUBLE_EQ(std::get<CylinderShape>(near.shape).radius, 0.05);

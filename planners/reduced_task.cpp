@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 
 namespace posewright {
 namespace {
@@ -34,11 +35,28 @@ std::vector<int> promising(const DesignTask& task) {
   return kept;
 }
 
+/// At a minimum distance the promising ones may lie in a few places that cannot hold a plan: the best ones that are
+/// apart from each other, some to choose from.
+void add_apart(const DesignTask& task, std::vector<int>& kept) {
+  const std::vector<double>& sensitivity = task.approximate->sensitivity;
+  std::vector<int> order(sensitivity.size()), apart;
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return sensitivity[std::size_t(a)] > sensitivity[std::size_t(b)]; });
+  for (const int i : order) {
+    if (int(apart.size()) >= 3 * task.poses) break;
+    if (std::none_of(apart.begin(), apart.end(), [&](int j) { return task.candidates.spacing->too_near(i, j); }))
+      apart.push_back(i);
+  }
+  kept.insert(kept.end(), apart.begin(), apart.end());
+}
+
 }  // namespace
 
 ReducedTask::ReducedTask(const DesignTask& task, const std::vector<int>& also) : task_(task) {
   if (task.approximate == nullptr || task.approximate->sensitivity.size() != task.candidates.blocks->count()) return;
   std::vector<int> kept = promising(task);
+  if (task.candidates.spacing != nullptr) add_apart(task, kept);
   if (2 * kept.size() > task.candidates.blocks->count()) return;
   kept.insert(kept.end(), also.begin(), also.end());
   std::sort(kept.begin(), kept.end());

@@ -1,17 +1,12 @@
 #include "posewright/study/space.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <numbers>
 
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
 namespace {
-
-// Two poses that differ by less than this share of every range count as one.
-constexpr double same_pose = 0.01;
 
 class StudyProbe : public ConfigurationSpace::Probe {
  public:
@@ -150,30 +145,6 @@ std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePa
                                                              const Configurations& measured, const Spacing& spacing,
                                                              Eigen::MatrixXd R) {
   return std::make_unique<StudySpace>(std::move(parts), candidates, measured, spacing, std::move(R));
-}
-
-Spacing spacing_of(const std::vector<Coordinate>& coordinates,
-                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats) {
-  Spacing spacing;
-  // A limited number of repeats is kept for candidates; poses between them are then not repeated at all.
-  if (!distance && repeats.most == Repeats::any_number) return spacing;
-  const auto d = Eigen::Index(coordinates.size());
-  spacing.unit.resize(d);
-  spacing.period = Eigen::VectorXd::Zero(d);
-  for (Eigen::Index k = 0; k < d; ++k) {
-    const Coordinate& c = coordinates[std::size_t(k)];
-    if (c.periodic) spacing.period[k] = 2 * std::numbers::pi;
-    if (c.discrete()) {
-      // Another load case or station is another pose, however small the step between the numbers.
-      spacing.unit[k] = 1e-12;
-    } else if (distance) {
-      const double asked = c.unit == "m" ? distance->length : distance->angle;
-      spacing.unit[k] = asked > 0 ? asked : std::numeric_limits<double>::infinity();
-    } else {
-      spacing.unit[k] = c.upper > c.lower ? same_pose * (c.upper - c.lower) : std::numeric_limits<double>::infinity();
-    }
-  }
-  return spacing;
 }
 
 }  // namespace posewright

@@ -10,6 +10,7 @@
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
 #include "posewright/study/space.hpp"
+#include "posewright/study/spacing.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 
@@ -112,6 +113,17 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
   fill_prior(study, variant, settings);
 }
 
+void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings) {
+  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
+  study.spacing = spacing_of(coordinates, stated, settings.repeats);
+  study.has_minimum_distance = stated.has_value();
+  // Whoever lists candidates chose how near they are to each other.
+  if (stated || settings.repeats.most > 1 || !study.list.empty()) return;
+  Spacing usual = usual_spacing(coordinates, study.configurations, settings.poses);
+  study.has_minimum_distance = study.usual_distance = usual.unit.size() > 0;
+  if (study.usual_distance) study.spacing = std::move(usual);
+}
+
 }  // namespace
 
 void append(Configurations& list, std::span<const double> q) {
@@ -159,8 +171,7 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
 
   if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
     study.notes.push_back(std::move(warning));
-  study.spacing = spacing_of(coordinates, problem.design.minimum_distance, settings.repeats);
-  study.has_minimum_distance = problem.design.minimum_distance.has_value();
+  keep_apart(study, problem.design.minimum_distance, settings);
   keep_away_from_measured(study, settings.repeats);
   if (!settings.truth.value.empty()) study.discrepancy = make_discrepancy(problem, study, settings);
   return study;

@@ -12,6 +12,7 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/reliance.hpp"
+#include "posewright/study/spacing.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 
@@ -32,6 +33,11 @@ class PlanSearch {
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
     study_.first().everything_counts = options.everything_counts;
+    if (study_.usual_distance)
+      study_.notes.push_back(
+          fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
+                      "minimum_distance changes it).",
+                      distance_text(study_.first().workspace->coordinates(), study_.spacing)));
     if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
       study_.notes.push_back(std::move(note));
   }

@@ -162,7 +162,7 @@ TEST(CommandLine, FilesOfOthersAreNotReplacedUnlessForced) {
 TEST(CommandLine, InterruptWritesTheBestPlanSoFar) {
   const TemporaryFolder folder;
   const ProgramRun run =
-      run_program(folder.path(), {"plan", telescope, "--candidates", "2000", "--restarts", "1000000"}, 4.0, 2);
+      run_program(folder.path(), {"plan", telescope, "--candidates", "2000", "--restarts", "1000000"}, 6.0, 2);
   // As `timeout` does: one to the process and one to its group are one wish.
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_THAT(run.out, HasSubstr("search interrupted: best plan so far"));

@@ -155,6 +155,63 @@ TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
   EXPECT_EQ(plan.certificate.repeats, "3");
 }
 
+TEST(Design, PosesOfDrawnCandidatesStayApartUnlessTheyMayRepeatOrSomebodySaysOtherwise) {
+  const TemporaryFolder folder;
+  folder.write("planar.urdf", planar_urdf(2));
+  // Few places carry all information: a platform that slides (shares of its ranges) and an arm that turns (rad).
+  for (const bool arm : {false, true}) {
+    Problem problem = arm ? read_problem(folder.write("p.yaml", planar_problem(2, "{poses: 20, candidates: 3000}")))
+                          : example("delta/problem.yaml");
+    const auto coordinates = pose_coordinates(problem);
+    // In the coordinate that tells them apart best, of the two poses that are most alike.
+    const auto nearest = [&](const Plan& plan) {
+      const auto poses = configurations_of(problem, plan);
+      double least = 1e9;
+      for (std::size_t i = 0; i < poses.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          double most = 0;
+          for (std::size_t k = 0; k < poses[i].size(); ++k)
+            most = std::max(
+                most, std::abs(poses[i][k] - poses[j][k]) / (arm ? 1.0 : coordinates[k].upper - coordinates[k].lower));
+          least = std::min(least, most);
+        }
+      return least;
+    };
+    const auto told = [](const Plan& plan) {
+      const auto& notes = plan.statistics.notes;
+      return std::any_of(notes.begin(), notes.end(),
+                         [](const auto& note) { return note.starts_with("Poses are kept apart"); });
+    };
+    const Plan plan = plan_problem(problem, {}, Monitor{});
+    const double apart = arm ? 5 * std::numbers::pi / 180 : 0.02;
+    EXPECT_TRUE(told(plan)) << arm;
+    EXPECT_GE(nearest(plan), apart - 1e-9) << arm;
+    EXPECT_LE(plan.log_det, plan.certificate.bound) << arm;
+
+    problem.design.minimum_distance = DesignSpec::MinimumDistance{1e-4, 1e-5};
+    const Plan stated = plan_problem(problem, {}, Monitor{});
+    EXPECT_FALSE(told(stated)) << arm;
+    EXPECT_LT(nearest(stated), apart) << arm << ": nothing kept them apart";
+    problem.design.minimum_distance.reset();
+    problem.design.repeats = Repeats{Repeats::any_number};
+    EXPECT_FALSE(told(plan_problem(problem, {}, Monitor{}))) << arm;
+  }
+}
+
+TEST(Design, KeepingPosesApartNeverMakesAPlanFail) {
+  // Nearly all candidates are taken: the default distance yields, a stated one does not.
+  Problem problem = example("five_bar/problem.yaml");
+  PlanOptions options = quick(45);
+  options.poses = 44;
+  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 44U);
+  // The promising candidates lie in a few places that cannot hold twelve at a distance; others can.
+  options = quick(3000);
+  options.poses = 12;
+  options.method = "auto";
+  problem.design.minimum_distance = DesignSpec::MinimumDistance{0.0, 0.02};
+  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 12U);
+}
+
 TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));

@@ -7,7 +7,6 @@
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/unmodelled_effect.hpp"
 #include "posewright/planning/configuration_space.hpp"
-#include "posewright/problem/design_specs.hpp"
 #include "posewright/workspace/candidates.hpp"
 #include "posewright/workspace/workspace.hpp"
 
@@ -29,10 +28,5 @@ std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePa
                                                              const Configurations& candidates,
                                                              const Configurations& measured, const Spacing& spacing,
                                                              Eigen::MatrixXd R);
-
-/// What the design's minimum distance and repeat policy ask of poses that are not candidates (see
-/// ConfigurationSpace::spacing). Where no distance is given but poses may not repeat: one hundredth of a range.
-Spacing spacing_of(const std::vector<Coordinate>& coordinates,
-                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats);
 
 }  // namespace posewright

@@ -50,6 +50,7 @@ struct Study {
   Spacing spacing;           ///< for configurations that are not candidates
   Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
   bool has_minimum_distance = false;
+  bool usual_distance = false;                     ///< nobody stated it
   std::shared_ptr<const Discrepancy> discrepancy;  ///< of the first variant; null: no truth is named
 
   Variant& first() { return variants.front(); }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/criterion/spacing.hpp"
+#include "posewright/model/identification_model.hpp"
+#include "posewright/problem/design_specs.hpp"
+#include "posewright/support/repeats.hpp"
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+
+/// What a stated minimum distance and the repeat policy ask of poses that are not candidates (see
+/// ConfigurationSpace::spacing). Where no distance is stated but poses may not repeat: one hundredth of a range.
+Spacing spacing_of(const std::vector<Coordinate>& coordinates,
+                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats);
+
+/// How far the poses of a plan stay apart where they may not repeat and nobody states a distance: 5 deg or a fiftieth
+/// of a range, whichever is less, in at least one coordinate. Halved until four times the wanted poses fit among the
+/// candidates (or half of those that the plan does not take), so that no plan fails by it; without units if even the
+/// candidates' own distances are less.
+/// @param poses  wanted; 0: not known yet
+Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates, int poses);
+
+/// The distances for people: "5 deg", "2.5 to 5 deg or 12 mm".
+std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);
+
+}  // namespace posewright

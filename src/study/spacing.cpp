@@ -1,0 +1,90 @@
+#include "posewright/study/spacing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace posewright {
+namespace {
+
+// Two poses that differ by less than this share of every range count as one.
+constexpr double same_pose = 0.01;
+// Nearer ones look like a slip to whoever drives them: of an angle, and as a share of a range.
+constexpr double usual_angle = 5 * std::numbers::pi / 180, usual_share = 0.02;
+constexpr int most_halvings = 6;
+
+/// Units by coordinate; where a distance is 0, the coordinate does not make a pose another one.
+template <class Distance>
+Spacing spacing_by(const std::vector<Coordinate>& coordinates, const Distance& distance) {
+  Spacing spacing;
+  const auto d = Eigen::Index(coordinates.size());
+  spacing.unit.resize(d);
+  spacing.period = Eigen::VectorXd::Zero(d);
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const Coordinate& c = coordinates[std::size_t(k)];
+    if (c.periodic) spacing.period[k] = 2 * std::numbers::pi;
+    // Another load case or station is another pose, however small the step between the numbers.
+    const double unit = c.discrete() ? 1e-12 : distance(c);
+    spacing.unit[k] = unit > 0 ? unit : std::numeric_limits<double>::infinity();
+  }
+  return spacing;
+}
+
+/// Whether so many candidates, taken as they come, keep the distance from each other.
+bool holds(const Spacing& spacing, const Configurations& candidates, std::size_t wanted) {
+  std::vector<std::size_t> taken;
+  for (std::size_t i = 0; i < candidates.count() && taken.size() < wanted; ++i)
+    if (std::none_of(taken.begin(), taken.end(),
+                     [&](std::size_t j) { return spacing.too_near(candidates[i], candidates[j]); }))
+      taken.push_back(i);
+  return taken.size() >= wanted;
+}
+
+}  // namespace
+
+Spacing spacing_of(const std::vector<Coordinate>& coordinates,
+                   const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats) {
+  Spacing spacing;
+  // A limited number of repeats is kept for candidates; poses between them are then not repeated at all.
+  if (!distance && repeats.most == Repeats::any_number) return spacing;
+  return spacing_by(coordinates, [&](const Coordinate& c) {
+    if (!distance) return same_pose * (c.upper - c.lower);
+    return c.unit == "m" ? distance->length : distance->angle;
+  });
+}
+
+Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates, int poses) {
+  const std::size_t count = candidates.count(), taken = std::size_t(std::max(poses, 0));
+  if (count <= taken) return {};
+  const std::size_t half = (count + taken) / 2, wanted = poses > 0 ? std::min(4 * taken, half) : half;
+  Spacing spacing = spacing_by(coordinates, [](const Coordinate& c) {
+    const double share = usual_share * (c.upper - c.lower);
+    return c.unit == "m" ? share : std::min(usual_angle, share);
+  });
+  for (int halvings = 0; halvings <= most_halvings; ++halvings, spacing.unit /= 2)
+    if (holds(spacing, candidates, wanted)) return spacing;
+  return {};
+}
+
+std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing) {
+  std::string text;
+  for (const char* unit : {"rad", "m"}) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+      const double distance = spacing.unit[Eigen::Index(k)];
+      if (coordinates[k].unit != unit || coordinates[k].discrete() || std::isinf(distance)) continue;
+      least = std::min(least, distance);
+      most = std::max(most, distance);
+    }
+    if (most == 0) continue;
+    const bool angle = unit == std::string("rad");
+    const double shown = angle ? 180 / std::numbers::pi : 1000;
+    text += (text.empty() ? "" : " or ") + (least < most ? fmt::format("{:.2g} to ", shown * least) : "") +
+            fmt::format("{:.2g} {}", shown * most, angle ? "deg" : "mm");
+  }
+  return text;
+}
+
+}  // namespace posewright

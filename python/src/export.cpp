@@ -3,6 +3,7 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
+#include "posewright/controller/known_controllers.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/error.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_plan = 200'000'000, largest_settings = 1'000'000;
+constexpr std::uintmax_t largest_plan = 200'000'000;
 
 PoseSequence sequence_from(const py::object& plan) {
   if (const auto file = file_name(plan)) return parse_sequence(read_text(*file, largest_plan), file->string());
@@ -74,9 +75,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
   wanted.name = text_or_none(name);
   wanted.group = text_or_none(group);
   wanted.station = text_or_none(station);
-  if (!controller.is_none())
-    wanted.controller =
-        parse_controller_settings(read_text(controller.cast<fs::path>(), largest_settings), text_or_none(controller));
+  if (!controller.is_none()) wanted.controller = controller_settings(text_or_none(controller));
   require_read(format, given);
   PoseSequence sequence = sequence_from(plan);
   if (!format.moves_robot() || unchecked) return export_sequence(format, std::move(sequence), wanted, nullptr);
@@ -126,7 +125,7 @@ void bind_export(py::module_& m) {
         R"(A Plan, a Route or a file of either as a robot program or a list of a calibration tool (docs/export.md).
 
 Programs are checked against the robot of `problem`, unless unchecked. The rest is as the command's options: speed in
-percent, settle and wait in s, controller the name of a file; None: the format's default.)");
+percent, settle and wait in s, controller the name of a known one or of a file; None: the format's default.)");
 }
 
 }  // namespace posewright::python

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "command.hpp"
+#include "posewright/controller/known_controllers.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/json.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t plan_limit = 200'000'000, settings_limit = 1'000'000;
+constexpr std::uintmax_t plan_limit = 200'000'000;
 
 po::options_description export_command_options() {
   po::options_description options("Options");
@@ -39,10 +40,10 @@ po::options_description export_command_options() {
       ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")  //
       ("base", text("N"), "base or user frame of the controller")                                   //
       ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")         //
-      ("controller", text("FILE"),
-       "YAML: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
-      ("station", text("NAME"), "whose targets a list of targets has")                            //
-      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                          //
+      ("controller", text("NAME"),
+       "known one, or YAML file: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
+      ("station", text("NAME"), "whose targets a list of targets has")                                               //
+      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                                             //
       ("problem", text("FILE"),
        "problem file of the robot that a program is checked against (the one the plan names)")  //
       ("unchecked", "a program without asking whether the robot can do what it says");
@@ -83,8 +84,8 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   result.station = text_of(values, "station");
   result.tool = text_of(values, "tool");
   result.base = whole_number(values, "base", 0, 255);
-  if (const std::string file = text_of(values, "controller"); !file.empty())
-    result.controller = parse_controller_settings(read_text(file, settings_limit), file);
+  if (const std::string name = text_of(values, "controller"); !name.empty())
+    result.controller = controller_settings(name);
   // A program is called as its file.
   if (result.name.empty() && format.controller && !format.extension.empty() && output.extension() == format.extension &&
       std::find(format.options.begin(), format.options.end(), "name") != format.options.end())
@@ -247,7 +248,7 @@ int run_export(const po::variables_map& values, const Words& positional) {
   }
   const std::vector<fs::path> files = places(format, exported, output);
   std::vector<fs::path> inputs = {plan};
-  if (values.count("controller") > 0) inputs.emplace_back(text_of(values, "controller"));
+  if (const fs::path file = export_settings.controller.path; !file.empty()) inputs.push_back(file);
   Folders folders(format.several_files ? files : std::vector<fs::path>());
   if (values.count("force") == 0) keep_measurements(format, files, exported);
   check_outputs(changed(files, exported), inputs, values.count("force") > 0);

@@ -1,6 +1,10 @@
-#include <array>
+#include <fmt/format.h>
 
-#include "posewright/support/text_file.hpp"
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "posewright/controller/known_controllers.hpp"
 #include "sections.hpp"
 
 namespace posewright {
@@ -9,8 +13,6 @@ namespace {
 using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
-
-constexpr std::uintmax_t settings_size_limit = 1'000'000;
 
 CoupledLimits read_coupled(const Value& value) {
   const Section section(value);
@@ -30,10 +32,15 @@ CoupledLimits read_coupled(const Value& value) {
 void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::filesystem::path& folder) {
   joints.allow({"margin", "margin_length", "limits", "coupled", "controller"});
   if (const Value* controller = joints.find("controller")) {
-    const std::filesystem::path file = folder / controller->text("a file name is expected");
-    workspace.controller = parse_controller_settings(read_text(file, settings_size_limit), file.string());
+    const std::string name = controller->text("a file name or a known controller is expected");
+    const std::vector<std::string> known = known_controllers();
+    std::error_code ignored;
+    if (!std::filesystem::exists(folder / name, ignored) && std::find(known.begin(), known.end(), name) == known.end())
+      controller->fail("is " + in_quotes(name) + ", neither a file nor a known controller",
+                       fmt::format("known: {}", fmt::join(known, ", ")));
+    workspace.controller = controller_settings(name, folder);
     if (workspace.controller->range_deg.empty())
-      throw InputError({file.string(), 0}, "has no range_deg", "the ranges that poses are to keep");
+      throw InputError({workspace.controller->file, 0}, "has no range_deg", "the ranges that poses are to keep");
   }
   if (const Value* margin = joints.find("margin"))
     workspace.joint_margin = margin->number(Quantity::angle, Sign::not_negative);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,7 +13,8 @@ namespace posewright {
 /// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
 /// of the plan's joints, empty if the file has none.
 struct ControllerSettings {
-  std::string file;
+  std::string file;                  ///< as messages call it
+  std::filesystem::path path;        ///< that they were read from; empty: none
   std::map<std::string, int> lines;  ///< keys that are given, and where
   std::vector<double> sign;          ///< +1 or −1
   std::vector<double> zero_deg;

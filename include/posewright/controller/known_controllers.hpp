@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "posewright/controller/controller_settings.hpp"
+
+namespace posewright {
+
+/// What the folder `controllers` of the sources holds, by names such as "kuka-kr-c4".
+std::vector<std::string> known_controllers();
+
+/// Settings of a known controller by its name, or those of a file.
+/// @param folder  that a relative file name begins in
+/// Throws InputError for what is neither, and as parse_controller_settings().
+ControllerSettings controller_settings(const std::string& name_or_file, const std::filesystem::path& folder = {});
+
+}  // namespace posewright

@@ -2,7 +2,7 @@ import { h } from './dom.js';
 import { PoseList } from './pose_list.js';
 import { watchTheme } from './theme.js';
 import { percent } from './text/units.js';
-import { summarySection } from './sections/summary.js';
+import { summarySection, wordsSection } from './sections/summary.js';
 import { posesSection } from './sections/poses.js';
 import { parametersSection } from './sections/parameters.js';
 import { accuracySection, informationSection } from './sections/plots.js';
@@ -36,6 +36,7 @@ function build(report) {
   const sections = [
     summarySection(list),
     posesSection(list),
+    wordsSection(list),
     parametersSection(list),
     accuracySection(list),
     informationSection(list),
@@ -47,6 +48,7 @@ function build(report) {
   const titles = {
     summary: 'In short',
     poses: 'Poses',
+    words: 'In words',
     parameters: 'Parameters',
     accuracy: 'Accuracy',
     information: 'Information',

@@ -8,7 +8,8 @@
  * @typedef {{type: 'box', size: Point} | {type: 'cylinder', radius: number, length: number}
  *   | {type: 'sphere', radius: number} | {type: 'plane', normal: Point}
  *   | {type: 'mesh', vertices: number[], triangles: number[]}} Shape
- * @typedef {{name: string, kind: 'robot'|'tool'|'obstacle', frame: number, placement: Placement, shape: Shape}} Body
+ * @typedef {{name: string, kind: 'robot'|'tool'|'obstacle', frame: number, placement: Placement, shape: Shape,
+ *   colour?: [number, number, number]}} Body colour: red, green, blue, 0 to 1
  *
  * @typedef {object} Keyframe
  * @property {number|null} pose id of the pose where the robot stands, 0: home, null: on the way
@@ -42,6 +43,7 @@
  * @property {Information} information
  * @property {number[]} singular_values
  * @property {Candidates|null} candidates
+ * @property {number[]} [position_errors] predicted at feasible configurations, m
  * @property {CurvePoint[]} curve
  * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet
  * @property {Object<string, string>} [actuator_units]

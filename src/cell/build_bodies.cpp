@@ -74,7 +74,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
     for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line))) {
       for (const LinkShape& s : link.shapes)
         shapes.push_back({link.name, "", link.parent, BodyShape::Kind::link, link.frame, s.X_FrameShape, s.shape,
-                          SourcePlace{arm->urdf.string(), link.line}, link.follower});
+                          SourcePlace{arm->urdf.string(), link.line}, link.follower, link.colour});
       if (link.frame == tip_frame) last_link = link.name;
     }
   if (!problem.workspace.collision) return shapes;

@@ -56,6 +56,7 @@ TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
 Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model), frame_names_{"measurement"} {
   if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
     const ChainDescription chain = read_urdf_chain(*arm, problem.at(arm->line));
+    robot_ = chain.robot;
     base_ = chain.X_MeasureBase.translation();
     for (const ChainJoint& joint : chain.joints) frame_names_.push_back(joint.name);
     arm_ = make_body_frames(problem, *model_);
@@ -73,7 +74,7 @@ void Drawing::add_bodies(const Problem& problem) {
   if (arm_ == nullptr && tip_ == nullptr) return;
   const Eigen::Isometry3d X_FrameTip = arm_ != nullptr ? arm_->X_FrameTip() : Eigen::Isometry3d::Identity();
   for (const BodyShape& s : list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip)) {
-    DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, {}};
+    DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, s.colour, {}};
     try {
       if (const std::optional<TriangleMesh> mesh = mesh_of(s.shape, problem, s.place)) {
         body.mesh = thinned(*mesh, most_triangles);

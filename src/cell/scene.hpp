@@ -74,7 +74,8 @@ struct BodyShape {
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   ShapeSpec shape;
   SourcePlace place;
-  std::string follower{};  ///< see LinkGeometry
+  std::string follower{};                         ///< see LinkGeometry
+  std::optional<std::array<double, 3>> colour{};  ///< of a link
 };
 /// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);

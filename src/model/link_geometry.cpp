@@ -33,7 +33,7 @@ class LinkCollector {
  private:
   void collect(const urdf::Link& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent,
                const std::string& follower) {
-    LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line, follower};
+    LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line, colour_of(link), follower};
     for (const auto& collision : link.collision_array)
       if (collision != nullptr && collision->geometry != nullptr)
         geometry.shapes.push_back({shape_of(*collision->geometry), X_FrameLink * isometry(collision->origin)});
@@ -47,6 +47,15 @@ class LinkCollector {
               moved == frame_after_.end() ? X_FrameJoint : Eigen::Isometry3d::Identity(), seen ? link.name : parent,
               moved == frame_after_.end() && follows_chain(*joint) ? joint->name : follower);
     }
+  }
+
+  static std::optional<std::array<double, 3>> colour_of(const urdf::Link& link) {
+    if (link.visual == nullptr || link.visual->material == nullptr) return std::nullopt;
+    const urdf::Color& c = link.visual->material->color;
+    const std::array<double, 3> colour = {c.r, c.g, c.b};
+    // A material of a texture, or one that nobody defines, has no colour that was meant.
+    if (c.a <= 0 || colour == std::array<double, 3>{}) return std::nullopt;
+    return colour;
   }
 
   bool follows_chain(const urdf::Joint& joint) const {

@@ -181,6 +181,7 @@ ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& pl
   ChainBuilder builder(arm, urdf.lines(), urdf.model(), urdf.joints());
   for (const auto& joint : urdf.joints()) builder.add(*joint);
   ChainDescription chain = builder.finish();
+  chain.robot = urdf.model().getName();
   if (chain.coordinates.empty())
     throw InputError(place, "no joint moves between '" + urdf.base() + "' and '" + urdf.tip() + "'",
                      "name a base and a tip with joints between");

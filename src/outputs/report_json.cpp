@@ -108,6 +108,8 @@ Json bodies_json(const Report& report) {
                     {"frame", body.frame},
                     {"placement", placement_json(body.X_FrameBody)},
                     {"shape", shape_json(body)}});
+  for (std::size_t i = 0; i < report.bodies.size(); ++i)
+    if (report.bodies[i].colour) json[i]["colour"] = *report.bodies[i].colour;
   return json;
 }
 
@@ -135,6 +137,7 @@ std::string report_json(const Report& report) {
   json["singular_values"] = Json::array();
   for (const double s : report.information.singular_values) json["singular_values"].push_back(s);
   json["candidates"] = report.candidates ? candidates_json(*report.candidates) : Json(nullptr);
+  json["position_errors"] = report.position_errors;
   json["curve"] = Json::array();
   for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
   json["prefix"] = Json::array();

@@ -8,8 +8,10 @@
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text_file.hpp"
@@ -66,7 +68,7 @@ class ReportBuilder {
   }
 
   Report make() {
-    // A folder that has its robot's name holds one "problem.yaml"; other files have names of their own.
+    // Where the robot has no name: a folder that has it holds one "problem.yaml"; other files have names of their own.
     report_.title = problem_.file.stem().string();
     if (const std::string folder = problem_.file.parent_path().filename().string();
         report_.title == "problem" && !folder.empty())
@@ -81,6 +83,7 @@ class ReportBuilder {
     fill_scene(report_, problem_, *study_.cell, poses, coordinates, options_.route);
     for (const Coordinate& c : study_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
     fill_prefix();
+    fill_position_errors(judgement);
     if (options_.candidates) fill_candidates();
     if (options_.sizes) fill_curve();
     return std::move(report_);
@@ -169,6 +172,15 @@ class ReportBuilder {
   std::vector<SearchPart> parts_of_candidates() {
     if (parts_.empty()) parts_ = search_parts(study_, settings_.criterion, study_.configurations, options_.threads);
     return copied_parts(parts_);
+  }
+
+  void fill_position_errors(const Judgement& judgement) {
+    const Variant& variant = study_.first();
+    // With an unmodelled effect parameters are not all that the error comes from.
+    if (variant.effect != nullptr || variant.model->tips() != 1) return;
+    std::vector<TestPlace> places;
+    const std::vector<TestPoint> points = test_points_at_candidates(problem_, study_.configurations, variant, places);
+    predicted_error(points, judgement.evaluations.front().covariance, report_.position_errors);
   }
 
   void fill_candidates() {

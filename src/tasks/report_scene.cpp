@@ -156,11 +156,12 @@ void fill_scene(Report& report, const Problem& problem, const Cell& cell,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file) {
   const Drawing drawing(problem, cell);
   if (!drawing.warning().empty()) report.notes.push_back(drawing.warning());
+  if (!drawing.robot().empty()) report.title = drawing.robot();
   report.frames = drawing.frames();
   report.stations = drawing.stations();
   report.targets = drawing.targets();
   for (const DrawnBody& drawn : drawing.bodies()) {
-    ReportBody body{drawn.name, drawn.kind, drawn.frame, drawn.X_FrameBody};
+    ReportBody body{drawn.name, drawn.kind, drawn.colour, drawn.frame, drawn.X_FrameBody};
     std::visit(Fill{body, drawn.mesh}, drawn.shape);
     report.bodies.push_back(std::move(body));
   }

@@ -41,6 +41,42 @@ export async function checkViewer(page, { data, route }) {
   if (data.candidates) await page.getByRole('checkbox', { name: 'Candidates' }).check();
 }
 
+/** What stands before everything else, and the table of what an operator looks for: asked of the plan's own file. */
+export async function checkOverview(page, { data, plan, route }) {
+  await page.setViewportSize({ width: 1400, height: 900 });
+  const picture = await page.locator('.view').boundingBox();
+  check(picture.y + picture.height <= 900, 'the picture is seen without scrolling at 1400 x 900', picture);
+  const order = route ? data.route.order : plan.poses.map((p) => p.id);
+  const worth = plan.poses.some((p) => p.nearest || p.targets?.length > 0);
+  check((await page.locator('.measuring').count()) === (worth ? 1 : 0), 'there is a table where there is something to tell');
+  if (!worth) return;
+  const header = await page.locator('.measuring thead th').allTextContents();
+  const rows = await page
+    .locator('.measuring tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  check(rows.map((row) => row[0]).join() === order.join(), 'the table has the poses in measuring order', rows.length);
+  const shown = (row, title) => row[header.indexOf(title)];
+  for (const [place, id] of order.entries()) {
+    const pose = plan.poses.find((p) => p.id === id);
+    const targets = (pose.targets ?? []).filter((t) => t.visible !== false);
+    const most = (of) => Math.max(...targets.map(of));
+    if (header.includes('incidence, deg'))
+      near(Number(shown(rows[place], 'incidence, deg')), (most((t) => t.incidence) * 180) / Math.PI, 0.51, `incidence at pose ${id}`);
+    if (header.includes('distance, m'))
+      near(Number(shown(rows[place], 'distance, m')), most((t) => t.distance), 0.0051, `distance at pose ${id}`);
+    if (pose.nearest)
+      near(parseFloat(shown(rows[place], 'clearance, mm')), 1000 * pose.nearest.distance, 0.051, `clearance at pose ${id}`);
+    if (!route) continue;
+    const motion = data.route.motions.find((m) => m.to === id);
+    near(parseFloat(shown(rows[place], 'clearance on the way, mm')), 1000 * motion.nearest.distance, 0.051, `clearance on the way to pose ${id}`);
+  }
+  if (!route) return;
+  const { travel, changes, settle } = data.route.seconds;
+  const tile = await page.locator('.tile', { hasText: 'for the whole route' }).locator('b').textContent();
+  const [amount, unit] = tile.split(' ');
+  near(Number(amount) * { s: 1, min: 60, h: 3600 }[unit], travel + changes + settle, 0.06 * { s: 1, min: 60, h: 3600 }[unit], 'the whole route takes what route.json says');
+}
+
 /** Every plot has its points. */
 export async function checkPlots(page, { data, plan }) {
   const points = (id) =>
@@ -80,6 +116,14 @@ export async function checkPlots(page, { data, plan }) {
     'test poses are plotted where there are some',
   );
   if (tests > 0) check((await points('plot-test-poses'))[1] === tests, 'one dot a test pose');
+  const errors = data.position_errors;
+  const places = Math.min(200, data.candidates.sensitivity.length);
+  check(errors.length === places && errors.every((e) => e > 0), 'errors are predicted all over the workspace', errors.length);
+  const [, drawn] = await page.locator('#plot-workspace').evaluate((f) => f.plot.data);
+  check(
+    drawn.every((v, k) => k === 0 || v >= drawn[k - 1]) && Math.abs(drawn.at(-1) - 1e3 * Math.max(...errors)) < 1e-9,
+    'their curve rises to the largest',
+  );
   const rows = await page.locator('.parameters tbody tr').count();
   check(rows === plan.parameters.filter((p) => p.identifiable).length, 'one row a parameter', rows);
 }

@@ -8,7 +8,7 @@ import { about, check, verdict } from './checks.mjs';
 import { checkAltered } from './altered_checks.mjs';
 import { makeReports } from './make_reports.mjs';
 import { checkNumbers } from './numbers_checks.mjs';
-import { checkList, checkPlots, checkViewer } from './page_checks.mjs';
+import { checkList, checkOverview, checkPlots, checkViewer } from './page_checks.mjs';
 import { checkReading, checkRepeat, overflow } from './reading_checks.mjs';
 
 const { values } = parseArgs({
@@ -38,6 +38,7 @@ async function checkCase(browser, c) {
   about(c.name);
   checkNumbers(c);
   const { page, complaints } = await open(browser, c.page);
+  await checkOverview(page, c);
   await checkPlots(page, c);
   await checkList(page, c, values.program);
   await checkReading(page, c);
@@ -84,10 +85,13 @@ async function checkFallback(browser, c) {
 /** @param {any} browser @param {string} folder */
 async function takeScreenshots(browser, folder) {
   mkdirSync(folder, { recursive: true });
-  for (const c of makeReports(values.program, join(values.out, 'screenshots'), ['telescope', 'kr270'], true)) {
-    const { page } = await open(browser, c.page, { viewport: { width: 1280, height: 1420 } });
-    await page.screenshot({ path: join(folder, `report-${c.name}.png`) });
-    await page.close();
+  for (const c of makeReports(values.program, join(values.out, 'screenshots'), ['telescope', 'kr270', 'cell'], true)) {
+    for (const [suffix, width, height] of [['', 1400, 1420], ['-narrow', 420, 1420]]) {
+      if (suffix && c.name !== 'cell') continue;
+      const { page } = await open(browser, c.page, { viewport: { width, height } });
+      await page.screenshot({ path: join(folder, `report-${c.name}${suffix}.png`) });
+      await page.close();
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/study/study.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
@@ -217,6 +218,55 @@ TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
   EXPECT_EQ(report.candidates->sensitivity.size(), 60U);
   EXPECT_EQ(report.curve.size(), 1U) << "the plan itself";
   EXPECT_THAT(report.notes, testing::Contains(HasSubstr("left out of the curve")));
+}
+
+TEST(Report, PositionErrorsOverTheWorkspaceAreThoseOfTestPosesThere) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(examples / "kr270", folder.path(), std::filesystem::copy_options::recursive);
+  const std::filesystem::path file = folder / "problem.yaml";
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const Problem problem = read_problem(file);
+  const json report = make_report(problem, quick_report(18, 60), folder, brief).report;
+  // The same configurations, written into the problem as test poses.
+  Settings settings = settings_of(problem, quick_report(18, 60));
+  const Study study = make_study(problem, settings, Monitor{});
+  std::string at;
+  for (std::size_t i = 0; i < study.configurations.count(); ++i) {
+    at += at.empty() ? "[" : ", [";
+    for (std::size_t k = 0; k < 6; ++k) at += fmt::format("{}{:.17g}", k > 0 ? ", " : "", study.configurations[i][k]);
+    at += "]";
+  }
+  std::string text = read_file(file);
+  const std::string design = "design:\n";
+  ASSERT_NE(text.find(design), std::string::npos);
+  text.insert(text.find(design) + design.size(), "  test_poses: {at: [" + at + "]}\n");
+  const Plan plan = plan_problem(read_problem(folder.write("tested.yaml", text)), quick_report(18, 60), Monitor{});
+  ASSERT_EQ(plan.test_errors.size(), 60U);
+  ASSERT_EQ(report["position_errors"].size(), 60U);
+  for (std::size_t i = 0; i < 60; ++i)
+    EXPECT_NEAR(report["position_errors"][i].get<double>(), plan.test_errors[i], 1e-9 * plan.test_errors[i]) << i;
+}
+
+TEST(Report, IsCalledAsTheRobotAndLinksHaveTheirColours) {
+  const TemporaryFolder folder;
+  folder.write("arm.urdf", R"(<robot name="cobot 7"><material name="red"><color rgba="1 0.25 0 1"/></material>
+<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry><material name="red"/></visual>
+<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<link name="b"><collision><origin xyz="0.3 0 0.2"/><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" velocity="1" effort="1"/></joint></robot>)");
+  const Problem problem = read_problem(folder.write(
+      "line.yaml",
+      "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement: {type: position, target: [0.5, 0, 0], device: "
+      "{type: isotropic, noise: 0.1 mm}}\nvariants: {all: {parameters: [j.offset]}}\ndesign: {poses: 3}\n"));
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  const json report = make_report(problem, quick_report(3, 20), folder, brief).report;
+  EXPECT_EQ(report["title"], "cobot 7");
+  ASSERT_EQ(report["bodies"].size(), 2U);
+  EXPECT_EQ(report["bodies"][0]["colour"], (std::vector<double>{1, 0.25, 0}));
+  EXPECT_FALSE(report["bodies"][1].contains("colour")) << "none is stated";
 }
 
 TEST(Report, PageHoldsItsDataOnceAndNothingInItEndsTheElement) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,7 +22,8 @@ struct DrawnBody {
   int frame = 0;               ///< index into Drawing::frames()
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   ShapeSpec shape;
-  TriangleMesh mesh;  ///< of a MeshShape, thinned to a few thousand triangles, m
+  std::optional<std::array<double, 3>> colour{};  ///< of the link in the URDF: red, green, blue, 0 to 1
+  TriangleMesh mesh;                              ///< of a MeshShape, thinned to a few thousand triangles, m
 };
 
 /// Robot, targets and instrument at one configuration, measurement frame.
@@ -46,6 +48,8 @@ class Drawing {
   const std::vector<std::string>& targets() const { return target_names_; }
   /// Instruments that stand still.
   const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
+  /// As its URDF calls it; empty: it has none.
+  const std::string& robot() const { return robot_; }
   /// Why there are no bodies, where some were expected; empty: nothing is missing.
   const std::string& warning() const { return warning_; }
 
@@ -64,7 +68,7 @@ class Drawing {
   std::vector<Eigen::Vector3d> targets_;  // tip frame
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;
   std::vector<DrawnBody> bodies_;
-  std::string warning_;
+  std::string robot_, warning_;
 };
 
 /// A mesh with at most so many triangles: vertices that share a cell of a grid become one, finer grids first.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,9 @@ struct LinkGeometry {
   std::string parent;  ///< nearest link above it that has a shape; empty: none
   int frame = 0;       ///< 0: the measurement frame, k: frame of the chain's k-th joint after its motion
   std::vector<LinkShape> shapes;
-  int line = 0;          ///< of <link> in the URDF
-  std::string follower;  ///< joint beside the chain that moves the link with one of the chain's joints; empty: none
+  int line = 0;                                   ///< of <link> in the URDF
+  std::optional<std::array<double, 3>> colour{};  ///< of its first visual: red, green, blue, 0 to 1
+  std::string follower{};  ///< joint beside the chain that moves the link with one of the chain's joints; empty: none
 };
 
 /// All links with a <collision> shape, also those before the base and on branches, which hang at zero position

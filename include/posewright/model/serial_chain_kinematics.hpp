@@ -32,6 +32,7 @@ struct ChainDescription {
   Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
   std::vector<Coordinate> coordinates;
   std::vector<double> encoder_noise;  ///< 1σ per coordinate
+  std::string robot{};                ///< as its URDF calls it
 };
 
 /// Where each parameter of a serial chain stands: base (6), per joint displacement (6), offset and gear of each

@@ -13,8 +13,9 @@ namespace posewright {
 
 /// A body as the report's 3-D view draws it, m.
 struct ReportBody {
-  std::string name, kind;  ///< kind: robot, tool, obstacle
-  int frame = 0;           ///< index into Report::frames
+  std::string name, kind;                         ///< kind: robot, tool, obstacle
+  std::optional<std::array<double, 3>> colour{};  ///< of the URDF: red, green, blue, 0 to 1
+  int frame = 0;                                  ///< index into Report::frames
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   enum class Shape { box, cylinder, sphere, plane, mesh } shape = Shape::box;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< edges of a box; normal of a plane (solid behind it)
@@ -63,7 +64,8 @@ struct Report {
   std::vector<ReportKeyframe> keyframes;                       ///< in measuring order
   ReportInformation information;
   std::optional<ReportCandidates> candidates;
-  std::vector<CurvePoint> curve;                  ///< other numbers of poses; worst_sigma is σ / tolerance
+  std::vector<double> position_errors;  ///< predicted, at feasible configurations spread like the candidates, m
+  std::vector<CurvePoint> curve;        ///< other numbers of poses; worst_sigma is σ / tolerance
   std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet
 };
 

@@ -1,6 +1,6 @@
 import { curve, dots, figure, level, logGrid, logValues } from './figure.js';
 import { h } from '../dom.js';
-import { number } from '../text/units.js';
+import { number, quantity } from '../text/units.js';
 
 const mm = (value) => (value === null || value === undefined ? null : value * 1e3);
 
@@ -172,4 +172,29 @@ function one(list, key, quantity) {
     late = setTimeout(() => plot.setData(data()), 150);
   });
   return plot.element;
+}
+
+/** The predicted position error over the share of the workspace where it is no larger (fraction of design space,
+ * Zahran, Anderson-Cook and Myers 2003). @param {import('../types.js').Report} report */
+export function workspacePlot(report) {
+  const errors = [...(report.position_errors ?? [])].sort((a, b) => a - b);
+  if (errors.length < 2) return null;
+  const share = errors.map((_, k) => (100 * (k + 1)) / errors.length);
+  const shown = errors.map((e) => e * 1e3);
+  const at = (percent) => errors[Math.max(0, Math.ceil((percent / 100) * errors.length) - 1)];
+  return figure({
+    id: 'plot-workspace',
+    title: 'Predicted position error over the workspace',
+    caption: `At half of ${errors.length} feasible configurations, spread like the candidates, the tip is known to ${quantity(at(50), 'm', 3)} or better after calibration, at 90 % of them to ${quantity(at(90), 'm', 3)}, at the worst to ${quantity(at(100), 'm', 3)} (1σ of all three axes together, from the parameters’ errors alone).`,
+    options: {
+      series: [{ label: 'share, %' }, curve('position error, mm', 'plan')],
+      scales: { x: { time: false, range: [0, 100] }, y: { range: (u, low, high) => [0, 1.08 * high] } },
+      axes: [{ label: 'share of the configurations, %' }, { label: 'position error, mm', size: 66 }],
+    },
+    data: [share, shown],
+    numbers: () => ({
+      header: ['#share, %', '#position error, mm'],
+      rows: [10, 25, 50, 75, 90, 95, 100].map((p) => [p, number(at(p) * 1e3)]),
+    }),
+  }).element;
 }

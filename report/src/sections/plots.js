@@ -1,5 +1,5 @@
 import { h, section } from '../dom.js';
-import { curvePlot, reliancePlot, testPosePlot } from '../plots/accuracy.js';
+import { curvePlot, reliancePlot, testPosePlot, workspacePlot } from '../plots/accuracy.js';
 import { contributionPlot, sensitivityPlot, spectrumPlot } from '../plots/information.js';
 
 /** @param {import('../pose_list.js').PoseList} list */
@@ -8,6 +8,7 @@ export function accuracySection(list) {
   const plots = [
     plan.accuracy.test_poses.length > 0 ? testPosePlot(list) : null,
     curvePlot(list),
+    workspacePlot(list.report),
     plan.reliance ? reliancePlot(plan.reliance) : null,
   ].filter(Boolean);
   if (plots.length === 0) return null;

@@ -1,6 +1,7 @@
 import { h, table } from '../dom.js';
 import { fixed, number, percent, quantity, shownUnit } from '../text/units.js';
 import { download, posesCsv } from '../save_csv.js';
+import { measuringTable } from './measuring_table.js';
 import { poseRows } from './pose_rows.js';
 import { poseCard } from '../view/pose_card.js';
 import { viewer } from '../view/viewer.js';
@@ -54,7 +55,7 @@ export function posesSection(list) {
         ),
       ),
     ),
-    allValues(list),
+    ...[measuringTable(list), allValues(list)].filter(Boolean),
   );
 }
 

@@ -1,5 +1,5 @@
-import { h } from '../dom.js';
-import { percentDown, quantity } from '../text/units.js';
+import { h, section } from '../dom.js';
+import { duration, percentDown, quantity } from '../text/units.js';
 import * as say from '../text/sentences.js';
 
 /** @param {string} value @param {string} title @param {string} hint */
@@ -42,28 +42,28 @@ function tiles(list) {
       ? tile(quantity(plan.accuracy.rho0, 'm', 3), 'position error', 'expected after calibration, 1σ')
       : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
     nearness(plan.certificate),
+    jobTime(list.report.route),
   );
 }
 
-/** @param {import('../pose_list.js').PoseList} list */
-export function summarySection(list) {
-  const { report } = list;
-  const { plan } = report;
-  const warnings = say.warnings(report);
-  const sentences = [
-    say.what(plan),
-    say.accuracy(plan),
-    say.worth(plan),
-    `${say.proof(plan)} ${say.proofMeaning(plan)}`.trim(),
-    say.searched(plan),
-    say.loss(plan),
-    say.clearance(plan, report.route),
-    say.dropped(plan),
+/** How long the robot is taken, by the route. @param {any} route */
+function jobTime(route) {
+  if (!route || route.motions.length === 0) return null;
+  const { travel, changes, settle } = route.seconds;
+  const parts = [
+    `${duration(travel)} moving`,
+    settle > 0 && `${duration(settle)} standing still`,
+    changes > 0 && `${duration(changes)} changes`,
   ].filter(Boolean);
+  return tile(duration(travel + changes + settle), 'for the whole route', parts.join(', '));
+}
+
+/** Figures and warnings: the picture comes next, words after it. @param {import('../pose_list.js').PoseList} list */
+export function summarySection(list) {
+  const warnings = say.warnings(list.report);
   return h(
     'section',
-    { id: 'summary', 'aria-labelledby': 'summary-title' },
-    h('h2', { id: 'summary-title' }, 'In short'),
+    { id: 'summary', class: 'plain', 'aria-label': 'In short' },
     tiles(list),
     warnings.length > 0
       ? h(
@@ -77,6 +77,27 @@ export function summarySection(list) {
           ),
         )
       : null,
+  );
+}
+
+/** What the figures mean. @param {import('../pose_list.js').PoseList} list */
+export function wordsSection(list) {
+  const { report } = list;
+  const { plan } = report;
+  const sentences = [
+    say.what(plan),
+    say.accuracy(plan),
+    say.worth(plan),
+    `${say.proof(plan)} ${say.proofMeaning(plan)}`.trim(),
+    say.searched(plan),
+    say.loss(plan),
+    say.clearance(plan, report.route),
+    say.dropped(plan),
+  ].filter(Boolean);
+  return section(
+    'words',
+    'In words',
+    null,
     h(
       'ul',
       { class: 'sentences' },

@@ -13,6 +13,7 @@ import {
   PlaneGeometry,
   Quaternion,
   SphereGeometry,
+  SRGBColorSpace,
   Vector3,
 } from 'three';
 import { colour } from '../theme.js';
@@ -88,8 +89,19 @@ export class Bodies {
 
   paint() {
     for (const { body, material, line } of this.parts) {
-      material.color.set(colour(body.kind));
+      if (body.colour) material.color.setRGB(...body.colour, SRGBColorSpace);
+      else material.color.set(colour(body.kind));
       line.color.set(colour(`${body.kind}-edge`));
+    }
+    this.mark(this.marked ?? []);
+  }
+
+  /** Bodies that come nearest to each other glow. @param {string[]} names */
+  mark(names) {
+    this.marked = names;
+    for (const { body, material } of this.parts) {
+      material.emissive.set(names.includes(body.name) ? colour('now') : 'black');
+      material.emissiveIntensity = 0.8;
     }
   }
 

@@ -8,6 +8,7 @@ import { bodyCorners, extentOf, sceneExtent, tipExtent } from './extent.js';
  * @property {import('./sights.js').Sight[]} sights
  * @property {number|null} current pose id
  * @property {Set<number>} on ids of ticked poses
+ * @property {string[]} nearest names of the two bodies that come nearest to each other here
  * @property {{bodies: boolean, sights: boolean, candidates: boolean}} layers
  */
 

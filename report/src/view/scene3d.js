@@ -109,6 +109,7 @@ export class Scene3d {
       this.sights.move(shown.drawn.targets, shown.sights);
     }
     this.tips.update(shown.current, shown.on);
+    this.bodies.mark(shown.nearest);
     this.bodies.root.visible = shown.layers.bodies;
     this.sights.lines.visible = shown.layers.sights;
     if (shown.layers.candidates && this.cloudFactor !== this.picture.factor) {

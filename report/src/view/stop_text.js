@@ -1,5 +1,21 @@
 import { duration } from '../text/units.js';
 
+/** The stops that the robot is between. @param {import('./player.js').Player} player */
+const around = ({ stops, place }) => ({
+  before: [...stops].reverse().find((s) => s.index <= place),
+  after: stops.find((s) => s.index > place),
+});
+
+/** Which bodies come nearest at the pose shown, or on the motion. @param {import('./player.js').Player} player
+ * @param {import('../pose_list.js').PoseList} list */
+export function nearestHere(player, list) {
+  if (list.current !== null) return list.poses.get(list.current)?.nearest;
+  const { before, after } = around(player);
+  const from = before?.id ?? 0,
+    to = after?.id ?? 0;
+  return list.report.route?.motions.find((m) => m.from === from && m.to === to)?.nearest;
+}
+
 /** Where the robot is, in words. @param {import('./player.js').Player} player */
 export function stopText(player) {
   const key = player.keyframe;
@@ -10,7 +26,6 @@ export function stopText(player) {
     return `Stop ${stop + 1} of ${player.stops.length}: pose ${player.pose}${time}`;
   }
   if (key.pose === 0 && Number.isInteger(player.place)) return `Home${time}`;
-  const before = [...player.stops].reverse().find((s) => s.index <= player.place);
-  const after = player.stops.find((s) => s.index > player.place);
+  const { before, after } = around(player);
   return `On the way from ${before ? `pose ${before.id}` : 'home'} to ${after ? `pose ${after.id}` : 'the end'}${time}`;
 }

@@ -6,7 +6,7 @@ import { Player } from './player.js';
 import { poseCard } from './pose_card.js';
 import { Scene3d } from './scene3d.js';
 import { sightsOf } from './sights.js';
-import { stopText } from './stop_text.js';
+import { nearestHere, stopText } from './stop_text.js';
 import { SvgView } from './svg_view.js';
 import { enlarger, layerBoxes, lookButtons, playerControls } from './viewer_controls.js';
 
@@ -54,7 +54,8 @@ export function viewer(list) {
     const drawn = picture.enlargedDrawing(player.drawn);
     const pose = list.poses.get(list.current ?? -1);
     const sights = pose && drawn ? sightsOf(report, pose, drawn.targets) : [];
-    view.show({ drawn, sights, current: list.current, on: new Set(list.ids), layers });
+    const nearest = nearestHere(player, list)?.between ?? [];
+    view.show({ drawn, sights, current: list.current, on: new Set(list.ids), nearest, layers });
     view.canvas.dataset.tip = drawn ? drawn.tip.map((v) => v.toFixed(6)).join(' ') : '';
     // Nobody wants every step of a film read out.
     stop.setAttribute('aria-live', player.playing ? 'off' : 'polite');

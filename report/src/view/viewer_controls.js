@@ -28,11 +28,12 @@ export function layerBoxes(report, layers, show) {
   if (report.bodies.length > 0) offers.push(['bodies', 'Bodies']);
   if (report.stations.length > 0) offers.push(['sights', 'Lines of sight']);
   if (report.candidates?.positions.length > 0) offers.push(['candidates', 'Candidates']);
+  const [least, most] = [Math.min, Math.max].map((end) => number((report.candidates?.sensitivity ?? [0]).reduce((a, b) => end(a, b)), 3));
   const scale = h(
     'span',
     { class: 'ramp', hidden: true },
     h('span', { class: 'ramp-bar' }),
-    ' colour: how much a measurement there would add, from least (dark) to most (bright)',
+    ` colour: how much a measurement there would add, from ${least} (dark) to ${most} (bright); 1 is worth it in full`,
   );
   return h(
     'div',

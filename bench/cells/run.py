@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 import time
 
-HERE = pathlib.Path(__file__).parent
+CELLS = pathlib.Path(__file__).resolve().parents[2] / "examples/cells"
 
 
 def timed(command):
@@ -35,7 +35,7 @@ def main():
     program = str(options.program.resolve())
     folder = options.keep or pathlib.Path(tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
-    for cell in sorted(HERE.glob("*.yaml")):
+    for cell in sorted(CELLS.glob("*.yaml")):
         if options.only and cell.stem not in options.only:
             continue
         problem = folder / cell.name

@@ -73,7 +73,7 @@ struct CellVerifier::Implementation {
   };
   urdf::ModelInterfaceSharedPtr model;
   std::vector<Link> links;
-  std::vector<std::pair<std::shared_ptr<fcl::Boxd>, Eigen::Isometry3d>> boxes;
+  std::vector<std::pair<std::shared_ptr<fcl::CollisionGeometryd>, Eigen::Isometry3d>> boxes;
   std::vector<Wall> walls;
   std::set<std::string> skipped;
 
@@ -141,9 +141,46 @@ void CellVerifier::add(const Box& box) {
   X.translation() = Eigen::Map<const Eigen::Vector3d>(box.at);
   implementation_->boxes.emplace_back(std::make_shared<fcl::Boxd>(box.size[0], box.size[1], box.size[2]), X);
 }
+void CellVerifier::add(const Cylinder& cylinder) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.translation() = Eigen::Map<const Eigen::Vector3d>(cylinder.at);
+  implementation_->boxes.emplace_back(std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.length), X);
+}
 void CellVerifier::add(const Wall& wall) { implementation_->walls.push_back(wall); }
 void CellVerifier::skip(const std::vector<std::string>& pairs) {
   implementation_->skipped.insert(pairs.begin(), pairs.end());
+}
+
+double CellVerifier::nearest(const std::map<std::string, double>& joints, const std::string& tool) const {
+  const Implementation& own = *implementation_;
+  double least = 1e9;
+  const auto look = [&](const fcl::CollisionGeometryd& a, const Eigen::Isometry3d& X_a,
+                        const fcl::CollisionGeometryd& b, const Eigen::Isometry3d& X_b) {
+    fcl::DistanceRequestd request(false);
+    request.distance_tolerance = 1e-9;
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    fcl::DistanceResultd result(least);
+    fcl::distance<double>(&a, X_a, &b, X_b, request, result);
+    least = std::min(least, result.min_distance);
+  };
+  for (const auto& link : own.links) {
+    if (own.moving(*own.model->getLink(link.name)) == 0) continue;
+    const Eigen::Isometry3d X = own.pose(*own.model->getLink(link.name), joints) * link.X_LinkMesh;
+    for (const Wall& wall : own.walls) {
+      const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(wall.normal).normalized();
+      for (const auto& corner : link.corners)
+        least = std::min(least, normal.dot(X * corner - Eigen::Map<const Eigen::Vector3d>(wall.at)));
+    }
+    for (const auto& [box, X_box] : own.boxes) look(*link.mesh, X, *box, X_box);
+    if (link.name != tool) continue;
+    for (const auto& other : own.links) {
+      if (own.adjacent(link, other, joints) || own.skipped.count(tool + " and " + other.name) > 0 ||
+          own.skipped.count(other.name + " and " + tool) > 0)
+        continue;
+      look(*link.mesh, X, *other.mesh, own.pose(*own.model->getLink(other.name), joints) * other.X_LinkMesh);
+    }
+  }
+  return least;
 }
 
 std::string CellVerifier::violation(const std::map<std::string, double>& joints, double clearance) const {

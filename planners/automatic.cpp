@@ -168,7 +168,7 @@ class Run {
     std::stable_sort(sets.begin(), sets.end(), [](const PoseSet& a, const PoseSet& b) { return a.value > b.value; });
     for (const PoseSet& poses : sets) remember(poses);
     moved_ = std::move(sets.front());
-    best_.exchanges += improve(task_, *moved_, monitor_);
+    best_.exchanges += improve(task_, *moved_, options_.threads, monitor_);
     remember(*moved_);
     record("continuous");
   }
@@ -218,7 +218,7 @@ class Run {
   }
 
   void improve_from(PoseSet poses) {
-    best_.exchanges += improve(task_, poses, monitor_);
+    best_.exchanges += improve(task_, poses, options_.threads, monitor_);
     remember(poses);
     if (!moved_ || poses.value > moved_->value) moved_ = std::move(poses);
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <nlopt.hpp>
 
 #include "exchange.hpp"
@@ -9,14 +11,18 @@
 #include "posewright/planning/ascent.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
 
 namespace posewright {
 namespace {
 
 constexpr int evaluations_per_pose = 300;
 constexpr int most_rounds = 20, rough_rounds = 2;
-// A round that gains less than this of Φ is the last.
-constexpr double round_gain = 1e-6;
+// Of a set: more would look for the same places.
+constexpr std::size_t poses_at_once = 4;
+// A round that gains less than this of Φ is the last. Without a gradient, and with a cell to be asked of every step,
+// rounds are dear: there it is so much of the best plan.
+constexpr double round_gain = 1e-6, dear_round_gain = 2e-5;
 constexpr int joint_evaluations = 200;
 // MMA's own work grows with the square of the number of coordinates.
 constexpr std::size_t most_joint_coordinates = 500;
@@ -218,41 +224,99 @@ void write_to(Design& design, const PoseSet& poses, std::size_t candidates) {
 
 namespace {
 
-long move_in_turn(const DesignTask& task, PoseSet& poses, int rounds, const Monitor& monitor) {
-  const auto probe = task.space->probe();
-  const int r = poses.blocks.rows(), m = poses.blocks.columns();
-  long moves = 0;
-  for (int round = 0; round < rounds && !monitor.should_stop(); ++round) {
-    const double before = poses.value;
-    for (std::size_t i = 0; i < poses.configurations.size() && !monitor.should_stop(); ++i) {
-      const auto block = poses.blocks.block(i);
-      OnePose objective(task.criterion->function(), information_of(task, poses.blocks) - block.transpose() * block);
-      const AscentResult found =
-          ascend(*task.space, *probe, objective, r, m, poses.configurations[i], evaluations_per_pose,
-                 [&](std::span<const double> q) { return is_apart(task, poses, i, q); });
-      if (!(found.value > poses.value + 1e-12) || found.q == poses.configurations[i]) continue;
-      poses.configurations[i] = found.q;
-      poses.candidates[i] = -1;
-      poses.value = found.value;
-      probe->block(found.q, poses.blocks.row(i, 0), poses.blocks.stride());
-      ++moves;
-    }
-    monitor.report({"continuous", double(round + 1), double(rounds), poses.value, task.bound, {}});
-    if (poses.value - before < round_gain) break;
+/// Poses moved one after the other, each a few times.
+class InTurn {
+ public:
+  /// @param at_once  poses that look for their place at the same time, from the same information
+  InTurn(const DesignTask& task, PoseSet& poses, std::size_t at_once, int threads)
+      : task_(task), poses_(poses), at_once_(at_once), threads_(threads) {
+    for (std::size_t i = 0; i < at_once; ++i) probes_.push_back(task.space->probe());
   }
-  return moves;
-}
+
+  long go(int rounds, const Monitor& monitor) {
+    const double enough = task_.space->is_box()
+                              ? round_gain
+                              : std::max(round_gain, dear_round_gain * task_.criterion->function().degree());
+    long moves = 0;
+    for (int round = 0; round < rounds && !monitor.should_stop(); ++round) {
+      const double before = poses_.value;
+      for (std::size_t i = 0; i < poses_.configurations.size() && !monitor.should_stop(); i += at_once_)
+        moves += move_from(i, monitor);
+      monitor.report({"continuous", double(round + 1), double(rounds), poses_.value, task_.bound, {}});
+      if (poses_.value - before < enough) break;
+    }
+    return moves;
+  }
+
+ private:
+  /// Every thread count gives the same: how many look at once is fixed, and each has a probe of its own.
+  long move_from(std::size_t first, const Monitor& monitor) {
+    const std::size_t count = std::min(at_once_, poses_.configurations.size() - first);
+    const Eigen::MatrixXd M = information_of(task_, poses_.blocks);
+    std::vector<AscentResult> found(count);
+    parallel_for(count, threads_, [&](std::size_t k, int) {
+      if (k == 0 || !monitor.should_stop()) found[k] = ascent(first + k, M, *probes_[k]);
+    });
+    const double before = poses_.value;
+    long moves = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = first + k;
+      if (found[k].q.empty() || !(found[k].value > before + 1e-12)) continue;
+      // Another one that moved meanwhile may have taken what this one was after.
+      if (moves > 0) {
+        const double promised = found[k].value - before;
+        found[k].value = value_with(i, found[k].q, *probes_[k]);
+        if (!(found[k].value - poses_.value > 0.5 * promised) || !is_apart(task_, poses_, i, found[k].q))
+          found[k] = ascent(i, information_of(task_, poses_.blocks), *probes_[k]);
+      }
+      moves += take(i, found[k], *probes_[k]);
+    }
+    return moves;
+  }
+
+  AscentResult ascent(std::size_t i, const Eigen::MatrixXd& M, ConfigurationSpace::Probe& probe) const {
+    const auto block = poses_.blocks.block(i);
+    OnePose objective(task_.criterion->function(), M - block.transpose() * block);
+    return ascend(*task_.space, probe, objective, poses_.blocks.rows(), poses_.blocks.columns(),
+                  poses_.configurations[i], evaluations_per_pose,
+                  [&](std::span<const double> q) { return is_apart(task_, poses_, i, q); });
+  }
+
+  double value_with(std::size_t i, std::span<const double> q, ConfigurationSpace::Probe& probe) {
+    ProbedBlock moved(poses_.blocks.rows(), poses_.blocks.columns());
+    if (!moved.at(probe, q)) return -std::numeric_limits<double>::infinity();
+    const auto block = poses_.blocks.block(i);
+    Eigen::MatrixXd M = information_of(task_, poses_.blocks) - block.transpose() * block;
+    M.noalias() += moved.map().transpose() * moved.map();
+    return task_.criterion->function().value(M);
+  }
+
+  bool take(std::size_t i, const AscentResult& found, ConfigurationSpace::Probe& probe) {
+    if (!(found.value > poses_.value + 1e-12) || found.q == poses_.configurations[i]) return false;
+    poses_.configurations[i] = found.q;
+    poses_.candidates[i] = -1;
+    poses_.value = found.value;
+    probe.block(found.q, poses_.blocks.row(i, 0), poses_.blocks.stride());
+    return true;
+  }
+
+  const DesignTask& task_;
+  PoseSet& poses_;
+  const std::size_t at_once_;
+  const int threads_;
+  std::vector<std::unique_ptr<ConfigurationSpace::Probe>> probes_;
+};
 
 }  // namespace
 
-long improve(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
-  long moves = move_in_turn(task, poses, most_rounds, monitor);
+long improve(const DesignTask& task, PoseSet& poses, int threads, const Monitor& monitor) {
+  long moves = InTurn(task, poses, poses_at_once, thread_count(threads)).go(most_rounds, monitor);
   if (task.space->is_box() && !monitor.should_stop() && improve_jointly(task, poses)) ++moves;
   return moves;
 }
 
 long improve_roughly(const DesignTask& task, PoseSet& poses, const Monitor& monitor) {
-  return move_in_turn(task, poses, rough_rounds, monitor);
+  return InTurn(task, poses, 1, 1).go(rough_rounds, monitor);
 }
 
 Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
@@ -262,7 +326,7 @@ Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& 
     throw CannotDo("continuous cannot move poses for a plan with reserve; use exchange, tabu or detmax");
   Design design = ExchangePlanner().plan(task, options, monitor);
   PoseSet poses = pose_set_of(task, design.members);
-  design.exchanges += improve(task, poses, monitor);
+  design.exchanges += improve(task, poses, options.threads, monitor);
   write_to(design, poses, task.candidates.blocks->count());
   design.stopped = design.stopped || monitor.should_stop();
   return design;

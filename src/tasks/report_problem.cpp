@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -14,6 +15,7 @@
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
 #include "report_scene.hpp"
 
@@ -205,34 +207,45 @@ class ReportBuilder {
     report_.candidates = std::move(candidates);
   }
 
-  void add_to_curve(int poses) {
+  /// A plan of so many of the candidates; none if they do not determine the parameters, or after a stop.
+  std::optional<CurvePoint> curve_at(int poses) const {
     const Configurations& pool = study_.configurations;
     try {
-      const SearchResult found = search(parts_of_candidates(), spaced_request(study_, settings_, poses), whole_);
-      if (whole_.should_stop()) return;  // not the best plan of so many
+      const SearchResult found = search(copied_parts(parts_), spaced_request(study_, settings_, poses), whole_);
+      if (whole_.should_stop()) return std::nullopt;  // not the best plan of so many
       Configurations list;
       list.dimension = pool.dimension;
       for (const int i : found.design.members) append(list, pool[std::size_t(i)]);
-      if (const auto point = point_of(list, poses)) report_.curve.push_back(*point);
+      return point_of(list, poses);
     } catch (const CannotDo&) {
-      return;  // so few poses do not determine the parameters
+      return std::nullopt;
     }
   }
 
   void fill_curve() {
     const int own = int(new_.count());
-    const Configurations& pool = study_.configurations;
-    std::set<int> tried = {own};
-    for (const double share : shares) {
-      const int poses = int(std::lround(share * own));
-      whole_.report({"other numbers of poses", double(&share - shares), double(std::size(shares)), {}, {}, {}});
-      if (poses < 1 || double(poses) > double(pool.count()) * settings_.repeats.most || !tried.insert(poses).second)
-        continue;
-      if (!monitor_.should_stop()) add_to_curve(poses);
-      if (!monitor_.should_stop()) continue;
-      report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
-      break;
-    }
+    const double most = double(study_.configurations.count()) * settings_.repeats.most;
+    std::set<int> numbers;
+    for (const double share : shares)
+      if (const int poses = int(std::lround(share * own)); poses >= 1 && poses != own && poses <= most)
+        numbers.insert(poses);
+    const std::vector<int> wanted(numbers.begin(), numbers.end());
+    std::vector<std::optional<CurvePoint>> points(wanted.size());
+    std::atomic<int> done = 0;
+    std::atomic<bool> left_out = false;
+    parts_of_candidates();
+    // One search of few restarts keeps no second thread busy.
+    parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
+      if (monitor_.should_stop()) {
+        left_out = true;
+        return;
+      }
+      points[i] = curve_at(wanted[i]);
+      whole_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
+    });
+    if (left_out) report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+    for (const std::optional<CurvePoint>& point : points)
+      if (point) report_.curve.push_back(*point);
     if (const auto point = point_of(new_, own)) report_.curve.push_back(*point);
     std::sort(report_.curve.begin(), report_.curve.end(),
               [](const auto& a, const auto& b) { return a.poses < b.poses; });

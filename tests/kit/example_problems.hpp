@@ -15,11 +15,11 @@ inline std::filesystem::path examples_folder() { return std::filesystem::path(PO
 
 inline Problem example(const std::string& file) { return read_problem(examples_folder() / file); }
 
-/// Relative to the folder, sorted.
+/// Relative to the folder, sorted; without those of `cells`, whose robots are not among the sources (safety's stories).
 inline std::vector<std::string> example_files() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(examples_folder()))
-    if (entry.path().extension() == ".yaml")
+    if (entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "cells")
       files.push_back(std::filesystem::relative(entry.path(), examples_folder()).string());
   std::sort(files.begin(), files.end());
   return files;

@@ -176,7 +176,7 @@ TEST(Continuous, NeverLeavesAHostileFeasibleSetAndNeverReturnsLess) {
           members.push_back(i);
       PoseSet poses = pose_set_of(task, members);
       const double before = poses.value;
-      improve(task, poses, Monitor{});
+      improve(task, poses, 1, Monitor{});
       EXPECT_GE(poses.value, before);
       EXPECT_GT(poses.value, before + 1e-3) << "somewhere there is something to gain";
       for (std::size_t i = 0; i < poses.configurations.size(); ++i) {

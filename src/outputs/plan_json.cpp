@@ -32,6 +32,7 @@ Json certificate_json(const Plan& plan) {
   candidates["found"] = c.found;
   candidates["repeats"] = c.repeats;
   candidates["optimal"] = plan.proved_optimal;
+  candidates["minimum_distance"] = plan.minimum_distance.empty() ? Json(nullptr) : Json(plan.minimum_distance);
   Json workspace = nullptr;
   if (c.workspace)
     workspace = {{"efficiency", c.workspace->efficiency},

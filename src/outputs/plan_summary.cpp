@@ -50,9 +50,10 @@ std::string certificate_text(const Plan& plan) {
   std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}{}.\n", percent(c.efficiency),
                                  as, poses, c.count, found, policy);
   if (plan.proved_optimal)
-    text += plan.reserve
-                ? "No plan of these candidates keeps more when its worst pose is lost: all others are ruled out.\n"
-                : "No plan of these candidates is better: every other one is ruled out.\n";
+    text += fmt::format("No plan of these candidates{} {}.\n",
+                        plan.minimum_distance.empty() ? "" : " that keeps its poses apart",
+                        plan.reserve ? "keeps more when its worst pose is lost: all others are ruled out"
+                                     : "is better: every other one is ruled out");
   if (c.workspace)
     text +=
         c.workspace->proved

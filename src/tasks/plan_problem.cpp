@@ -175,6 +175,8 @@ class PlanSearch {
     plan.problem_sha256 = problem_.sha256;
     plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
+    if (study_.has_minimum_distance)
+      plan.minimum_distance = distance_text(study_.first().workspace->coordinates(), study_.spacing);
     fill_judgement(plan, judgement, study_, settings_);
     plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, chosen),
                                 judgement.evaluations.front(), settings_.planner.threads);

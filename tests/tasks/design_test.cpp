@@ -185,6 +185,7 @@ TEST(Design, PosesOfDrawnCandidatesStayApartUnlessTheyMayRepeatOrSomebodySaysOth
     const Plan plan = plan_problem(problem, {}, Monitor{});
     const double apart = arm ? 5 * std::numbers::pi / 180 : 0.02;
     EXPECT_TRUE(told(plan)) << arm;
+    EXPECT_EQ(plan.minimum_distance, arm ? "5 deg" : "5 to 12 mm");
     EXPECT_GE(nearest(plan), apart - 1e-9) << arm;
     EXPECT_LE(plan.log_det, plan.certificate.bound) << arm;
 
@@ -194,8 +195,24 @@ TEST(Design, PosesOfDrawnCandidatesStayApartUnlessTheyMayRepeatOrSomebodySaysOth
     EXPECT_LT(nearest(stated), apart) << arm << ": nothing kept them apart";
     problem.design.minimum_distance.reset();
     problem.design.repeats = Repeats{Repeats::any_number};
-    EXPECT_FALSE(told(plan_problem(problem, {}, Monitor{}))) << arm;
+    const Plan repeated = plan_problem(problem, {}, Monitor{});
+    EXPECT_FALSE(told(repeated)) << arm;
+    EXPECT_EQ(repeated.minimum_distance, "") << arm;
   }
+}
+
+TEST(Design, AProvedOptimumIsOneOfThePlansThatKeepTheirPosesApart) {
+  const TemporaryFolder folder;
+  folder.write("planar.urdf", planar_urdf(2));
+  const auto summary = [&](const std::string& more) {
+    const Problem problem = read_problem(
+        folder.write("p.yaml", planar_problem(2, "{poses: 4, candidates: 40, method: branch_and_bound" + more + "}")));
+    const Plan plan = plan_problem(problem, {}, Monitor{});
+    EXPECT_TRUE(plan.proved_optimal);
+    return plan_summary(plan);
+  };
+  EXPECT_THAT(summary(""), HasSubstr("No plan of these candidates that keeps its poses apart is better: every other"));
+  EXPECT_THAT(summary(", repeats: allow"), HasSubstr("No plan of these candidates is better: every other one"));
 }
 
 TEST(Design, KeepingPosesApartNeverMakesAPlanFail) {

@@ -209,7 +209,8 @@ struct Plan {
   bool determinant = true;       ///< the criterion is log_det, so that its bound is one of log_det
   bool by_test_poses = false;    ///< the criterion counts the test poses and nothing else
   bool reserve = false;          ///< searched for what is left without the pose that hurts most
-  bool proved_optimal = false;   ///< no plan of these candidates is better
+  bool proved_optimal = false;   ///< no plan of these candidates is better that keeps the minimum distance
+  std::string minimum_distance;  ///< of poses, for people; empty: none is kept
   double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)
   std::optional<double> rho0;    ///< predicted position error at the test poses, root of the weighted mean square, m
   std::vector<double> test_errors{};  ///< the same at each test pose, m

@@ -78,7 +78,9 @@ export function proof(plan) {
         : `, each at most ${c.repeats} times`;
   return (
     `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} any other ${newPoses(plan).length} of the ${c.count.toLocaleString('en')} candidate poses${repeats}.` +
-    (c.optimal ? ' No plan of these candidates is better: every other one is ruled out.' : '')
+    (c.optimal
+      ? ` No plan of these candidates${c.minimum_distance ? ' that keeps its poses apart' : ''} is better: every other one is ruled out.`
+      : '')
   );
 }
 

@@ -35,6 +35,8 @@ def main():
     program = str(options.program.resolve())
     folder = options.keep or pathlib.Path(tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
+    for mesh in CELLS.glob("*.stl"):
+        (folder / mesh.name).write_bytes(mesh.read_bytes())
     for cell in sorted(CELLS.glob("*.yaml")):
         if options.only and cell.stem not in options.only:
             continue

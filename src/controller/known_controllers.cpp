@@ -25,7 +25,7 @@ std::vector<std::string> known_controllers() {
 ControllerSettings controller_settings(const std::string& name_or_file, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / name_or_file;
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored)) {
+  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored)) {
     ControllerSettings settings = parse_controller_settings(read_text(file, size_limit), file.string());
     settings.path = file;
     return settings;

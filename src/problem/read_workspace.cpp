@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "posewright/controller/known_controllers.hpp"
+#include "posewright/support/text.hpp"
 #include "sections.hpp"
 
 namespace posewright {
@@ -34,10 +35,13 @@ void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::fil
   if (const Value* controller = joints.find("controller")) {
     const std::string name = controller->text("a file name or a known controller is expected");
     const std::vector<std::string> known = known_controllers();
+    std::vector<std::string> ranged = known;
+    std::erase_if(ranged, [](const std::string& each) { return controller_settings(each).range_deg.empty(); });
     std::error_code ignored;
-    if (!std::filesystem::exists(folder / name, ignored) && std::find(known.begin(), known.end(), name) == known.end())
+    const bool file = std::filesystem::exists(folder / name, ignored) && !std::filesystem::is_directory(folder / name);
+    if (!file && std::find(known.begin(), known.end(), name) == known.end())
       controller->fail("is " + in_quotes(name) + ", neither a file nor a known controller",
-                       fmt::format("known: {}", fmt::join(known, ", ")));
+                       fmt::format("known: {}", fmt::join(ranged, ", ")));
     workspace.controller = controller_settings(name, folder);
     if (workspace.controller->range_deg.empty())
       throw InputError({workspace.controller->file, 0}, "has no range_deg", "the ranges that poses are to keep");

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <vector>
 
 namespace posewright {
 namespace {
@@ -14,6 +16,8 @@ constexpr double same_pose = 0.01;
 // Nearer ones look like a slip to whoever drives them: of an angle, and as a share of a range.
 constexpr double usual_angle = 5 * std::numbers::pi / 180, usual_share = 0.02;
 constexpr int most_halvings = 6;
+// Of poses whose number is not known yet.
+constexpr std::size_t most_unknown = 500;
 
 /// Units by coordinate; where a distance is 0, the coordinate does not make a pose another one.
 template <class Distance>
@@ -32,14 +36,17 @@ Spacing spacing_by(const std::vector<Coordinate>& coordinates, const Distance& d
   return spacing;
 }
 
-/// Whether so many candidates, taken as they come, keep the distance from each other.
-bool holds(const Spacing& spacing, const Configurations& candidates, std::size_t wanted) {
-  std::vector<std::size_t> taken;
-  for (std::size_t i = 0; i < candidates.count() && taken.size() < wanted; ++i)
-    if (std::none_of(taken.begin(), taken.end(),
-                     [&](std::size_t j) { return spacing.too_near(candidates[i], candidates[j]); }))
-      taken.push_back(i);
-  return taken.size() >= wanted;
+/// Whether so many of the candidates keep the distance from each other and from what is measured. Ten times as many are
+/// looked at, evenly among all.
+bool holds(const Spacing& spacing, const Configurations& candidates, const Configurations& measured,
+           std::size_t wanted) {
+  std::vector<std::span<const double>> taken;
+  for (std::size_t i = 0; i < measured.count(); ++i) taken.push_back(measured[i]);
+  const std::size_t enough = taken.size() + wanted, step = std::max<std::size_t>(1, candidates.count() / (10 * wanted));
+  for (std::size_t i = 0; i < candidates.count() && taken.size() < enough; i += step)
+    if (std::none_of(taken.begin(), taken.end(), [&](const auto& q) { return spacing.too_near(candidates[i], q); }))
+      taken.push_back(candidates[i]);
+  return taken.size() >= enough;
 }
 
 }  // namespace
@@ -55,16 +62,17 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
   });
 }
 
-Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates, int poses) {
-  const std::size_t count = candidates.count(), taken = std::size_t(std::max(poses, 0));
-  if (count <= taken) return {};
-  const std::size_t half = (count + taken) / 2, wanted = poses > 0 ? std::min(4 * taken, half) : half;
+Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
+                      const Configurations& measured, int poses) {
+  // Whoever draws poses at random comes to fewer than fit: four times as many leave them room.
+  const std::size_t wanted = poses > 0 ? 4 * std::size_t(poses) : std::min(candidates.count() / 2, most_unknown);
+  if (wanted == 0 || candidates.count() < wanted) return {};
   Spacing spacing = spacing_by(coordinates, [](const Coordinate& c) {
     const double share = usual_share * (c.upper - c.lower);
     return c.unit == "m" ? share : std::min(usual_angle, share);
   });
   for (int halvings = 0; halvings <= most_halvings; ++halvings, spacing.unit /= 2)
-    if (holds(spacing, candidates, wanted)) return spacing;
+    if (holds(spacing, candidates, measured, wanted)) return spacing;
   return {};
 }
 

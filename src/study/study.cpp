@@ -113,17 +113,6 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
   fill_prior(study, variant, settings);
 }
 
-void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings) {
-  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
-  study.spacing = spacing_of(coordinates, stated, settings.repeats);
-  study.has_minimum_distance = stated.has_value();
-  // Whoever lists candidates chose how near they are to each other.
-  if (stated || settings.repeats.most > 1 || !study.list.empty()) return;
-  Spacing usual = usual_spacing(coordinates, study.configurations, settings.poses);
-  study.has_minimum_distance = study.usual_distance = usual.unit.size() > 0;
-  if (study.usual_distance) study.spacing = std::move(usual);
-}
-
 }  // namespace
 
 void append(Configurations& list, std::span<const double> q) {
@@ -175,6 +164,18 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   keep_away_from_measured(study, settings.repeats);
   if (!settings.truth.value.empty()) study.discrepancy = make_discrepancy(problem, study, settings);
   return study;
+}
+
+void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings) {
+  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
+  study.spacing = spacing_of(coordinates, stated, settings.repeats);
+  study.has_minimum_distance = stated.has_value();
+  study.usual_distance = false;
+  // Whoever lists candidates chose how near they are to each other.
+  if (stated || settings.repeats.most > 1 || !study.list.empty()) return;
+  Spacing usual = usual_spacing(coordinates, study.configurations, study.measured, settings.poses);
+  study.has_minimum_distance = study.usual_distance = usual.unit.size() > 0;
+  if (study.usual_distance) study.spacing = std::move(usual);
 }
 
 void keep_away_from_measured(Study& study, Repeats repeats) {

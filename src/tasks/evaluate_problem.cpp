@@ -25,7 +25,10 @@ constexpr double proved_drop = 5e4;
 class ListEvaluation {
  public:
   ListEvaluation(const Problem& problem, const PoseList& list, const EvaluateOptions& options, const Monitor& monitor)
-      : options_(options), monitor_(monitor), settings_(settings_of(problem, numbered(options.plan))) {
+      : options_(options),
+        monitor_(monitor),
+        stated_distance_(problem.design.minimum_distance),
+        settings_(settings_of(problem, numbered(options.plan))) {
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
@@ -203,6 +206,9 @@ class ListEvaluation {
     const int threads = settings_.planner.threads;
     // The list is what is there already; the last thing that is done, so the candidates may change.
     study_.measured.values.insert(study_.measured.values.end(), poses_.values.begin(), poses_.values.end());
+    Settings more = settings_;
+    more.poses = k;
+    keep_apart(study_, stated_distance_, more);
     keep_away_from_measured(study_, settings_.repeats);
     std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, study_.configurations, threads);
     const std::vector<SearchPart> list = search_parts(study_, settings_.criterion, poses_, threads);
@@ -232,6 +238,7 @@ class ListEvaluation {
 
   const EvaluateOptions& options_;
   const Monitor& monitor_;
+  std::optional<DesignSpec::MinimumDistance> stated_distance_;
   Settings settings_;
   Study study_;
   Configurations poses_;

@@ -233,7 +233,7 @@ class ReportBuilder {
     std::vector<std::optional<CurvePoint>> points(wanted.size());
     std::atomic<int> done = 0;
     std::atomic<bool> left_out = false;
-    parts_of_candidates();
+    if (!wanted.empty()) parts_of_candidates();
     // One search of few restarts keeps no second thread busy.
     parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (monitor_.should_stop()) {
@@ -241,6 +241,7 @@ class ReportBuilder {
         return;
       }
       points[i] = curve_at(wanted[i]);
+      if (whole_.should_stop()) left_out = true;
       whole_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
     });
     if (left_out) report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");

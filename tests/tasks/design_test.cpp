@@ -221,6 +221,17 @@ TEST(Design, KeepingPosesApartNeverMakesAPlanFail) {
   PlanOptions options = quick(45);
   options.poses = 44;
   EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 44U);
+  // What is measured already fills the workspace: the default yields, candidates stay.
+  const TemporaryFolder folder;
+  options = quick(300);
+  options.poses = 200;
+  options.method = "greedy";
+  const auto measured = folder.write("measured.json", plan_json(plan_problem(problem, options, Monitor{})));
+  options = quick(400);
+  options.seed = 3;
+  options.poses = 40;
+  options.measured = poses_in(problem, measured);
+  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 240U);
   // The promising candidates lie in a few places that cannot hold twelve at a distance; others can.
   options = quick(3000);
   options.poses = 12;

@@ -19,10 +19,10 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
 
 /// How far the poses of a plan stay apart where they may not repeat and nobody states a distance: 5 deg or a fiftieth
 /// of a range, whichever is less, in at least one coordinate. Halved until four times the wanted poses fit among the
-/// candidates (or half of those that the plan does not take), so that no plan fails by it; without units if even the
-/// candidates' own distances are less.
+/// candidates, away from what is measured, so that no plan fails by it; without units where so many are not to be had.
 /// @param poses  wanted; 0: not known yet
-Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates, int poses);
+Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
+                      const Configurations& measured, int poses);
 
 /// The distances for people: "5 deg", "2.5 to 5 deg or 12 mm".
 std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);

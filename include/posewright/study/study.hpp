@@ -84,6 +84,9 @@ std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts);
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion);
 
+/// How far poses stay apart: as stated, else usual_spacing() where it applies.
+void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings);
+
 /// Takes away candidates that repeat a measured pose or are nearer to one than the minimum distance, where the policy
 /// forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
 void keep_away_from_measured(Study& study, Repeats repeats);

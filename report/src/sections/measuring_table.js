@@ -94,7 +94,7 @@ function reading(list) {
   return [
     titles.includes('#distance, m') && 'Distance and incidence: the largest of the targets that are seen.',
     titles.includes('clearance, mm') && 'Clearance: of the two bodies that are nearest; the picture marks them.',
-    list.report.route && 'A dash: the list goes another way than the route, so nothing is known of the motion.',
+    titles.includes('#way there') && 'No way there: the route has no motion to this pose from the one before it.',
   ]
     .filter(Boolean)
     .join(' ');

@@ -6,13 +6,16 @@ const around = ({ stops, place }) => ({
   after: stops.find((s) => s.index > place),
 });
 
+/** Where a route ends: home, or the first pose again. */
+const lastStop = ({ stops }, { report }) => (report.route?.closed && !report.route.from_home ? stops[0]?.id : 0);
+
 /** Which bodies come nearest at the pose shown, or on the motion. @param {import('./player.js').Player} player
  * @param {import('../pose_list.js').PoseList} list */
 export function nearestHere(player, list) {
   if (list.current !== null) return list.poses.get(list.current)?.nearest;
   const { before, after } = around(player);
   const from = before?.id ?? 0,
-    to = after?.id ?? 0;
+    to = after?.id ?? lastStop(player, list);
   return list.report.route?.motions.find((m) => m.from === from && m.to === to)?.nearest;
 }
 

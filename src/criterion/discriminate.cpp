@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,15 +89,16 @@ namespace {
 class DiscriminateCriterion : public Criterion {
  public:
   explicit DiscriminateCriterion(const CriterionData& data)
-      : function_(int(data.R.cols()) - data.effects.columns, whitened_mix(data)) {}
+      : function_(
+            std::make_shared<DiscriminateFunction>(int(data.R.cols()) - data.effects.columns, whitened_mix(data))) {}
   std::string name() const override { return "discriminate"; }
-  const InformationFunction& function() const override { return function_; }
+  const InformationFunction& function() const override { return *function_; }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
     return start_residual(view, std::move(members), function_);
   }
 
  private:
-  DiscriminateFunction function_;
+  std::shared_ptr<const DiscriminateFunction> function_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "residual_state.hpp"
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "by_bound.hpp"
@@ -22,8 +23,13 @@ constexpr double safe_pivot = 1e-4;
 /// swap gains no more than ‖e_j‖² − ‖e_k‖².
 class ResidualState : public DesignState {
  public:
-  ResidualState(const CandidateView& view, std::vector<int> members, const DiscriminateFunction& function)
-      : DesignState(view, std::move(members)), function_(function), fitted_(function.fitted()), half_(function.half()) {
+  ResidualState(const CandidateView& view, std::vector<int> members,
+                std::shared_ptr<const DiscriminateFunction> function)
+      : DesignState(view, std::move(members)),
+        shared_(std::move(function)),
+        function_(*shared_),
+        fitted_(function_.fitted()),
+        half_(function_.half()) {
     refresh();
   }
 
@@ -138,6 +144,7 @@ class ResidualState : public DesignState {
     return std::isfinite(phi) ? std::exp(phi) - T_ : -infinity;
   }
 
+  std::shared_ptr<const DiscriminateFunction> shared_;  // a state may outlive its criterion
   const DiscriminateFunction& function_;
   Eigen::Index fitted_;
   const Eigen::MatrixXd& half_;
@@ -154,8 +161,8 @@ class ResidualState : public DesignState {
 }  // namespace
 
 std::unique_ptr<DesignState> start_residual(const CandidateView& view, std::vector<int> members,
-                                            const DiscriminateFunction& function) {
-  return std::make_unique<ResidualState>(view, std::move(members), function);
+                                            std::shared_ptr<const DiscriminateFunction> function) {
+  return std::make_unique<ResidualState>(view, std::move(members), std::move(function));
 }
 
 }  // namespace posewright

@@ -9,8 +9,7 @@
 namespace posewright {
 
 /// State of `discriminate` with exact swaps.
-/// @param function  outlives the state
 std::unique_ptr<DesignState> start_residual(const CandidateView& view, std::vector<int> members,
-                                            const DiscriminateFunction& function);
+                                            std::shared_ptr<const DiscriminateFunction> function);
 
 }  // namespace posewright

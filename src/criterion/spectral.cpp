@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -171,16 +172,16 @@ namespace {
 class SpectralCriterion : public Criterion {
  public:
   SpectralCriterion(std::string name, SpectralIndex index, const CriterionData& data)
-      : name_(std::move(name)), function_(index, data) {}
+      : name_(std::move(name)), function_(std::make_shared<SpectralFunction>(index, data)) {}
   std::string name() const override { return name_; }
-  const InformationFunction& function() const override { return function_; }
+  const InformationFunction& function() const override { return *function_; }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
     return start_spectral(view, std::move(members), function_);
   }
 
  private:
   std::string name_;
-  SpectralFunction function_;
+  std::shared_ptr<const SpectralFunction> function_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "by_bound.hpp"
@@ -31,11 +32,12 @@ constexpr Eigen::Index first_look = 4;
 /// Eigenvalues are computed for what is left.
 class SpectralState : public DesignState {
  public:
-  SpectralState(const CandidateView& view, std::vector<int> members, const SpectralFunction& function)
+  SpectralState(const CandidateView& view, std::vector<int> members, std::shared_ptr<const SpectralFunction> function)
       : DesignState(view, std::move(members)),
-        function_(function),
-        share_least_(function.index() == SpectralIndex::o4 ? 1.0 : 0.5),
-        share_most_(function.index() == SpectralIndex::o2 || function.index() == SpectralIndex::o4 ? 0.5 : 0.0) {
+        shared_(std::move(function)),
+        function_(*shared_),
+        share_least_(function_.index() == SpectralIndex::o4 ? 1.0 : 0.5),
+        share_most_(function_.index() == SpectralIndex::o2 || function_.index() == SpectralIndex::o4 ? 0.5 : 0.0) {
     refresh();
   }
 
@@ -203,6 +205,7 @@ class SpectralState : public DesignState {
     return (small_.eigenvalues().array() < 0).count() >= below;
   }
 
+  std::shared_ptr<const SpectralFunction> shared_;  // a state may outlive its criterion
   const SpectralFunction& function_;
   double share_least_, share_most_;  // Φ = share_least ln λ_min − share_most ln λ_max
   Eigen::MatrixXd information_, rest_;
@@ -220,8 +223,8 @@ class SpectralState : public DesignState {
 }  // namespace
 
 std::unique_ptr<DesignState> start_spectral(const CandidateView& view, std::vector<int> members,
-                                            const SpectralFunction& function) {
-  return std::make_unique<SpectralState>(view, std::move(members), function);
+                                            std::shared_ptr<const SpectralFunction> function) {
+  return std::make_unique<SpectralState>(view, std::move(members), std::move(function));
 }
 
 }  // namespace posewright

@@ -9,8 +9,7 @@
 namespace posewright {
 
 /// State of `o2` to `o5` with exact swaps.
-/// @param function  outlives the state
 std::unique_ptr<DesignState> start_spectral(const CandidateView& view, std::vector<int> members,
-                                            const SpectralFunction& function);
+                                            std::shared_ptr<const SpectralFunction> function);
 
 }  // namespace posewright

@@ -52,6 +52,7 @@ class EigenvalueBound {
       numbers_ = relaxation.numbers();
       result.attained = std::max(result.attained, ratio_ ? relaxation.ratio() : relaxation.least());
       result.bound = std::min(result.bound, pass(relaxation));
+      if (ratio_) result.bound = std::min(result.bound, 1.0);
       monitor.report({"certificate", double(round + 1), 0, {}, {}, result.attained / result.bound});
       if (result.bound <= result.attained * (1 + 2 * options_.tolerance) || monitor.should_stop()) break;
       // The same candidates again: what is left is the accuracy of the weights.

@@ -130,7 +130,7 @@ TEST(SpectralBound, NoMatricesOfTraceOneGiveAnInvalidBound) {
 
 TEST(SpectralBound, IsOfUseAmongManyCandidates) {
   // More candidates than the method works on at a time: the pass over all of them brings the missing ones in.
-  const BlockArray blocks = random_blocks(3000, 1, 8, 3);
+  const BlockArray blocks = random_blocks(600, 1, 8, 3);
   const CriterionData data{Eigen::MatrixXd::Identity(8, 8), Eigen::VectorXd::Ones(8), 0};
   for (const char* name : {"o2", "o3"}) {
     const auto criterion = make_criterion(name, data);

@@ -5,6 +5,7 @@
 
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/support/dense.hpp"
+#include "harmonic_rows.hpp"
 #include "repeatability.hpp"
 
 namespace posewright {
@@ -104,13 +105,9 @@ void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, L
   }
 }
 
-bool ExplicitModel::do_multilinear(std::span<const int> selected, std::span<const double> correction) const {
-  // Turns of a visit move targets by an amount that depends on where they point.
-  if (reading_noise_ || repeatability_.rotation > 0 || !measurement_->linear_with_constant_noise()) return false;
-  std::vector<int> of_tip;
-  for (const int i : selected)
-    if (i < tip_parameters_) of_tip.push_back(i);
-  return tip_->multilinear(of_tip, correction.first(std::min(correction.size(), std::size_t(tip_parameters_))));
+std::unique_ptr<HarmonicRows> ExplicitModel::do_harmonic_rows(const Point& at, std::span<const int> selected,
+                                                              std::string& why_not) const {
+  return make_harmonic_rows(*tip_, *measurement_, repeatability_, tip_parameters_, at, selected, why_not);
 }
 
 void ExplicitModel::do_take_loads_at(std::span<const double> correction) {

@@ -58,6 +58,19 @@ void PointsModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) 
   }
 }
 
+HarmonicNoise PointsModel::harmonic_noise() const {
+  HarmonicNoise noise;
+  const auto* tracker = std::get_if<TrackerNoise>(&spec_.noise);
+  if (tracker == nullptr) {
+    noise.kind = HarmonicNoise::Kind::constant;
+  } else if (spec_.components.size() == 3) {
+    noise.kind = HarmonicNoise::Kind::beams;
+    noise.along = squared(tracker->range, tracker->range_per_m, repeats_);
+    noise.across = squared(tracker->transverse, tracker->angle, repeats_);
+  }
+  return noise;
+}
+
 void PointsModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                                  Eigen::Ref<Eigen::MatrixXd> rows) const {
   const auto width = Eigen::Index(spec_.components.size());

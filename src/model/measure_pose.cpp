@@ -64,6 +64,17 @@ void PoseModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd&
   if (turns_ == 3) out.tail<3>() = rotation_vector(rotation_by(change.tail<3>()) * rotation_by(predicted.tail<3>()));
 }
 
+HarmonicNoise PoseModel::harmonic_noise() const {
+  HarmonicNoise noise;
+  noise.kind = HarmonicNoise::Kind::constant;
+  if (points_ == nullptr) return noise;
+  // A pose fitted to points tells what the points tell; a part of it does not.
+  if (rows_ < 6) return {};
+  noise.instead = points_.get();
+  noise.repeats = repeats_;
+  return noise;
+}
+
 void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                                Eigen::Ref<Eigen::MatrixXd> rows) const {
   const Eigen::Vector3d p = sighting.X_MeasureTip.translation();

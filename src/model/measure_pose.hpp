@@ -24,7 +24,7 @@ class PoseModel : public MeasurementModel {
   void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
   void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
-  bool linear_with_constant_noise() const override { return points_ == nullptr; }
+  HarmonicNoise harmonic_noise() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
 
  private:

@@ -5,7 +5,11 @@
 
 namespace posewright {
 
-bool TipModel::multilinear(std::span<const int>, std::span<const double>) const { return false; }
+HarmonicColumns TipModel::harmonic_columns(std::span<const int>, std::span<const double>) const {
+  return {"columns of this robot that are no polynomials of the joints' cosines and sines", {}, {}, {}};
+}
+
+int TipModel::offset_of(int) const { return -1; }
 
 void TipModel::take_loads_at(std::span<const double>) {}
 

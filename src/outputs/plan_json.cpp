@@ -40,7 +40,11 @@ Json certificate_json(const Plan& plan) {
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
                  {"method", c.workspace->method},
                  {"proved", c.workspace->proved},
-                 {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)}};
+                 {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)},
+                 {"boxes", c.workspace->boxes},
+                 {"loose_proof", c.workspace->loose_bound ? Json{{"efficiency", c.workspace->loose_efficiency},
+                                                                 {"bound", *c.workspace->loose_bound}}
+                                                          : Json(nullptr)}};
   return {{"candidates", candidates}, {"workspace", workspace}};
 }
 

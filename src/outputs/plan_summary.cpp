@@ -35,6 +35,17 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
+std::string workspace_text(const Certificate::Workspace& w) {
+  if (w.proved)
+    return fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
+                       proved_percent(w.efficiency));
+  const std::string why = w.loose_bound ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency),
+                                                      w.why_not)
+                                        : "no proof: " + w.why_not;
+  return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
+                     searched_percent(w.efficiency), why);
+}
+
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved)
@@ -54,15 +65,7 @@ std::string certificate_text(const Plan& plan) {
                         plan.minimum_distance.empty() ? "" : " that keeps its poses apart",
                         plan.reserve ? "keeps more when its worst pose is lost: all others are ruled out"
                                      : "is better: every other one is ruled out");
-  if (c.workspace)
-    text +=
-        c.workspace->proved
-            ? fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
-                          proved_percent(c.workspace->efficiency))
-            : fmt::format(
-                  "Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof: {}).\n",
-                  searched_percent(c.workspace->efficiency), c.workspace->why_not);
-  return text;
+  return c.workspace ? text + workspace_text(*c.workspace) : text;
 }
 
 std::string variants_text(const Plan& plan) {

@@ -1,7 +1,6 @@
 #include "posewright/planning/workspace_bound.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,7 +8,6 @@
 #include <utility>
 
 #include "posewright/planning/ascent.hpp"
-#include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -17,8 +15,7 @@
 namespace posewright {
 namespace {
 
-// With fewer candidates a plan is a quick look: it gets so many rounds and no more.
-constexpr std::size_t few_candidates = 1000;
+// A quick look gets so many rounds and no more.
 constexpr int few_rounds = 8;
 // Candidates that the weights are solved over at first, for each column: optimal weights sit on some two for each;
 // those that turn out to be missing come in later.
@@ -27,17 +24,6 @@ constexpr int pool_per_column = 4;
 constexpr double nearly = 1.02;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
-
-// Angles of a tensor of so many axes are sampled in a second.
-constexpr std::size_t most_axes = 7, axes_for_nothing = 3;
-// d and its polynomial may differ by this share of h, at so many random places.
-constexpr double same_function = 1e-7, rounding_factor = 100.0;
-constexpr int places_compared = 100;
-constexpr std::uint64_t proof_stream = 0x9f00f;
-// Coefficients of all boxes: some ten seconds of one core, whatever the number of joints. Counted and not timed, so
-// that a plan is the same on every machine.
-constexpr double proof_work = 3e8;
-constexpr long fewest_boxes = 3000;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
@@ -155,53 +141,6 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   return pool;
 }
 
-/// d(q) = ‖J(q) T‖² of the axes that move, all others where they are.
-class MovingSensitivity {
- public:
-  MovingSensitivity(const ConfigurationSpace& space, const Eigen::MatrixXd& T, int rows, int columns)
-      : space_(space), T_(T), rows_(rows), columns_(columns) {
-    for (std::size_t a = 0; a < space.axes().size(); ++a) {
-      const ConfigurationSpace::Axis& axis = space.axes()[a];
-      q_.push_back(axis.lower);
-      if (!axis.continuous || !(axis.upper > axis.lower)) continue;
-      moving_.push_back(a);
-      axes_.push_back({axis.lower, axis.upper, axis.turns});
-    }
-  }
-  const std::vector<HarmonicAxis>& axes() const { return axes_; }
-
-  std::function<double(std::span<const double>)> for_one_thread() const {
-    auto probe = std::shared_ptr<ConfigurationSpace::Probe>(space_.probe());
-    auto block = std::make_shared<BlockArray>(1, rows_, columns_);
-    return [this, probe, block, sensitivity = std::make_shared<Sensitivity>(T_), q = q_](auto values) mutable {
-      for (std::size_t i = 0; i < moving_.size(); ++i) q[moving_[i]] = values[i];
-      if (!probe->block(q, block->row(0, 0), block->stride())) return std::numeric_limits<double>::quiet_NaN();
-      return sensitivity->value(std::as_const(*block).block(0));
-    };
-  }
-
- private:
-  const ConfigurationSpace& space_;
-  const Eigen::MatrixXd& T_;
-  int rows_, columns_;
-  std::vector<double> q_;
-  std::vector<std::size_t> moving_;
-  std::vector<HarmonicAxis> axes_;
-};
-
-/// Largest difference between the polynomial and d itself at random places; NaN if d has none at one.
-double largest_difference(const HarmonicFunction& polynomial, const std::function<double(std::span<const double>)>& d,
-                          Random& random) {
-  double largest = 0;
-  std::vector<double> q(polynomial.axes().size());
-  for (int i = 0; i < places_compared; ++i) {
-    for (std::size_t a = 0; a < q.size(); ++a)
-      q[a] = random.uniform(polynomial.axes()[a].lower, polynomial.axes()[a].upper);
-    largest = std::max(largest, std::abs(polynomial.value(q) - d(q)));
-  }
-  return largest;
-}
-
 }  // namespace
 
 double WorkspaceBound::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
@@ -265,62 +204,6 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
       }
     }
   return result;
-}
-
-void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
-                     int columns, const WorkspaceBoundOptions& options, const Monitor& monitor) {
-  WorkspaceProof& proof = result.proof;
-  proof.why_not = result.stopped || monitor.should_stop() ? "stopped" : space.not_harmonic();
-  if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
-  if (!proof.why_not.empty()) return;
-  const MovingSensitivity d(space, result.factor, rows, columns);
-  if (d.axes().empty() || d.axes().size() > most_axes) {
-    proof.why_not = "more than 7 joints";
-    return;
-  }
-  if (candidates < few_candidates && d.axes().size() > axes_for_nothing) {
-    proof.why_not = "a quick look at fewer than 1,000 candidates";
-    return;
-  }
-  const HarmonicFunction polynomial(
-      d.axes(), [&] { return d.for_one_thread(); }, options.threads);
-  Random random(options.seed, proof_stream);
-  const double difference = polynomial.defined() ? largest_difference(polynomial, d.for_one_thread(), random)
-                                                 : std::numeric_limits<double>::quiet_NaN();
-  if (!(difference <= same_function * result.degree)) {
-    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
-    return;
-  }
-  HarmonicBoundOptions limits;
-  // Values were interpolated as they are computed: what rounding makes of them there is far below this.
-  limits.slack = rounding_factor * difference + same_function * 1e-3 * result.degree;
-  limits.tolerance = options.tolerance;
-  limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
-  limits.threads = options.threads;
-  const double extra =
-      options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
-  if (options.proof.gap) {
-    limits.enough = result.degree * (1 + *options.proof.gap) - extra;
-    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
-  }
-  Monitor own;
-  own.interrupted = monitor.interrupted;
-  own.deadline = monitor.deadline;
-  if (options.proof.seconds) {
-    const auto end = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
-                                                 std::chrono::duration<double>(*options.proof.seconds));
-    own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
-    limits.most_boxes = std::numeric_limits<long>::max();
-  }
-  const HarmonicBound most = largest_value(polynomial, limits, own);
-  proof.boxes = most.boxes;
-  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
-  if (!std::isfinite(most.bound)) {
-    proof.why_not = "stopped";
-    return;
-  }
-  proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
-  proof.bound = result.value + result.degree * std::log(proof.max_ratio);
 }
 
 }  // namespace posewright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harmonic_space.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 
@@ -111,16 +112,8 @@ class StudySpace : public ConfigurationSpace {
 
   const std::vector<Axis>& axes() const override { return axes_; }
   bool is_box() const override { return box_; }
-  std::string not_harmonic() const override {
-    if (parts_.size() > 1) return "several variants or effects";
-    const SpacePart& part = parts_.front();
-    if (part.features != nullptr) return "an unmodelled effect";
-    if (part.mix.size() > 0) return "effects of another variant";
-    for (const Coordinate& c : parts_.front().workspace->proposed())
-      if (c.discrete() && c.values.size() > 1) return "a choice of " + c.name;
-    return part.model->multilinear(part.selected)
-               ? ""
-               : "readings, noise or columns that are not linear in cosines and sines of the joints";
+  HarmonicForms harmonic_forms(const WeightedConfigurations& where) const override {
+    return harmonic_forms_of(parts_, axes_, R_, where);
   }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }

@@ -88,6 +88,8 @@ struct Linearisation {
   }
 };
 
+class HarmonicRows;
+
 /// Which of an instrument's targets can be seen. Const and callable from several threads.
 class Visibility {
  public:
@@ -120,12 +122,10 @@ class IdentificationModel {
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
 
   /// Takes `value` as the nominal one of parameter `index`: from now on all that follows is linearised there.
-  /// Whether whitened blocks of these columns are W times a matrix whose entries are linear in each of 1, cos q, sin q
-  /// of every angle and in each length, W the same at every configuration: then ‖J(q) T‖² is of degree 2 in each.
-  bool multilinear(std::span<const int> selected) const {
-    return visibility_ == nullptr && do_multilinear(selected, shift_);
-  }
-
+  /// What bounds the sensitivity of these columns over boxes of the coordinates, the choices as they are in q; every
+  /// target counts as seen, which only tells more. Null: nothing does, `why_not` says why.
+  std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
+                                              std::string& why_not) const;
   void set_nominal(int index, double value);
   /// From now on loads bend an elastic robot as they do with these corrections (of all parameters): what parameters
   /// change of the torques is of second order while corrections are small, but a base may be found to stand anywhere.
@@ -225,7 +225,8 @@ class IdentificationModel {
   virtual int do_block_rows(std::span<const int> selected) const;
   virtual bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const;
   virtual bool do_measurable(const Point& at) const;
-  virtual bool do_multilinear(std::span<const int> selected, std::span<const double> correction) const;
+  virtual std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
+                                                         std::string& why_not) const;
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
   virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "posewright/blocks/harmonic_parts.hpp"
 #include "posewright/model/identification_model.hpp"
 
 namespace posewright {
@@ -11,6 +13,14 @@ namespace posewright {
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 using Polyline = std::vector<Eigen::Vector3d>;
+
+/// Columns as polynomials of the joints' cosines and sines (and lengths), times factors that are none.
+struct HarmonicColumns {
+  std::string why_not;        ///< for people; empty: the rest holds
+  std::vector<int> selected;  ///< columns that are polynomials, in place of those that were selected
+  std::vector<int> degrees;   ///< of pose and columns in each coordinate; 0 for a choice
+  std::vector<ColumnFactor> factors;
+};
 
 /// A robot that carries one tip frame: where the tip is and how each parameter moves it.
 ///
@@ -38,9 +48,12 @@ class TipModel {
   virtual bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
                          Twists& twists, Twists* reading_twists) const = 0;
 
-  /// Whether the tip's pose and these columns are linear in each of 1, cos q, sin q of every angle and in each length,
-  /// at these corrections (all parameters, or empty): theory.md eq. (37). Twists of zero columns are.
-  virtual bool multilinear(std::span<const int> selected, std::span<const double> correction) const;
+  /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty; theory.md
+  /// eq. (37)). Twists of zero columns are polynomials.
+  virtual HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const;
+
+  /// Index of the parameter that moves the tip as the reading of this coordinate does; −1: there is none.
+  virtual int offset_of(int coordinate) const;
 
   /// From now on loads bend the robot as they do with these corrections (all parameters, maybe without tool.*).
   virtual void take_loads_at(std::span<const double> correction);

@@ -87,6 +87,10 @@ struct Certificate {
     std::string method;   ///< how the largest sensitivity was sought
     bool proved = false;  ///< no plan within the limits exceeds the bound; else a search says so
     std::string why_not;  ///< why it is not proved
+    long boxes = 0;       ///< that a proof took
+    /// A proof far below what the search says: it holds all the same.
+    std::optional<double> loose_bound{};
+    double loose_efficiency = 0.0;
   };
   std::optional<Workspace> workspace;
 };

@@ -6,8 +6,14 @@
 #include <vector>
 
 #include "posewright/criterion/spacing.hpp"
+#include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
+
+struct WeightedConfigurations {
+  std::vector<std::vector<double>> configurations;
+  std::vector<double> weights;
+};
 
 /// Where candidates come from: the feasible set and the block of any configuration in it. Planners that look beyond the
 /// candidates see this and nothing of robots.
@@ -34,9 +40,9 @@ class ConfigurationSpace {
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
-  /// Whether ‖J(q) T‖² is of degree 2 in cosine and sine of every angle and in every length, for any T: then its
-  /// largest value can be proved. Empty: it is; else why not, for people.
-  virtual std::string not_harmonic() const { return "this space does not say how blocks depend on its axes"; }
+  /// What bounds ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
+  /// @param where  configurations at which bounds that can be chosen ought to be good
+  virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;
   /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
@@ -44,5 +50,9 @@ class ConfigurationSpace {
   virtual std::span<const double> candidate(int index) const = 0;
   virtual std::unique_ptr<Probe> probe() const = 0;
 };
+
+inline HarmonicForms ConfigurationSpace::harmonic_forms(const WeightedConfigurations&) const {
+  return {"this space does not say how blocks depend on its axes", {}};
+}
 
 }  // namespace posewright

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "harmonic_rows.hpp"
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/support/dense.hpp"
-#include "harmonic_rows.hpp"
 #include "repeatability.hpp"
 
 namespace posewright {

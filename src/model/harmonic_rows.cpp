@@ -18,9 +18,9 @@ constexpr int share_steps = 1000;
 struct ExplicitWork : HarmonicRows::Work {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   Twists twists, readings;
-  Eigen::MatrixXd rows;   // of the instrument: columns, then joint readings
-  Eigen::VectorXd y;      // what it reads
-  RowMatrix all, parts;   // the same by rows; of all parts
+  Eigen::MatrixXd rows;  // of the instrument: columns, then joint readings
+  Eigen::VectorXd y;     // what it reads
+  RowMatrix all, parts;  // the same by rows; of all parts
 };
 
 InverseVariance plus(InverseVariance variance, double more) {
@@ -88,7 +88,7 @@ class ExplicitRows : public HarmonicRows {
   double displacement_ = 0.0;  // 1σ common to several targets of a tracker, m
   double share_ = 0.0;         // of the targets' mean that counts as displacement
   Eigen::LLT<Eigen::MatrixXd> covariance_;
-  Eigen::MatrixXd K_;          // what the joints' readings are off by, for each column
+  Eigen::MatrixXd K_;  // what the joints' readings are off by, for each column
 };
 
 /// Of one target alone the displacement of a visit is noise of its reading; several share it.
@@ -132,8 +132,8 @@ void ExplicitRows::list_parts() {
     const InverseVariance across_taken = over_square(noise_.across);
     for (int t = 0; t < targets_; ++t) {
       part(3, 1, 1, t, noise_.across, none);
-      // Along the beam (p − s)ᵀG is half the derivative of the squared distance: of degree 1, as that is. Less a share of
-      // the mean x̄ it still is: (p − p̄)ᵀx̄ is a product of what is constant on the tip and a twist seen from there.
+      // Along the beam (p − s)ᵀG is half the derivative of the squared distance: of degree 1, as that is. Less a share
+      // of the mean x̄ it still is: (p − p̄)ᵀx̄ is a product of what is constant on the tip and a twist seen from there.
       part(1, 1, 2, t, over_square(noise_.along), across_taken);
     }
     if (shared) part(3, 1, 1, -1, one, none);
@@ -284,8 +284,7 @@ double value_of(const ColumnFactor& factor, double x) {
 
 std::unique_ptr<HarmonicRows> make_harmonic_rows(const TipModel& tip, const MeasurementModel& measurement,
                                                  const Repeatability& repeatability, int tip_parameters,
-                                                 const Point& at, std::span<const int> selected,
-                                                 std::string& why_not) {
+                                                 const Point& at, std::span<const int> selected, std::string& why_not) {
   const HarmonicNoise noise = measurement.harmonic_noise();
   if (noise.kind == Kind::unknown) why_not = "readings that are not linear in where the tip is";
   else if (repeatability.rotation > 0) why_not = "turns of each visit, which move targets by where they point";

@@ -17,7 +17,6 @@ namespace posewright {
 /// @return null if nothing bounds the sensitivity; `why_not` says why
 std::unique_ptr<HarmonicRows> make_harmonic_rows(const TipModel& tip, const MeasurementModel& measurement,
                                                  const Repeatability& repeatability, int tip_parameters,
-                                                 const Point& at, std::span<const int> selected,
-                                                 std::string& why_not);
+                                                 const Point& at, std::span<const int> selected, std::string& why_not);
 
 }  // namespace posewright

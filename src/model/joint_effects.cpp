@@ -180,7 +180,8 @@ HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected,
       const Effect& effect = effects_[std::size_t(e)];
       const int offset = arm_->offset_of(effect.joint);
       if (offset < 0) return {"effects of joints of a robot without offsets", {}, {}, {}};
-      factors.push_back({int(of_arm.size()), effect.of, factor_of(effect.kind == Kind::cosine, effect.kind == Kind::sine),
+      factors.push_back({int(of_arm.size()), effect.of,
+                         factor_of(effect.kind == Kind::cosine, effect.kind == Kind::sine),
                          effect.kind == Kind::side ? 0.5 : effect.constant});
       of_arm.push_back(offset);
     } else {
@@ -188,8 +189,7 @@ HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected,
     }
   }
   std::vector<double> rest;
-  HarmonicColumns result =
-      arm_->harmonic_columns(of_arm, without_block(correction, first_, effects_.size(), rest));
+  HarmonicColumns result = arm_->harmonic_columns(of_arm, without_block(correction, first_, effects_.size(), rest));
   if (!result.why_not.empty()) return result;
   // Back to the indices of this robot.
   for (int& index : result.selected)

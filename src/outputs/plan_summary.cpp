@@ -39,9 +39,9 @@ std::string workspace_text(const Certificate::Workspace& w) {
   if (w.proved)
     return fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
                        proved_percent(w.efficiency));
-  const std::string why = w.loose_bound ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency),
-                                                      w.why_not)
-                                        : "no proof: " + w.why_not;
+  const std::string why = w.loose_bound
+                              ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)
+                              : "no proof: " + w.why_not;
   return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
                      searched_percent(w.efficiency), why);
 }

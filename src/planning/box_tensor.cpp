@@ -27,8 +27,7 @@ void BoxTensor::put(const SearchBox& box, double most) {
   weight_.assign(1, 1.0);
   double growth = 1;
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const Eigen::MatrixXd M =
-        bernstein_on(axes_[a], degrees_[a], lower_of(axes_, box, a), upper_of(axes_, box, a));
+    const Eigen::MatrixXd M = bernstein_on(axes_[a], degrees_[a], lower_of(axes_, box, a), upper_of(axes_, box, a));
     apply_along(now_, scratch_, terms_, a, M);
     growth *= M.cwiseAbs().rowwise().sum().maxCoeff();
     // The weight alone is what the function 1 becomes.

@@ -84,8 +84,7 @@ double smallest_value(const HarmonicFunction& function, int threads) {
 /// ‖B_k T‖² of all parts at values of the axes.
 class PartSquares {
  public:
-  PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T)
-      : form_(form), T_(T), evaluator_(form.evaluator()) {}
+  PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T) : form_(form), T_(T), evaluator_(form.evaluator()) {}
   HarmonicForm::Evaluator& evaluator() { return *evaluator_; }
   void operator()(std::span<const double> values, std::span<double> squares) {
     if (!evaluator_->rows(values, B_)) {
@@ -121,9 +120,7 @@ std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, Random&
 class HarmonicJudge : public BoxJudge {
  public:
   explicit HarmonicJudge(const HarmonicSensitivity& function)
-      : function_(function),
-        tensor_(function.form_.axes(), function.degrees_),
-        evaluator_(function.form_.evaluator()) {
+      : function_(function), tensor_(function.form_.axes(), function.degrees_), evaluator_(function.form_.evaluator()) {
     for (const HarmonicSensitivity::Distance& d : function.distances_)
       distances_.emplace_back(function.form_.axes(), d.square.degrees());
   }
@@ -271,7 +268,7 @@ double HarmonicSensitivity::cost(const HarmonicForm& form) {
 }
 
 HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed,
-                                         int threads)
+                                         int threads, const Monitor& monitor)
     : form_(form), T_(T), degrees_(common_degrees(form)) {
   const auto& axes = form.axes();
   const std::size_t parts = form.parts().size();
@@ -289,8 +286,8 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
     HarmonicFunction square(
         axes, form.distance_degrees()[d],
         [&] {
-          return [evaluator = std::shared_ptr<HarmonicForm::Evaluator>(form.evaluator()), of](
-                     std::span<const double> values) { return of(*evaluator, values); };
+          return [evaluator = std::shared_ptr<HarmonicForm::Evaluator>(form.evaluator()),
+                  of](std::span<const double> values) { return of(*evaluator, values); };
         },
         1);
     double difference = 0, size = 0;
@@ -314,9 +311,10 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
     const std::vector<HarmonicFunction> functions = HarmonicFunction::of_several(
         axes, degrees, members.size(),
         [&] {
-          return [own = std::make_shared<PartSquares>(form, T), all = std::vector<double>(parts), &members](
-                     std::span<const double> values, std::span<double> out) mutable {
-            (*own)(values, all);
+          return [own = std::make_shared<PartSquares>(form, T), all = std::vector<double>(parts), parts, &members,
+                  &monitor](std::span<const double> values, std::span<double> out) mutable {
+            if (monitor.should_stop()) all.assign(parts, std::numeric_limits<double>::quiet_NaN());
+            else (*own)(values, all);
             for (std::size_t i = 0; i < members.size(); ++i) out[i] = all[members[i]];
           };
         },
@@ -330,15 +328,15 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
       }
       defined_ = defined_ && functions[i].defined() && difference <= same_function * size;
       // The constant more makes it a bound of the part.
-      const HarmonicFunction upper =
-          functions[i].raised(difference_factor * difference + own_rounding * size);
+      const HarmonicFunction upper = functions[i].raised(difference_factor * difference + own_rounding * size);
       const HarmonicPart& part = form.parts()[k];
       const bool affine = part.distance >= 0 && fits(with_distance(form, k), degrees_);
       Term& term = term_of(part, affine);
       add_to(term.plain, upper.lifted(degrees_).coefficients());
       if (affine)
-        add_to(term.times_distance,
-               HarmonicFunction::product(upper, distances_[std::size_t(part.distance)].square, degrees_).coefficients());
+        add_to(
+            term.times_distance,
+            HarmonicFunction::product(upper, distances_[std::size_t(part.distance)].square, degrees_).coefficients());
     }
   }
   for (Term& term : terms_) {

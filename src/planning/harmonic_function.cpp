@@ -126,12 +126,12 @@ Eigen::MatrixXd bernstein_on(const HarmonicAxis& axis, int degree, double lower,
 
 HarmonicFunction::HarmonicFunction(std::vector<HarmonicAxis> axes, std::vector<int> degrees,
                                    const std::function<Function()>& make, int threads)
-    : HarmonicFunction(std::move(of_several(
-          axes, degrees, 1,
-          [&] {
-            return [f = make()](std::span<const double> q, std::span<double> values) { values[0] = f(q); };
-          },
-          threads).front())) {}
+    : HarmonicFunction(std::move(
+          of_several(
+              axes, degrees, 1,
+              [&] { return [f = make()](std::span<const double> q, std::span<double> values) { values[0] = f(q); }; },
+              threads)
+              .front())) {}
 
 std::vector<HarmonicFunction> HarmonicFunction::of_several(
     const std::vector<HarmonicAxis>& axes, const std::vector<int>& degrees, std::size_t count,

@@ -51,9 +51,8 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
   for (std::size_t i = 0; i < where.configurations.size(); ++i) {
     const std::vector<double>& q = where.configurations[i];
     if (!probe->block(q, block.row(0, 0), block.stride())) continue;
-    const auto form = std::find_if(forms.forms.begin(), forms.forms.end(), [&](const auto& f) {
-      return f->configuration(f->values(q)) == q;
-    });
+    const auto form = std::find_if(forms.forms.begin(), forms.forms.end(),
+                                   [&](const auto& f) { return f->configuration(f->values(q)) == q; });
     if (form == forms.forms.end()) continue;
     std::vector<double> values = (*form)->values(q);
     const auto evaluator = (*form)->evaluator();
@@ -66,8 +65,7 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
 /// As many boxes as the work allows.
 long most_boxes(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
   double largest = 0;
-  for (const auto& f : functions)
-    largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms() - 1)));
+  for (const auto& f : functions) largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms() - 1)));
   return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
 }
 
@@ -110,9 +108,10 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   set_deadline(own, options.proof.seconds);
   std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
   for (const auto& form : forms.forms) {
-    functions.push_back(std::make_unique<HarmonicSensitivity>(*form, result.factor, options.seed, options.threads));
+    functions.push_back(
+        std::make_unique<HarmonicSensitivity>(*form, result.factor, options.seed, options.threads, own));
     if (functions.back()->defined()) continue;
-    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
+    proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
   }
   BoxSearchOptions limits;

@@ -72,11 +72,13 @@ class StudyForm : public HarmonicForm {
       Eigen::Index total = 0;
       for (const HarmonicPart& part : form_.parts()) total += part.rows;
       B.setZero(total, form_.columns());
-      return each(values, [&](const FormPart& part, Eigen::Index first, std::size_t) {
-        auto out = B.block(first, part.first_column, own_.rows(), part.width);
-        if (part.part->mix.size() > 0) out.noalias() = own_ * part.part->mix;
-        else out = own_;
-      }) && divided(B);
+      return each(values,
+                  [&](const FormPart& part, Eigen::Index first, std::size_t) {
+                    auto out = B.block(first, part.first_column, own_.rows(), part.width);
+                    if (part.part->mix.size() > 0) out.noalias() = own_ * part.part->mix;
+                    else out = own_;
+                  }) &&
+             divided(B);
     }
     void distances(std::span<const double> values, std::span<double> squares) override {
       each(values, [&](const FormPart& part, Eigen::Index, std::size_t distance) {
@@ -98,8 +100,7 @@ class StudyForm : public HarmonicForm {
       for (std::size_t v = 0; v < form_.own_.size(); ++v) {
         const FormPart& part = form_.own_[v];
         factors_.clear();
-        for (std::size_t f = 0; f < part.factors.size(); ++f)
-          factors_.push_back(form_.factor(part, f, values, q_));
+        for (std::size_t f = 0; f < part.factors.size(); ++f) factors_.push_back(form_.factor(part, f, values, q_));
         squares_.resize(std::size_t(part.rows->distances()));
         if (!part.rows->at(q_, factors_, *work_[v], own_, squares_)) return false;
         use(part, first, distance);
@@ -136,7 +137,8 @@ class StudyForm : public HarmonicForm {
     for (const auto& [coordinate, constant, free, axis] : made_)
       if (coordinate == factor.coordinate && constant == factor.constant && free != linear) return axis;
     const HarmonicAxis& from = axes_[std::size_t(leader)];
-    if (linear) axes_.push_back({from.lower - factor.constant, from.upper - factor.constant, false, leader, factor.constant});
+    if (linear)
+      axes_.push_back({from.lower - factor.constant, from.upper - factor.constant, false, leader, factor.constant});
     else axes_.push_back({0.0, 2 * std::numbers::pi, true});
     made_.push_back({factor.coordinate, factor.constant, !linear, int(axes_.size()) - 1});
     return int(axes_.size()) - 1;

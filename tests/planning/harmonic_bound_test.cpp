@@ -93,7 +93,8 @@ TEST(HarmonicFunction, OfAnyDegreeIsTheFunctionItselfAndSoAreProducts) {
         }
       return sum;
     };
-    const HarmonicFunction own(axes, degrees, [&] { return f; }, 1);
+    const HarmonicFunction own(
+        axes, degrees, [&] { return f; }, 1);
     const std::vector<int> twice{2 * degrees[0], 2 * degrees[1]}, more{2 * degrees[0] + 1, 2 * degrees[1]};
     const HarmonicFunction square = HarmonicFunction::product(own, own, more);
     for (int i = 0; i < 20; ++i) {

@@ -1,6 +1,8 @@
 // The certificate over the whole workspace, where it is proved. Second roads: grids of candidates finer than any plan
 // needs, and sensitivities at random configurations by the model alone.
 
+#include "posewright/planning/workspace_proof.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +14,6 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/write_plan.hpp"
-#include "posewright/planning/workspace_proof.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/space.hpp"
 #include "posewright/support/random.hpp"
@@ -61,8 +62,8 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
   EXPECT_THAT(plan_summary(plan), HasSubstr("Proved over the joint limits"));
 }
 
-/// What is there to be bounded beside an arm seen by points: word of the problem file, and whether the bound is d itself
-/// up to the width of boxes.
+/// What is there to be bounded beside an arm seen by points: word of the problem file, and whether the bound is d
+/// itself up to the width of boxes.
 struct Kind {
   std::string name, robot, measurement, columns;
   bool tight;
@@ -78,8 +79,7 @@ std::vector<Kind> kinds() {
           {"two stations", "", tracker + ", B: [-2, -3, 1]}}", "station.B.x, ", true},
           {"noise of the joints", ", encoder_noise: 0.0003", isotropic, "", false},
           {"gear", "", isotropic, "j0.gear, ", false},
-          {"eccentricity and gear teeth",
-           ", joint_effects: {j0: {eccentricity: yes, gear_ratio: 31}}", isotropic,
+          {"eccentricity and gear teeth", ", joint_effects: {j0: {eccentricity: yes, gear_ratio: 31}}", isotropic,
            "j0.cos1, j0.sin1, j0.cos2, j0.sin2, j0.cos_g, j0.sin_g, ", false}};
 }
 

@@ -36,9 +36,9 @@ inline InverseVariance squared(double constant, double slope, double repeats) {
 
 struct HarmonicPart {
   int rows = 0;
-  int turn_degree = 1;    ///< of its entries in cosine and sine of an angle of degree 1
-  int length_degree = 1;  ///< of its entries in a length
-  int distance = -1;      ///< which distance its factor depends on; −1: none, the factor is plus.weight
+  int turn_degree = 1;                 ///< of its entries in cosine and sine of an angle of degree 1
+  int length_degree = 1;               ///< of its entries in a length
+  int distance = -1;                   ///< which distance its factor depends on; −1: none, the factor is plus.weight
   InverseVariance plus{1.0}, minus{};  ///< the factor is their difference, nowhere negative
 
   double factor(double r) const { return distance < 0 ? plus.weight : plus.value(r) - minus.value(r); }

@@ -48,8 +48,8 @@ class TipModel {
   virtual bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
                          Twists& twists, Twists* reading_twists) const = 0;
 
-  /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty; theory.md
-  /// eq. (37)). Twists of zero columns are polynomials.
+  /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty;
+  /// theory.md eq. (37)). Twists of zero columns are polynomials.
   virtual HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const;
 
   /// Index of the parameter that moves the tip as the reading of this coordinate does; −1: there is none.

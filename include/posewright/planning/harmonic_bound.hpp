@@ -18,8 +18,9 @@ class HarmonicSensitivity {
  public:
   /// Interpolates ‖B_k T‖² and the distances.
   /// @param T  columns × any
-  /// Throws nothing of its own: defined() says whether all is as the form says.
-  HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed, int threads);
+  /// Throws nothing of its own: defined() says whether all is as the form says, and nothing stopped it.
+  HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed, int threads,
+                      const Monitor& monitor);
 
   /// Coefficients of a form's tensors together: what memory and a box's time go with.
   static double cost(const HarmonicForm& form);
@@ -34,8 +35,8 @@ class HarmonicSensitivity {
 
  private:
   friend class HarmonicJudge;
-  /// Σ (a₀ + a₁ r) f over parts of one factor, each with its own distance: Σ f and Σ r f, or Σ f alone where r f has too
-  /// high a degree.
+  /// Σ (a₀ + a₁ r) f over parts of one factor, each with its own distance: Σ f and Σ r f, or Σ f alone where r f has
+  /// too high a degree.
   struct Term {
     HarmonicPart part{};
     std::vector<int> distances;
@@ -61,7 +62,8 @@ class HarmonicSensitivity {
 BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
                               const BoxSearchOptions& options, const Monitor& monitor);
 
-/// A form's function Σ_k s_k(r_k) ‖B_k T‖² at values of its axes, those that follow others put in; NaN where it has none.
+/// A form's function Σ_k s_k(r_k) ‖B_k T‖² at values of its axes, those that follow others put in; NaN where it has
+/// none.
 double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
                       std::vector<double>& values);
 

@@ -39,11 +39,11 @@ struct WorkspaceBoundOptions {
 
 /// Whether the largest d over the limits of the workspace is proved.
 struct WorkspaceProof {
-  std::string why_not;     ///< empty: it is proved
-  double max_ratio = 1.0;  ///< no d within the limits exceeds it times h
-  double bound = 0.0;      ///< Φ(w) + h ln(max_ratio)
-  long boxes = 0;          ///< that it took
-  std::string ended{};     ///< why not more of them; empty: they were enough
+  std::string why_not;               ///< empty: it is proved
+  double max_ratio = 1.0;            ///< no d within the limits exceeds it times h
+  double bound = 0.0;                ///< Φ(w) + h ln(max_ratio)
+  long boxes = 0;                    ///< that it took
+  std::string ended{};               ///< why not more of them; empty: they were enough
   std::vector<double> largest_at{};  ///< configuration of the largest d found on the way, feasible or not
 };
 

@@ -141,7 +141,7 @@ struct RandomArm {
 
 TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
   const char* wanted = std::getenv("POSEWRIGHT_RANDOM_ARMS");
-  const int arms = wanted != nullptr ? std::atoi(wanted) : 210;
+  const int arms = wanted != nullptr ? std::atoi(wanted) : 140;
   int wide = 0, refused = 0;
   const std::vector<Kind> all = kinds();
   for (int i = 0; i < arms; ++i) {
@@ -183,7 +183,7 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     result.weights = {1.0};
     // Numbers that follow a joint are bounded to the first order only: what takes long is stopped, and is a bound too.
     WorkspaceBoundOptions options;
-    options.proof.seconds = 0.5;
+    options.proof.seconds = 0.25;
     prove_workspace(result, *space, 1000, rows, options, Monitor{});
     if (!kind.tight && result.proof.why_not.find("too high") != std::string::npos) {
       ++refused;

@@ -321,13 +321,13 @@ void combine_rows(const double* in, double* out, std::size_t outer, std::size_t 
     return;
   }
   for (std::size_t o = 0; o < outer; ++o)
-    combine_wide(in + o * static_cast<std::size_t>(columns) * stride,
-                 out + o * static_cast<std::size_t>(rows) * stride, stride, m, rows, columns);
+    combine_wide(in + o * static_cast<std::size_t>(columns) * stride, out + o * static_cast<std::size_t>(rows) * stride,
+                 stride, m, rows, columns);
 }
 
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, next_block,
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows, next_block,
                               next_between,     gram,   combine_rows,      KERNELS_TEXT};
 
 }  // namespace posewright

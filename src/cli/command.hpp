@@ -39,6 +39,7 @@ Command evaluate_command();
 Command compare_command();
 Command simulate_command();
 Command calibrate_command();
+Command compensate_command();
 Command route_command();
 Command stations_command();
 Command export_command();

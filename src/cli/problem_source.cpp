@@ -32,13 +32,18 @@ void apply(Problem& problem, const std::filesystem::path& file, const std::vecto
 
 }  // namespace
 
-po::options_description problem_options() {
+po::options_description package_options() {
   po::options_description options("Problem");
   options.add_options()(
       "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)")(
-      "parameters", po::value<std::string>()->value_name("FILE"),
-      "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
+      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
+  return options;
+}
+
+po::options_description problem_options() {
+  po::options_description options = package_options();
+  options.add_options()("parameters", po::value<std::string>()->value_name("FILE"),
+                        "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
   return options;
 }
 

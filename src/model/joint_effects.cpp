@@ -218,7 +218,7 @@ bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eig
   for (const int index : selected)
     of_arm.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
   const Point arm{turned, without_block(at.correction, first_, effects_.size(), rest), at.station, at.load_case,
-                  at.q.first(own)};
+                  at.readings().first(own)};
   if (!arm_->linearise(arm, of_arm, X, twists, &joints)) return false;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int e = selected[c] - first_;

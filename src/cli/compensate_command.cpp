@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numbers>
+
+#include "command.hpp"
+#include "posewright/controller/known_controllers.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/pose_document.hpp"
+#include "posewright/model/apply_parameters.hpp"
+#include "posewright/model/corrected_urdf.hpp"
+#include "posewright/model/dh_table.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/outputs/joint_targets.hpp"
+#include "posewright/problem/calibrated_problem.hpp"
+#include "posewright/results/compensation.hpp"
+#include "posewright/results/dh_table.hpp"
+#include "posewright/support/json.hpp"
+#include "problem_source.hpp"
+#include "result_files.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
+#include "write_result.hpp"
+
+namespace posewright::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+po::options_description compensate_command_options() {
+  po::options_description options("Options");
+  options.add_options()                                                                                     //
+      ("output,o", text("FILE|DIR"), "the files again with the joints to command; a folder for several")    //
+      ("partial", "write although some poses cannot be compensated: they stay as they are listed")          //
+      ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")  //
+      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")   //
+      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3")   //
+      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")       //
+      ("with-base", "poses in the measurement frame: where the base was found to stand counts")             //
+      ("without-tool", "the tool's correction is that of what was measured and does not count")             //
+      ("position-only", "position of the tip alone (robots of fewer than six axes)")                        //
+      ("elastic-target", "the poses were found with the nominal springs bent by the load")                  //
+      ("most", text("DEG"), "largest turn of a joint that is still a correction (10; slides 10 mm a degree)");
+  options.add_options()                                                                              //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")  //
+      ("force", "replace files that posewright did not write");
+  options.add(package_options());
+  return options;
+}
+
+double number_of(const po::variables_map& values, const std::string& option, double lower, double upper) {
+  const std::string text = text_of(values, option);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
+    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
+  return value;
+}
+
+/// The robot that was calibrated, with its parameters.
+Problem calibrated_problem(const po::variables_map& values, const fs::path& parameters) {
+  const std::string given = text_of(values, "problem");
+  Problem problem = given_problem(given.empty() ? problem_of_parameters(parameters) : fs::path(given), values);
+  print_notes(apply_parameters(problem, read_calibrated_parameters(parameters), {}));
+  return problem;
+}
+
+CompensateOptions options_of(const po::variables_map& values, const CommonOptions& common) {
+  CompensateOptions options;
+  options.solver.with_base = values.count("with-base") > 0;
+  options.solver.with_tool = values.count("without-tool") == 0;
+  options.solver.position_only = values.count("position-only") > 0;
+  options.elastic_target = values.count("elastic-target") > 0;
+  if (values.count("most") > 0) {
+    const double most = number_of(values, "most", 0.01, 180);
+    options.solver.most_angle = most * std::numbers::pi / 180;
+    options.solver.most_length = most * 0.01;
+  }
+  options.threads = common.threads;
+  return options;
+}
+
+DocumentOptions document_options(const po::variables_map& values) {
+  DocumentOptions options;
+  options.format = text_of(values, "from");
+  if (!options.format.empty() && !JointTargets::reads(options.format)) find_readable_format(options.format);
+  if (const std::string name = text_of(values, "controller"); !name.empty())
+    options.controller = controller_settings(name);
+  if (values.count("coupling") > 0) options.coupling = number_of(values, "coupling", -10, 10);
+  return options;
+}
+
+/// Where the files go: one file by its name, several into a folder under their own names.
+std::vector<fs::path> places(const po::variables_map& values, const Words& files) {
+  const fs::path output = values.count("output") > 0 ? output_file(values, "output", "") : fs::path();
+  if (output.empty()) return {};
+  std::error_code code;
+  const bool folder = fs::is_directory(output, code);
+  if (files.empty()) throw InputError({}, "-o without a file of poses", "PARAMETERS FILE…");
+  if (files.size() > 1 && !folder)
+    throw InputError({}, output.string() + " is not a folder", "an existing folder is needed for several files");
+  std::vector<fs::path> result;
+  for (const std::string& file : files) result.push_back(folder ? output / fs::path(file).filename() : output);
+  return result;
+}
+
+std::vector<CalibratedValue> values_of(const Problem& problem) {
+  const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
+  return calibrated_values(problem, variant, *make_model(problem, variant), {});
+}
+
+const SerialArmSpec& arm_of(const Problem& problem, const char* option) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) throw InputError({}, std::string("--") + option + " is for serial arms", "robot: urdf");
+  return *arm;
+}
+
+OtherValues other_values(const Compensation& result, const CompensatedList& list) {
+  OtherValues values{list.configurations, list.actuators, {}};
+  if (result.parallel)
+    for (const AxisChange& axis : result.axes) values.actuator_names.push_back(axis.name);
+  return values;
+}
+
+/// The files of poses as they are written.
+std::vector<FileToWrite> pose_files(const std::vector<fs::path>& to, const Compensation& result,
+                                    const std::vector<std::unique_ptr<PoseDocument>>& documents,
+                                    const Problem& problem) {
+  const ParametersFile stated = parameters_of(problem);
+  const std::string remark = fmt::format("{}: joints to command for the robot of {} (sha256 {:.12})", compensated_mark,
+                                         fs::path(stated.file).filename().string(), stated.sha256);
+  std::vector<FileToWrite> files;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    files.push_back({to[i], documents[i]->text(other_values(result, result.lists[i]), remark)});
+  return files;
+}
+
+int run_compensate(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  if (positional.empty()) throw InputError({}, "PARAMETERS is missing", "see posewright help compensate");
+  const fs::path parameters = positional.front();
+  const Words files(positional.begin() + 1, positional.end());
+  const CompensateOptions options = options_of(values, common);
+  const DocumentOptions reading = document_options(values);
+  const std::string dh = choice_of(values, "dh", {"distal", "proximal"});
+  const fs::path urdf = values.count("urdf") > 0 ? output_file(values, "urdf", "") : fs::path();
+  if (files.empty() && urdf.empty() && dh.empty())
+    throw InputError({}, "FILE is missing", "poses to compensate, --urdf or --dh");
+  const std::vector<fs::path> to = places(values, files);
+  const Problem problem = calibrated_problem(values, parameters);
+
+  std::vector<fs::path> outputs = to, inputs = files_of(problem);
+  outputs.push_back(urdf);
+  inputs.insert(inputs.end(), files.begin(), files.end());
+  check_output_files(values, outputs, inputs);
+
+  std::vector<FileToWrite> results;
+  std::vector<std::string> notes;
+  std::string tables;
+  if (!urdf.empty()) {
+    const SerialArmSpec& arm = arm_of(problem, "urdf");
+    const CorrectedUrdf corrected =
+        corrected_urdf(arm, problem.at(arm.line), find_variant(problem, problem.parameters->variant.value).convention,
+                       values_of(problem));
+    for (const std::string& left_out : corrected.left_out) notes.push_back("not in the URDF: " + left_out);
+    results.push_back({urdf, corrected.text});
+  }
+  nlohmann::ordered_json table_json;
+  if (!dh.empty()) {
+    const SerialArmSpec& arm = arm_of(problem, "dh");
+    const DhTable table =
+        dh_table(arm, problem.at(arm.line), find_variant(problem, problem.parameters->variant.value).convention,
+                 values_of(problem), dh == "distal" ? DhConvention::distal : DhConvention::proximal);
+    tables = dh_table_text(table);
+    table_json = dh_table_json(table);
+  }
+
+  Compensation result;
+  result.variant = problem.parameters->variant.value;
+  std::vector<std::unique_ptr<PoseDocument>> documents;
+  if (!files.empty()) {
+    const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
+    std::vector<PoseList> lists;
+    for (const std::string& file : files) {
+      documents.push_back(read_document(file, coordinates, reading));
+      lists.push_back(documents.back()->poses());
+      notes.insert(notes.end(), documents.back()->notes().begin(), documents.back()->notes().end());
+    }
+    result = watched(common, 0, [&](const Monitor& monitor) {
+               return compensate_problem(problem, lists, options, monitor);
+             }).result;
+  }
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  const bool good = result.failures.empty() || values.count("partial") > 0;
+  if (!good && (!to.empty() || !results.empty()))
+    result.notes.emplace_back(
+        "nothing is written: --partial writes poses that cannot be compensated as they are listed");
+  if (good) {
+    for (FileToWrite& file : pose_files(to, result, documents, problem)) results.push_back(std::move(file));
+    write_results(results);
+  }
+  std::vector<fs::path> written;
+  for (const FileToWrite& file : results)
+    if (good) written.push_back(file.file);
+  print_notes(result.notes);
+  if (common.json) {
+    nlohmann::ordered_json json = compensation_json(problem, result);
+    if (!dh.empty()) json["denavit_hartenberg"] = table_json;
+    json["written"] = nlohmann::ordered_json::array();
+    for (const fs::path& file : written) json["written"].push_back(file.string());
+    fmt::print("{}", json_text(json));
+  } else {
+    std::string text = files.empty() ? "" : compensation_text(result);
+    if (!tables.empty()) text += (text.empty() ? "" : "\n") + tables;
+    print_report(text + (written.empty() ? "" : (text.empty() ? "" : "\n") + written_text(written)));
+  }
+  return good ? done : cannot_do;
+}
+
+}  // namespace
+
+Command compensate_command() {
+  return {"compensate",
+          "PARAMETERS [FILE…]",
+          "Corrects poses and robot programs so that the calibrated robot stands where the nominal one was meant to.",
+          compensate_command_options,
+          "posewright compensate calibrated.yaml program.src program.dat -o corrected/",
+          run_compensate};
+}
+
+}  // namespace posewright::cli

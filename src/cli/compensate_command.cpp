@@ -9,9 +9,11 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/pose_document.hpp"
 #include "posewright/model/apply_parameters.hpp"
+#include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/dh_table.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/ur_kinematics.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/joint_targets.hpp"
 #include "posewright/problem/calibrated_problem.hpp"
@@ -45,6 +47,8 @@ po::options_description compensate_command_options() {
       ("most", text("DEG"), "largest turn of a joint that is still a correction (10; slides 10 mm a degree)");
   options.add_options()                                                                              //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
+      ("xacro", text("FILE"), "the same as the robot's xacro file, its comments and macros kept")    //
+      ("ur-kinematics", text("FILE"), "kinematics.yaml of ur_description (Universal Robots)")        //
       ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")  //
       ("force", "replace files that posewright did not write");
   options.add(package_options());
@@ -107,17 +111,6 @@ std::vector<fs::path> places(const po::variables_map& values, const Words& files
   return result;
 }
 
-std::vector<CalibratedValue> values_of(const Problem& problem) {
-  const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
-  return calibrated_values(problem, variant, *make_model(problem, variant), {});
-}
-
-const SerialArmSpec& arm_of(const Problem& problem, const char* option) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  if (arm == nullptr) throw InputError({}, std::string("--") + option + " is for serial arms", "robot: urdf");
-  return *arm;
-}
-
 OtherValues other_values(const Compensation& result, const CompensatedList& list) {
   OtherValues values{list.configurations, list.actuators, {}};
   if (result.parallel)
@@ -138,6 +131,97 @@ std::vector<FileToWrite> pose_files(const std::vector<fs::path>& to, const Compe
   return files;
 }
 
+/// What describes the robot itself: the same files and tables that `calibrate` writes.
+struct RobotFiles {
+  fs::path urdf, xacro, kinematics;  ///< empty: not asked for
+  std::optional<DhTable> table;
+  std::vector<FileToWrite> files;
+  std::vector<std::string> notes;
+
+  explicit RobotFiles(const po::variables_map& values)
+      : urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : fs::path()),
+        xacro(values.count("xacro") > 0 ? output_file(values, "xacro", "") : fs::path()),
+        kinematics(values.count("ur-kinematics") > 0 ? output_file(values, "ur-kinematics", "") : fs::path()),
+        dh_(choice_of(values, "dh", {"distal", "proximal"})) {}
+
+  bool any() const { return !urdf.empty() || !xacro.empty() || !kinematics.empty() || !dh_.empty(); }
+
+  void make(const Problem& problem) {
+    if (!any()) return;
+    const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+    if (arm == nullptr)
+      throw InputError({}, "--urdf, --xacro, --ur-kinematics and --dh are for serial arms", "robot: urdf");
+    const SourcePlace place = problem.at(arm->line);
+    const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
+    const std::vector<CalibratedValue> values = calibrated_values(problem, variant, *make_model(problem, variant), {});
+    if (!urdf.empty()) {
+      const CorrectedUrdf corrected = corrected_urdf(*arm, place, variant.convention, values);
+      add(urdf, corrected.text, "URDF", corrected.left_out);
+    }
+    if (!xacro.empty()) {
+      const CorrectedUrdf corrected = corrected_xacro(*arm, place, variant.convention, values);
+      add(xacro, corrected.text, "xacro file", corrected.left_out);
+    }
+    if (!kinematics.empty()) {
+      const UrKinematics ur = ur_kinematics(*arm, place, variant.convention, values,
+                                            "posewright_" + problem.parameters->sha256.substr(0, 16));
+      add(kinematics, ur.text, "kinematics file", ur.left_out);
+      notes.emplace_back(
+          "the hash in the kinematics file is not that of the controller's own calibration: the driver warns");
+    }
+    if (!dh_.empty())
+      table = dh_table(*arm, place, variant.convention, values,
+                       dh_ == "distal" ? DhConvention::distal : DhConvention::proximal);
+  }
+
+ private:
+  void add(const fs::path& file, const std::string& text, const char* what, const std::vector<std::string>& left_out) {
+    files.push_back({file, text});
+    for (const std::string& left : left_out) notes.push_back(std::string("not in the ") + what + ": " + left);
+  }
+
+  std::string dh_;
+};
+
+/// Poses read, solved, and the files that they make.
+Compensation compensate_files(const Words& files, const Problem& problem, const DocumentOptions& reading,
+                              const CompensateOptions& options, const CommonOptions& common,
+                              std::vector<std::unique_ptr<PoseDocument>>& documents) {
+  Compensation none;
+  none.variant = problem.parameters->variant.value;
+  if (files.empty()) return none;
+  const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
+  std::vector<PoseList> lists;
+  std::vector<std::string> notes;
+  for (const std::string& file : files) {
+    documents.push_back(read_document(file, coordinates, reading));
+    lists.push_back(documents.back()->poses());
+    notes.insert(notes.end(), documents.back()->notes().begin(), documents.back()->notes().end());
+  }
+  Compensation result = watched(common, 0, [&](const Monitor& monitor) {
+                          return compensate_problem(problem, lists, options, monitor);
+                        }).result;
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  return result;
+}
+
+void show(const CommonOptions& common, const Problem& problem, const Compensation& result, const RobotFiles& robot,
+          const std::vector<fs::path>& written) {
+  print_notes(result.notes);
+  if (common.json) {
+    nlohmann::ordered_json json = compensation_json(problem, result);
+    if (robot.table) json["denavit_hartenberg"] = dh_table_json(*robot.table);
+    json["written"] = nlohmann::ordered_json::array();
+    for (const fs::path& file : written) json["written"].push_back(file.string());
+    fmt::print("{}", json_text(json));
+    return;
+  }
+  std::string text = result.lists.empty() ? "" : compensation_text(result);
+  for (const std::string& part : {robot.table ? dh_table_text(*robot.table) : "", written_text(written)})
+    if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
+  print_report(text);
+}
+
 int run_compensate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.empty()) throw InputError({}, "PARAMETERS is missing", "see posewright help compensate");
@@ -145,78 +229,32 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   const Words files(positional.begin() + 1, positional.end());
   const CompensateOptions options = options_of(values, common);
   const DocumentOptions reading = document_options(values);
-  const std::string dh = choice_of(values, "dh", {"distal", "proximal"});
-  const fs::path urdf = values.count("urdf") > 0 ? output_file(values, "urdf", "") : fs::path();
-  if (files.empty() && urdf.empty() && dh.empty())
-    throw InputError({}, "FILE is missing", "poses to compensate, --urdf or --dh");
+  RobotFiles robot(values);
+  if (files.empty() && !robot.any())
+    throw InputError({}, "FILE is missing", "poses to compensate, --urdf, --xacro, --ur-kinematics or --dh");
   const std::vector<fs::path> to = places(values, files);
   const Problem problem = calibrated_problem(values, parameters);
 
   std::vector<fs::path> outputs = to, inputs = files_of(problem);
-  outputs.push_back(urdf);
+  outputs.insert(outputs.end(), {robot.urdf, robot.xacro, robot.kinematics});
   inputs.insert(inputs.end(), files.begin(), files.end());
   check_output_files(values, outputs, inputs);
+  robot.make(problem);
 
-  std::vector<FileToWrite> results;
-  std::vector<std::string> notes;
-  std::string tables;
-  if (!urdf.empty()) {
-    const SerialArmSpec& arm = arm_of(problem, "urdf");
-    const CorrectedUrdf corrected =
-        corrected_urdf(arm, problem.at(arm.line), find_variant(problem, problem.parameters->variant.value).convention,
-                       values_of(problem));
-    for (const std::string& left_out : corrected.left_out) notes.push_back("not in the URDF: " + left_out);
-    results.push_back({urdf, corrected.text});
-  }
-  nlohmann::ordered_json table_json;
-  if (!dh.empty()) {
-    const SerialArmSpec& arm = arm_of(problem, "dh");
-    const DhTable table =
-        dh_table(arm, problem.at(arm.line), find_variant(problem, problem.parameters->variant.value).convention,
-                 values_of(problem), dh == "distal" ? DhConvention::distal : DhConvention::proximal);
-    tables = dh_table_text(table);
-    table_json = dh_table_json(table);
-  }
-
-  Compensation result;
-  result.variant = problem.parameters->variant.value;
   std::vector<std::unique_ptr<PoseDocument>> documents;
-  if (!files.empty()) {
-    const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
-    std::vector<PoseList> lists;
-    for (const std::string& file : files) {
-      documents.push_back(read_document(file, coordinates, reading));
-      lists.push_back(documents.back()->poses());
-      notes.insert(notes.end(), documents.back()->notes().begin(), documents.back()->notes().end());
-    }
-    result = watched(common, 0, [&](const Monitor& monitor) {
-               return compensate_problem(problem, lists, options, monitor);
-             }).result;
-  }
-  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  Compensation result = compensate_files(files, problem, reading, options, common, documents);
+  result.notes.insert(result.notes.end(), robot.notes.begin(), robot.notes.end());
   const bool good = result.failures.empty() || values.count("partial") > 0;
-  if (!good && (!to.empty() || !results.empty()))
-    result.notes.emplace_back(
-        "nothing is written: --partial writes poses that cannot be compensated as they are listed");
-  if (good) {
-    for (FileToWrite& file : pose_files(to, result, documents, problem)) results.push_back(std::move(file));
-    write_results(results);
-  }
   std::vector<fs::path> written;
-  for (const FileToWrite& file : results)
-    if (good) written.push_back(file.file);
-  print_notes(result.notes);
-  if (common.json) {
-    nlohmann::ordered_json json = compensation_json(problem, result);
-    if (!dh.empty()) json["denavit_hartenberg"] = table_json;
-    json["written"] = nlohmann::ordered_json::array();
-    for (const fs::path& file : written) json["written"].push_back(file.string());
-    fmt::print("{}", json_text(json));
-  } else {
-    std::string text = files.empty() ? "" : compensation_text(result);
-    if (!tables.empty()) text += (text.empty() ? "" : "\n") + tables;
-    print_report(text + (written.empty() ? "" : (text.empty() ? "" : "\n") + written_text(written)));
+  if (good) {
+    std::vector<FileToWrite> all = robot.files;
+    for (FileToWrite& file : pose_files(to, result, documents, problem)) all.push_back(std::move(file));
+    write_results(all);
+    for (const FileToWrite& file : all) written.push_back(file.file);
+  } else if (!to.empty() || !robot.files.empty()) {
+    result.notes.emplace_back("nothing is written; --partial writes such poses as they are listed");
   }
+  show(common, problem, result, robot, written);
   return good ? done : cannot_do;
 }
 

@@ -102,10 +102,11 @@ std::vector<fs::path> places(const po::variables_map& values, const Words& files
   const fs::path output = values.count("output") > 0 ? output_file(values, "output", "") : fs::path();
   if (output.empty()) return {};
   std::error_code code;
-  const bool folder = fs::is_directory(output, code);
+  const bool folder =
+      fs::is_directory(output, code) || (!fs::exists(output, code) && (files.size() > 1 || !output.has_filename()));
   if (files.empty()) throw InputError({}, "-o without a file of poses", "PARAMETERS FILE…");
   if (files.size() > 1 && !folder)
-    throw InputError({}, output.string() + " is not a folder", "an existing folder is needed for several files");
+    throw InputError({}, output.string() + " is not a folder", "several files go to a folder");
   std::vector<fs::path> result;
   for (const std::string& file : files) result.push_back(folder ? output / fs::path(file).filename() : output);
   return result;
@@ -130,6 +131,25 @@ std::vector<FileToWrite> pose_files(const std::vector<fs::path>& to, const Compe
     files.push_back({to[i], documents[i]->text(other_values(result, result.lists[i]), remark)});
   return files;
 }
+
+/// A folder that is not there yet, made for what is written and removed again where nothing is.
+class NewFolder {
+ public:
+  explicit NewFolder(const fs::path& folder) : folder_(folder) {
+    std::error_code code;
+    if (folder_.empty() || fs::exists(folder_, code)) folder_.clear();
+    else fs::create_directory(folder_, code);
+  }
+  ~NewFolder() {
+    std::error_code code;
+    if (!folder_.empty()) fs::remove(folder_, code);  // not one that has files
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+ private:
+  fs::path folder_;
+};
 
 /// What describes the robot itself: the same files and tables that `calibrate` writes.
 struct RobotFiles {
@@ -238,6 +258,8 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   std::vector<fs::path> outputs = to, inputs = files_of(problem);
   outputs.insert(outputs.end(), {robot.urdf, robot.xacro, robot.kinematics});
   inputs.insert(inputs.end(), files.begin(), files.end());
+  const NewFolder folder(to.size() > 0 && to.front() != fs::path(text_of(values, "output")) ? to.front().parent_path()
+                                                                                            : fs::path());
   check_output_files(values, outputs, inputs);
   robot.make(problem);
 

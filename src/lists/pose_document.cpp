@@ -52,6 +52,7 @@ class JsonDocument : public PoseDocument {
     if (json_.contains("compensated")) refuse_twice(name);
     poses_ = read_poses_text(bytes, name, coordinates, "json");
     places_ = places_of(sequence.names, coordinates);
+    for (const std::size_t place : places_) speeds_.push_back(coordinates[place].speed);
     add_via_points(sequence, coordinates, name);
   }
 
@@ -100,6 +101,20 @@ class JsonDocument : public PoseDocument {
     return q;
   }
 
+  /// That the joints' velocities, where they are known, need for a way.
+  double least_seconds(const nlohmann::ordered_json& points) const {
+    double seconds = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      double slowest = 0;
+      for (std::size_t i = 0; i < places_.size(); ++i)
+        if (speeds_[i] > 0)
+          slowest =
+              std::max(slowest, std::abs(points[k][i].get<double>() - points[k - 1][i].get<double>()) / speeds_[i]);
+      seconds += slowest;
+    }
+    return seconds;
+  }
+
   void write_motions(nlohmann::ordered_json& json, const OtherValues& values, std::size_t next) const {
     const auto end_at = [&](const nlohmann::ordered_json& id, nlohmann::ordered_json& point) {
       for (const auto& pose : json["poses"])
@@ -107,15 +122,20 @@ class JsonDocument : public PoseDocument {
     };
     for (auto& motion : json["motions"]) {
       auto& points = motion["points"];
+      const double before = least_seconds(points);
       end_at(motion["from"], points.front());
       end_at(motion["to"], points.back());
       for (std::size_t i = 1; i + 1 < points.size(); ++i) points[i] = configuration(values, next++);
+      // No motion may be asked to be faster than it was: a way that became longer takes longer.
+      if (const double more = least_seconds(points) - before; more > 0)
+        motion["seconds"] = motion["seconds"].get<double>() + more;
     }
   }
 
   nlohmann::ordered_json json_;
   std::size_t width_;
   std::vector<std::size_t> places_;
+  std::vector<double> speeds_;
 };
 
 /// Cells of joints are replaced; comments, other columns and line ends stay.
@@ -240,7 +260,7 @@ class ProgramDocument : public PoseDocument {
       poses_.ids.push_back(int(poses_.configurations.size()));
       poses_.lines.push_back(target.line);
     }
-    if (poses_.configurations.empty()) throw InputError({name, 0}, "has no points but home", "at least one is needed");
+    if (targets_.targets().empty()) poses_.notes.push_back(name + " has no joint values: it is written as it is");
     if (homes > 0) poses_.notes.push_back(fmt::format("{}: home stays where the joints have it", name));
     if (const auto& lines = targets_.cartesian(); !lines.empty())
       poses_.notes.push_back(fmt::format(
@@ -265,7 +285,7 @@ class ProgramDocument : public PoseDocument {
         throw CannotDo(fmt::format("{}:{}: {}", poses_.name, poses_.lines[p], error.what()));
       }
     }
-    return changed.text(remark);
+    return changed.text(targets_.targets().empty() ? "" : remark);
   }
 
  private:

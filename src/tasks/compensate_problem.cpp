@@ -251,6 +251,9 @@ std::vector<Coordinate> compensation_coordinates(const Problem& problem) {
   for (Coordinate& c : result)
     for (const Coordinate& narrowed : limits)
       if (narrowed.name == c.name) c = narrowed;
+  for (Coordinate& c : result)
+    for (const auto& [name, velocity] : problem.workspace.motion.velocity)
+      if (name.value == c.name) c.speed = velocity.value;
   return result;
 }
 

@@ -31,6 +31,7 @@ std::vector<Coordinate> six_joints() {
     c.unit = "rad";
     c.lower = -4;
     c.upper = 4;
+    c.speed = 2;
     coordinates.push_back(c);
   }
   return coordinates;
@@ -259,6 +260,17 @@ TEST(PoseDocument, OfARouteMovesPosesViaPointsAndEndsOfMotionsButNotHome) {
   for (std::size_t m = 0; m < route.motions.size(); ++m) {
     const auto &old = route.motions[m].points, &now = again.motions[m].points;
     ASSERT_EQ(old.size(), now.size());
+    // As much longer as the way, at 2 rad/s.
+    double more = 0;
+    for (std::size_t i = 1; i < old.size(); ++i) {
+      double was = 0, is = 0;
+      for (std::size_t k = 0; k < 6; ++k) {
+        was = std::max(was, std::abs(old[i][k] - old[i - 1][k]));
+        is = std::max(is, std::abs(now[i][k] - now[i - 1][k]));
+      }
+      more += (is - was) / 2;
+    }
+    EXPECT_NEAR(again.motions[m].seconds - route.motions[m].seconds, std::max(0.0, more), 1e-12);
     for (std::size_t i = 0; i < old.size(); ++i) EXPECT_EQ(now[i], old[i] == route.home ? route.home : shifted(old[i]));
   }
   EXPECT_THROW(parse_document(text, "route.json", six_joints(), {}), InputError);

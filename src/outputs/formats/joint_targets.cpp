@@ -238,7 +238,8 @@ JointTargets::JointTargets(const std::string& format, std::string text, std::str
   }
   if (coupling_ != 0 && names_.size() < 3) throw InputError({}, "--coupling is for robots of three axes or more", "");
   (this->*dialect_->scan)();
-  if (targets_.empty())
+  // The points of a KRL program are in its other file.
+  if (targets_.empty() && !(format == "kuka-krl" && upper(file_).ends_with(".SRC")))
     throw InputError({file_, 0}, "has no points that are given by joint values",
                      cartesian_.empty() ? "a " + format + " program, or --from FORMAT"
                                         : "points given by position and orientation are the controller's to reach");
@@ -343,8 +344,7 @@ std::string JointTargets::text(const std::string& remark) const {
   if (dialect_->decimals >= 0)
     for_each_line(result, [&](int, std::size_t begin, std::string_view line) {
       const std::string first = upper(Cursor(line).word());
-      if (place == 0 && (first == "DEF" || first == "DEFDAT" || first == "MODULE" || first == "GLOBAL" ||
-                         (first == "DEF" && dialect_->format == "urscript")))
+      if (place == 0 && (first == "DEF" || first == "DEFDAT" || first == "MODULE" || first == "GLOBAL"))
         place = std::min(begin + line.size() + 1, result.size());
     });
   const std::size_t end = result.find('\n');

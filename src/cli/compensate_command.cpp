@@ -258,8 +258,8 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   std::vector<fs::path> outputs = to, inputs = files_of(problem);
   outputs.insert(outputs.end(), {robot.urdf, robot.xacro, robot.kinematics});
   inputs.insert(inputs.end(), files.begin(), files.end());
-  const NewFolder folder(to.size() > 0 && to.front() != fs::path(text_of(values, "output")) ? to.front().parent_path()
-                                                                                            : fs::path());
+  const NewFolder folder(!to.empty() && to.front() != fs::path(text_of(values, "output")) ? to.front().parent_path()
+                                                                                          : fs::path());
   check_output_files(values, outputs, inputs);
   robot.make(problem);
 

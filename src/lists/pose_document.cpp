@@ -170,8 +170,10 @@ class CsvDocument : public PoseDocument {
       std::string line = bytes_.substr(begin, stop - begin);
       if (pose < table_.rows.size() && table_.rows[pose].line == number) {
         std::vector<std::string> cells(table_.names.size());
+        // What stays is not written anew: digits of its own are somebody's.
         for (const Column& c : columns_)
-          cells[c.column] = fmt::format("{}", values.configurations[pose * width_ + c.value] / c.unit);
+          if (values.configurations[pose * width_ + c.value] != poses_.configurations[pose][c.value])
+            cells[c.column] = fmt::format("{}", values.configurations[pose * width_ + c.value] / c.unit);
         for (const Column& c : actuators)
           cells[c.column] = fmt::format("{}", values.actuators[pose * values.actuator_names.size() + c.value] / c.unit);
         line = with_cells(line, cells);

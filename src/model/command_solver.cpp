@@ -181,20 +181,26 @@ bool CommandSolver::iterate(Work& w) const {
   return size() <= accepted;
 }
 
-/// Holds joints of a redundant arm that are beyond a limit there; false if none is or no axis is to spare.
+/// Holds joints of a redundant arm that are beyond a limit there; false if none is or too few axes are to spare.
 bool CommandSolver::hold_at_limits(Work& w) const {
-  bool any = false;
-  for (std::size_t i = 0; i < commanded_.size(); ++i) {
+  const auto beyond = [&](std::size_t i) {
     const Coordinate& c = commanded_[i];
     const double value = w.u[Eigen::Index(i)];
-    if (w.held[i] != 0 || c.periodic || (value >= c.lower && value <= c.upper)) continue;
-    const auto free = std::count(w.held.begin(), w.held.end(), 0);
-    if (free <= w.rows) return false;
-    w.held[i] = 1;
-    w.u[Eigen::Index(i)] = w.first[Eigen::Index(i)] = std::clamp(value, c.lower, c.upper);
-    any = true;
+    return w.held[i] == 0 && !c.periodic && (value < c.lower || value > c.upper);
+  };
+  Eigen::Index more = 0, free = 0;
+  for (std::size_t i = 0; i < commanded_.size(); ++i) {
+    more += beyond(i) ? 1 : 0;
+    free += w.held[i] == 0 ? 1 : 0;
   }
-  return any;
+  if (more == 0 || free - more < w.rows) return false;
+  for (std::size_t i = 0; i < commanded_.size(); ++i) {
+    if (!beyond(i)) continue;
+    w.held[i] = 1;
+    const auto k = Eigen::Index(i);
+    w.u[k] = w.first[k] = std::clamp(w.u[k], commanded_[i].lower, commanded_[i].upper);
+  }
+  return true;
 }
 
 /// The configuration to command; false if a parallel robot's controller has none for these actuators.

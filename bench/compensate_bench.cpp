@@ -19,7 +19,8 @@ void commands(benchmark::State& state) {
   Random random(1, 0);
   CalibratedParameters parameters;
   parameters.variant.value = problem.variants.front().name;
-  for (const Parameter& p : make_model(problem)->parameters())
+  const auto model = make_model(problem);
+  for (const Parameter& p : model->parameters())
     if (p.name.starts_with("joint") && p.unit != "1")
       parameters.values.push_back({{p.name, 0}, p.unit, p.nominal + random.uniform(-1, 1) * p.tolerance});
   apply_parameters(problem, parameters, {});

@@ -32,8 +32,8 @@ class JointTargets {
   ///                 staubli-val3 (.dtx), joint-trajectory
   /// @param names    of the robot's joints, `units` rad or m
   /// @param coupling overrules that of the settings
-  /// Throws InputError with file and line for a target without one of the axes, for a text without joint targets (a .src of KRL may be one: its points are in the .dat), and
-  /// for settings that are missing.
+  /// Throws InputError with file and line for a target without one of the axes, for a text without joint targets (a
+  /// .src of KRL may be one: its points are in the .dat), and for settings that are missing.
   JointTargets(const std::string& format, std::string text, std::string file, std::vector<std::string> names,
                std::vector<std::string> units, const ControllerSettings& settings, std::optional<double> coupling);
 

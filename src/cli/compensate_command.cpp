@@ -72,7 +72,7 @@ Problem calibrated_problem(const po::variables_map& values, const fs::path& para
   return problem;
 }
 
-CompensateOptions options_of(const po::variables_map& values, const CommonOptions& common) {
+CompensateOptions compensation_options(const po::variables_map& values, const CommonOptions& common) {
   CompensateOptions options;
   options.solver.with_base = values.count("with-base") > 0;
   options.solver.with_tool = values.count("without-tool") == 0;
@@ -98,7 +98,7 @@ DocumentOptions document_options(const po::variables_map& values) {
 }
 
 /// Where the files go: one file by its name, several into a folder under their own names.
-std::vector<fs::path> places(const po::variables_map& values, const Words& files) {
+std::vector<fs::path> output_places(const po::variables_map& values, const Words& files) {
   const fs::path output = values.count("output") > 0 ? output_file(values, "output", "") : fs::path();
   if (output.empty()) return {};
   std::error_code code;
@@ -225,8 +225,8 @@ Compensation compensate_files(const Words& files, const Problem& problem, const 
   return result;
 }
 
-void show(const CommonOptions& common, const Problem& problem, const Compensation& result, const RobotFiles& robot,
-          const std::vector<fs::path>& written) {
+void show_compensation(const CommonOptions& common, const Problem& problem, const Compensation& result,
+                       const RobotFiles& robot, const std::vector<fs::path>& written) {
   print_notes(result.notes);
   if (common.json) {
     nlohmann::ordered_json json = compensation_json(problem, result);
@@ -247,12 +247,12 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   if (positional.empty()) throw InputError({}, "PARAMETERS is missing", "see posewright help compensate");
   const fs::path parameters = positional.front();
   const Words files(positional.begin() + 1, positional.end());
-  const CompensateOptions options = options_of(values, common);
+  const CompensateOptions options = compensation_options(values, common);
   const DocumentOptions reading = document_options(values);
   RobotFiles robot(values);
   if (files.empty() && !robot.any())
     throw InputError({}, "FILE is missing", "poses to compensate, --urdf, --xacro, --ur-kinematics or --dh");
-  const std::vector<fs::path> to = places(values, files);
+  const std::vector<fs::path> to = output_places(values, files);
   const Problem problem = calibrated_problem(values, parameters);
 
   std::vector<fs::path> outputs = to, inputs = files_of(problem);
@@ -276,7 +276,7 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   } else if (!to.empty() || !robot.files.empty()) {
     result.notes.emplace_back("nothing is written; --partial writes such poses as they are listed");
   }
-  show(common, problem, result, robot, written);
+  show_compensation(common, problem, result, robot, written);
   return good ? done : cannot_do;
 }
 

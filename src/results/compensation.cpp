@@ -15,23 +15,23 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // More lines than these nobody reads; --json has all.
-constexpr std::size_t most_lines = 20;
+constexpr std::size_t most_failures = 20;
 
-std::string in_mm(double metres) { return fmt::format("{:.6f}", metres * 1e3); }
-std::string in_deg(double radians) { return fmt::format("{:.6f}", radians * 180 / std::numbers::pi); }
+std::string length_in_mm(double metres) { return fmt::format("{:.6f}", metres * 1e3); }
+std::string angle_in_deg(double radians) { return fmt::format("{:.6f}", radians * 180 / std::numbers::pi); }
 
 Json tip_error_json(const TipError& error) {
   return {{"position", finite_or_null(error.position)}, {"rotation", finite_or_null(error.rotation)}};
 }
 
-Json summary_json(const TipErrorSummary& s) {
+Json error_summary_json(const TipErrorSummary& s) {
   return {{"position_rms", s.position_rms},
           {"position_largest", s.position_largest},
           {"rotation_rms", s.rotation_rms},
           {"rotation_largest", s.rotation_largest}};
 }
 
-Json list_json(const CompensatedList& list, const Compensation& all) {
+Json commanded_list_json(const CompensatedList& list, const Compensation& all) {
   Json poses = Json::array();
   const std::size_t axes = all.axes.size();
   for (std::size_t i = 0; i < list.solutions.size(); ++i) {
@@ -63,23 +63,26 @@ std::string compensation_text(const Compensation& c) {
                   c.variant, c.position_only ? ", positions alone" : "");
   if (c.compensated > 0) {
     Table errors({"error of the tip, predicted", "RMS", "largest"}, {A::left, A::right, A::right});
-    errors.row({"position before [mm]", in_mm(c.before.position_rms), in_mm(c.before.position_largest)});
-    errors.row({"position after [mm]", in_mm(c.after.position_rms), in_mm(c.after.position_largest)});
-    errors.row({"orientation before [deg]", in_deg(c.before.rotation_rms), in_deg(c.before.rotation_largest)});
-    errors.row({"orientation after [deg]", in_deg(c.after.rotation_rms), in_deg(c.after.rotation_largest)});
+    errors.row({"position before [mm]", length_in_mm(c.before.position_rms), length_in_mm(c.before.position_largest)});
+    errors.row({"position after [mm]", length_in_mm(c.after.position_rms), length_in_mm(c.after.position_largest)});
+    errors.row(
+        {"orientation before [deg]", angle_in_deg(c.before.rotation_rms), angle_in_deg(c.before.rotation_largest)});
+    errors.row({"orientation after [deg]", angle_in_deg(c.after.rotation_rms), angle_in_deg(c.after.rotation_largest)});
     text += errors.text() + "\n";
     Table changes({c.parallel ? "change of actuator" : "change of joint", "", "RMS", "largest"},
                   {A::left, A::left, A::right, A::right});
     for (const AxisChange& axis : c.axes) {
-      const auto shown = [&](double value) { return axis.unit == "m" ? in_mm(value) : in_deg(value); };
+      const auto shown = [&](double value) { return axis.unit == "m" ? length_in_mm(value) : angle_in_deg(value); };
       changes.row({axis.name, axis.unit == "m" ? "mm" : "deg", shown(axis.rms), shown(axis.largest)});
     }
     text += changes.text();
   }
   if (c.failures.empty()) return text;
   text += fmt::format("\nNot compensated: {}\n", c.failures.size());
-  for (std::size_t i = 0; i < std::min(most_lines, c.failures.size()); ++i) text += "  " + c.failures[i].text() + "\n";
-  if (c.failures.size() > most_lines) text += fmt::format("  … and {} more (--json)\n", c.failures.size() - most_lines);
+  for (std::size_t i = 0; i < std::min(most_failures, c.failures.size()); ++i)
+    text += "  " + c.failures[i].text() + "\n";
+  if (c.failures.size() > most_failures)
+    text += fmt::format("  … and {} more (--json)\n", c.failures.size() - most_failures);
   return text;
 }
 
@@ -96,7 +99,7 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
       json["names"].push_back(coordinate.name);
       json["units"].push_back(coordinate.unit);
     }
-  json["error"] = {{"before", summary_json(c.before)}, {"after", summary_json(c.after)}};
+  json["error"] = {{"before", error_summary_json(c.before)}, {"after", error_summary_json(c.after)}};
   json["changes"] = Json::array();
   for (const AxisChange& axis : c.axes)
     json["changes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"rms", axis.rms}, {"largest", axis.largest}});
@@ -105,7 +108,7 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
     json["not_compensated"].push_back(
         {{"file", n.file}, {"line", n.line > 0 ? Json(n.line) : Json(nullptr)}, {"id", n.id}, {"why", n.why}});
   json["lists"] = Json::array();
-  for (const CompensatedList& list : c.lists) json["lists"].push_back(list_json(list, c));
+  for (const CompensatedList& list : c.lists) json["lists"].push_back(commanded_list_json(list, c));
   json["notes"] = c.notes;
   return json;
 }

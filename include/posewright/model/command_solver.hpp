@@ -48,7 +48,7 @@ class CommandSolver {
     TipError after;       ///< commanded as solved
     int coordinate = -1;  ///< that is too far or beyond its limit: index among commanded(), or, less their number,
                           ///< among the platform's coordinates
-    double value = 0.0;  ///< of it, rad or m
+    double value = 0.0;   ///< of it, rad or m
   };
 
   /// @param nominal     the robot as its controller knows it; its coordinates are the first ones of `calibrated`

@@ -26,6 +26,12 @@ std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po:
   return packages;
 }
 
+void add_package_option(po::options_description& options) {
+  options.add_options()(
+      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
+}
+
 void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
   print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
 }
@@ -33,15 +39,14 @@ void apply(Problem& problem, const std::filesystem::path& file, const std::vecto
 }  // namespace
 
 po::options_description package_options() {
-  po::options_description options("Problem");
-  options.add_options()(
-      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
+  po::options_description options("Robot");
+  add_package_option(options);
   return options;
 }
 
 po::options_description problem_options() {
-  po::options_description options = package_options();
+  po::options_description options("Problem");
+  add_package_option(options);
   options.add_options()("parameters", po::value<std::string>()->value_name("FILE"),
                         "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
   return options;

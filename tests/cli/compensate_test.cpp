@@ -95,7 +95,7 @@ TEST_F(CompensateCommand, WritesNothingWhereAPoseCannotBeHadUnlessTheRestIsAsked
   folder_.write("list.csv", std::string(header) + good_poses + "c,0.1,0.2,0.3,-2.5,0.5,0.2\n");
   const ProgramRun refused = run({"cal.yaml", "list.csv", "-o", "out.csv", "--urdf", "out.urdf"});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.out, HasSubstr("list.csv:5: pose 3: 'j4' would be at -143.2"));
+  EXPECT_THAT(refused.out, HasSubstr("list.csv:5: pose 3: 'j4' would be at -143.3"));
   EXPECT_THAT(refused.err, HasSubstr("nothing is written; --partial"));
   EXPECT_FALSE(is_there("out.csv"));
   EXPECT_FALSE(is_there("out.urdf"));

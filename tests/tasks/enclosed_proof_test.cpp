@@ -179,11 +179,16 @@ TEST_F(EnclosedProofs, NoPoseOfARandomPlatformIsBeyondTheBound) {
     const double bound = proof.max_ratio * 1e-2 * largest;
     EXPECT_GE(bound, largest * (1 - 1e-12)) << "platform " << i;
     wide += int(bound > 1.02 * largest);
-    if (i % 4 == 0) EXPECT_EQ(proved(1, 1).max_ratio, proof.max_ratio);
+    if (i % 4 == 0) {
+      EXPECT_EQ(proved(1, 1).max_ratio, proof.max_ratio);
+    }
     // Stopped at once it has a bound or says that it has none.
     const WorkspaceProof stopped = proved(1, 0);
-    if (stopped.why_not.empty()) EXPECT_GE(stopped.max_ratio * 1e-2 * largest, largest * (1 - 1e-12));
-    else EXPECT_EQ(stopped.why_not, "stopped");
+    if (stopped.why_not.empty()) {
+      EXPECT_GE(stopped.max_ratio * 1e-2 * largest, largest * (1 - 1e-12));
+    } else {
+      EXPECT_EQ(stopped.why_not, "stopped");
+    }
   }
   EXPECT_GT(judged, 0);
   // Random steps do not always find the largest value.

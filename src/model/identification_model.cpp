@@ -75,6 +75,11 @@ std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_rows(std::span<const
   return do_harmonic_rows(point(q, shift_), selected, why_not);
 }
 
+bool IdentificationModel::do_enclose(std::span<const TaylorModel>, std::span<const int>, const Eigen::MatrixXd*,
+                                     std::span<const double>, Enclosure&) const {
+  return false;
+}
+
 void IdentificationModel::do_take_loads_at(std::span<const double>) {}
 
 std::span<const double> IdentificationModel::total(std::span<const double> correction,

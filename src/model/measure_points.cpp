@@ -4,6 +4,7 @@
 
 #include "point_noise.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 InstrumentView view_of(const PointsMeasurement& points) {
@@ -35,6 +36,19 @@ PointsModel::PointsModel(const MeasurementSpec& spec)
   for (int i = 0; i < targets; ++i) preferences_.push_back({i, 1});
   // base.* says where the robot stands before the first station; further stations have a place of their own.
   for (int i = targets + 6; i < int(parameters_.size()); ++i) preferences_.push_back({i, 0});
+}
+
+std::optional<Eigen::Matrix<double, 6, 6>> PointsModel::tip_covariance() const {
+  const auto* noise = std::get_if<GaussianNoise>(&spec_.noise);
+  if (noise == nullptr || spec_.components.size() != 3 || !places_.empty()) return std::nullopt;
+  const Eigen::Matrix3d& C = noise->covariance;
+  // Points that are as good in all directions turn with the tip.
+  if (C != C(0, 0) * Eigen::Matrix3d::Identity()) return std::nullopt;
+  try {
+    return fitted_pose_covariance(*this, Eigen::Isometry3d::Identity());
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
 }
 
 std::span<const double> PointsModel::station_part(std::span<const double> correction) const {

@@ -22,6 +22,7 @@ class PointsModel : public MeasurementModel {
   bool motion(const Sighting& sighting, int index, Twist* twist) const override;
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
   HarmonicNoise harmonic_noise() const override;
+  std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
 
  private:

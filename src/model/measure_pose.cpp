@@ -87,6 +87,20 @@ void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const 
   }
 }
 
+std::optional<Eigen::Matrix<double, 6, 6>> PoseModel::tip_covariance() const {
+  if (rows_ != 6) return std::nullopt;
+  std::optional<Eigen::Matrix<double, 6, 6>> C = points_ != nullptr ? points_->tip_covariance() : spec_.covariance;
+  if (!C) return std::nullopt;
+  if (points_ == nullptr) {
+    // Given along the axes of M; the same along those of the tip if no direction is better than another.
+    Eigen::Matrix<double, 6, 1> alike;
+    alike << (*C)(0, 0), (*C)(0, 0), (*C)(0, 0), (*C)(3, 3), (*C)(3, 3), (*C)(3, 3);
+    if (*C != Eigen::Matrix<double, 6, 6>(alike.asDiagonal())) return std::nullopt;
+  }
+  *C /= repeats_;
+  return C;
+}
+
 void PoseModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   const Eigen::Matrix<double, 6, 6> full =
       points_ == nullptr ? spec_.covariance : fitted_pose_covariance(*points_, sighting.X_MeasureTip);

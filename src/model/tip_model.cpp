@@ -11,6 +11,11 @@ HarmonicColumns TipModel::harmonic_columns(std::span<const int>, std::span<const
 
 int TipModel::offset_of(int) const { return -1; }
 
+bool TipModel::enclose_residual(std::span<const TaylorModel>, std::span<const double>, std::span<const int>,
+                                EnclosedResidual&) const {
+  return false;
+}
+
 void TipModel::take_loads_at(std::span<const double>) {}
 
 bool TipModel::actuator_values(const Point&, std::span<double>) const { return true; }

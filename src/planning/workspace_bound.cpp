@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "posewright/planning/ascent.hpp"
+#include "posewright/planning/taylor_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -24,6 +25,9 @@ constexpr int pool_per_column = 4;
 constexpr double nearly = 1.02;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
+
+// Boxes that are looked into for what searches miss: some seconds.
+constexpr long boxes_of_a_look = 1500;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
@@ -123,6 +127,77 @@ std::vector<std::vector<double>> candidates_above(double limit, const BlockArray
   return result;
 }
 
+/// The mean of the pool's candidates, if it is feasible; else one of them.
+std::vector<double> inner_place(const Pool& pool, ConfigurationSpace::Probe& probe) {
+  std::vector<double> mean(pool.configurations.front().size(), 0.0);
+  for (std::size_t i = 0; i < pool.candidates; ++i)
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += pool.configurations[i][k] / double(pool.candidates);
+  return probe.feasible(mean) ? mean : pool.configurations.front();
+}
+
+/// Moves q to the last feasible place on the way to it from a feasible one.
+bool towards(const std::vector<double>& inside, ConfigurationSpace::Probe& probe, std::vector<double>& q) {
+  if (probe.feasible(q)) return true;
+  const std::vector<double> end = q;
+  double feasible = 0, beyond = 1;
+  for (int step = 0; step < 30; ++step) {
+    const double t = 0.5 * (feasible + beyond);
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] = inside[k] + t * (end[k] - inside[k]);
+    (probe.feasible(q) ? feasible : beyond) = t;
+  }
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] = inside[k] + feasible * (end[k] - inside[k]);
+  return probe.feasible(q);
+}
+
+/// What local searches from candidates do not find: where actuators cut the workspace, few candidates are near its
+/// corners. Starts of new searches are the middles of boxes that a proof of d ≤ limit would have to cut; none if there
+/// is no such proof. Raises `largest` to the largest d found.
+std::vector<std::vector<double>> missed_by_searches(double limit, const Pool& pool, const Eigen::MatrixXd& T,
+                                                    const ConfigurationSpace& space,
+                                                    const WorkspaceBoundOptions& options, const Monitor& monitor,
+                                                    double& largest) {
+  SeenAbove seen;
+  seen.limit = limit;
+  BoxSearchOptions boxes;
+  boxes.tolerance = options.tolerance;
+  boxes.enough = limit;
+  boxes.most_boxes = boxes_of_a_look;
+  boxes.threads = options.threads;
+  largest_enclosed(space, T, boxes, monitor, &seen);
+  std::sort(seen.middles.begin(), seen.middles.end());
+  const auto probe = space.probe();
+  ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
+  Sensitivity sensitivity(T);
+  const std::vector<double> inside = inner_place(pool, *probe);
+  std::vector<std::pair<double, std::vector<double>>> reached;
+  for (std::vector<double>& q : seen.middles)
+    if (towards(inside, *probe, q) && block.at(*probe, q)) reached.emplace_back(sensitivity.value(block.map()), q);
+  std::sort(reached.begin(), reached.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  std::vector<std::vector<double>> starts;
+  for (const auto& [value, q] : reached) {
+    if (int(starts.size()) == options.starts) break;
+    if (std::none_of(starts.begin(), starts.end(),
+                     [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
+      starts.push_back(q);
+  }
+  std::vector<AscentResult> ends(starts.size());
+  parallel_for(starts.size(), thread_count(options.threads), [&](std::size_t i, int) {
+    const auto own = space.probe();
+    Sensitivity d(T);
+    ends[i] = ascend(space, *own, d, pool.blocks.rows(), pool.blocks.columns(), starts[i], options.evaluations);
+  });
+  std::vector<std::vector<double>> found;
+  for (const AscentResult& end : ends) {
+    largest = std::max(largest, end.value);
+    if (end.value > limit && std::none_of(found.begin(), found.end(), [&](const auto& q) {
+          return is_same_place(space.axes(), q, end.q, end_distance);
+        }))
+      found.push_back(end.q);
+  }
+  return found;
+}
+
 Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
                 std::size_t room) {
   std::vector<int> order(blocks.count());
@@ -161,6 +236,8 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
   Random random(options.seed, 0);
   const auto probe = space.probe();
   const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
+  const bool look_into_boxes = blocks.count() >= few_candidates && options.proof.seconds != 0.0 && !space.is_box() &&
+                               space.enclosure(Eigen::MatrixXd::Identity(blocks.columns(), 1)) != nullptr;
   for (int round = 0; round < rounds; ++round) {
     design = solve_approximate_design(pool.blocks, function, weights, monitor);
     const std::vector<AscentResult> ends = search_from(starts_of(design, pool, space.axes(), options.starts, random),
@@ -181,13 +258,17 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
                          [&](const auto& q) { return is_same_place(space.axes(), q, end.q, end_distance); }))
           found.push_back(end.q);
     }
+    const bool thorough = evaluations == options.evaluations;
+    if (thorough && look_into_boxes && (most <= limit || found.empty()) && !monitor.should_stop()) {
+      const auto missed = missed_by_searches(limit, pool, design.factor, space, options, monitor, most);
+      found.insert(found.end(), missed.begin(), missed.end());
+    }
     result.value = design.value;
     result.max_ratio = std::max(1.0, (most + extra) / design.degree);
     result.bound = design.value + design.degree * std::log(result.max_ratio);
     result.stopped = monitor.should_stop();
     monitor.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result.max_ratio});
     if (result.stopped) break;
-    const bool thorough = evaluations == options.evaluations;
     if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     append(pool, found, *probe);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "posewright/planning/enclosed_proof.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
 
@@ -86,6 +87,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   else proof.why_not.clear();
   if (!proof.why_not.empty()) return;
   const WeightedConfigurations support = support_of(result, space);
+  if (prove_by_enclosure(result, space, candidates, rows, options, monitor)) return;
   const HarmonicForms forms = space.harmonic_forms(support);
   proof.why_not = forms.why_not;
   if (!proof.why_not.empty()) return;

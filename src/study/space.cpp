@@ -98,6 +98,27 @@ class StudyProbe : public ConfigurationSpace::Probe {
   BlockArray::RowMatrix raw_, white_;
 };
 
+class StudyEnclosure : public ConfigurationSpace::Enclosure {
+ public:
+  StudyEnclosure(const SpacePart& part, Eigen::MatrixXd T) : part_(part), T_(std::move(T)) {}
+
+  bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) override {
+    if (!part_.model->enclose(q, part_.selected, nullptr, out_)) return false;
+    limits = std::move(out_.allowed);
+    return true;
+  }
+  bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) override {
+    if (!part_.model->enclose(q, part_.selected, &T_, out_)) return false;
+    d = std::move(out_.sensitivity);
+    return true;
+  }
+
+ private:
+  const SpacePart& part_;
+  Eigen::MatrixXd T_;  // of raw columns
+  IdentificationModel::Enclosure out_;
+};
+
 class StudySpace : public ConfigurationSpace {
  public:
   StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
@@ -114,6 +135,20 @@ class StudySpace : public ConfigurationSpace {
   bool is_box() const override { return box_; }
   HarmonicForms harmonic_forms(const WeightedConfigurations& where) const override {
     return harmonic_forms_of(parts_, axes_, R_, where);
+  }
+  std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd& T) const override {
+    const SpacePart& part = parts_.front();
+    if (parts_.size() > 1 || part.features != nullptr || part.mix.size() > 0) return nullptr;
+    std::vector<TaylorModel> middle;
+    for (const Coordinate& c : part.workspace->proposed()) {
+      if (c.discrete() && c.values.size() > 1) return nullptr;
+      middle.emplace_back(0.5 * (c.lower + c.upper));
+    }
+    // Blocks of the task are J R⁻¹.
+    auto result = std::make_unique<StudyEnclosure>(part, R_.triangularView<Eigen::Upper>().solve(T));
+    std::vector<TaylorModel> limits;
+    if (!result->allowed(middle, limits)) return nullptr;
+    return result;
   }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }

@@ -9,6 +9,7 @@
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -126,6 +127,21 @@ class IdentificationModel {
   /// target counts as seen, which only tells more. Null: nothing does, `why_not` says why.
   std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
                                               std::string& why_not) const;
+
+  /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and what is not negative where q is within
+  /// reach and its actuators within their travel.
+  struct Enclosure {
+    TaylorModel sensitivity;
+    std::vector<TaylorModel> allowed;
+  };
+  /// @param q  every coordinate over the box
+  /// @param T  selected × any number; null: only what is allowed
+  /// @return false if this model has no enclosure
+  bool enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
+               Enclosure& out) const {
+    return visibility_ == nullptr && do_enclose(q, selected, T, shift_, out);
+  }
+
   void set_nominal(int index, double value);
   /// From now on loads bend an elastic robot as they do with these corrections (of all parameters): what parameters
   /// change of the torques is of second order while corrections are small, but a base may be found to stand anywhere.
@@ -230,6 +246,8 @@ class IdentificationModel {
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
   virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+  virtual bool do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
+                          std::span<const double> correction, Enclosure& out) const;
   void hide(std::span<const double> q, Linearisation& out) const;
   bool settle(Point& at, std::vector<double>& scratch) const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -87,6 +88,10 @@ class MeasurementModel {
   /// False if the instrument cannot read the tip there; unseen_reason() says why, empty if it always can.
   virtual bool sees(const Sighting& sighting) const;
   const std::string& unseen_reason() const { return unseen_reason_; }
+
+  /// Covariance (6 × 6) of the tip's pose by the linear fit to one measurement, as twists about its origin in its own
+  /// axes (m, rad), where that is the same at every pose. Empty: it is not, or the readings do not fix the pose.
+  virtual std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const { return std::nullopt; }
 
  protected:
   std::vector<Parameter> parameters_;

@@ -7,6 +7,7 @@
 
 #include "posewright/blocks/harmonic_parts.hpp"
 #include "posewright/model/identification_model.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -76,6 +77,20 @@ class TipModel {
   /// Where the robot stands when its actuators have these values, near `start`; without actuators it stays there. False
   /// if a closed chain does not close.
   virtual bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const;
+
+  /// A closed chain's residual f over a box of configurations: f(X + δ, ρ + δρ, ξ + δξ) changes by the sum of the
+  /// three.
+  struct EnclosedResidual {
+    using Matrix = Eigen::Matrix<TaylorModel, Eigen::Dynamic, Eigen::Dynamic>;
+    Matrix platform;                   ///< 6 × 6, along twists of the tip about its origin in its own axes
+    Matrix actuator;                   ///< 6 × readings
+    Matrix parameter;                  ///< 6 × selected: all that moves the tip
+    std::vector<TaylorModel> allowed;  ///< none is negative at a feasible configuration
+  };
+  /// @param q  each a variable over the box
+  /// @return false if the robot has none
+  virtual bool enclose_residual(std::span<const TaylorModel> q, std::span<const double> correction,
+                                std::span<const int> selected, EnclosedResidual& out) const;
 
  protected:
   std::vector<Parameter> parameters_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "posewright/criterion/spacing.hpp"
 #include "posewright/planning/harmonic_form.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -36,6 +38,18 @@ class ConfigurationSpace {
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
   };
 
+  /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.
+  class Enclosure {
+   public:
+    virtual ~Enclosure() = default;
+    /// What is not negative wherever a configuration is feasible; more than that may be feasible.
+    /// @param q  one a coordinate, over the box
+    /// @return false if the box has no enclosure
+    virtual bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) = 0;
+    /// Of all that is allowed; elsewhere the model may say anything.
+    virtual bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) = 0;
+  };
+
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
@@ -49,6 +63,8 @@ class ConfigurationSpace {
   /// Configuration of a candidate of the task.
   virtual std::span<const double> candidate(int index) const = 0;
   virtual std::unique_ptr<Probe> probe() const = 0;
+  /// Null if the space has none.
+  virtual std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd&) const { return nullptr; }
 };
 
 inline HarmonicForms ConfigurationSpace::harmonic_forms(const WeightedConfigurations&) const {

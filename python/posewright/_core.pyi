@@ -417,6 +417,7 @@ def plan(
     prior: Optional[str] = None,
     reserve: bool = False,
     measured: Optional[_Poses] = None,
+    fixed: Optional[_Poses] = None,
     truth: str = "",
     candidates_from: Optional[_Poses] = None,
     gap: Optional[float] = None,

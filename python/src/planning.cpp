@@ -20,9 +20,8 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
           const py::object& measured, const py::object& fixed, const std::string& truth,
-          const py::object& candidates_from,
-          std::optional<double> gap, std::optional<double> proof_time, const py::int_& seed, long long threads,
-          Limit time_limit, py::object progress) {
+          const py::object& candidates_from, std::optional<double> gap, std::optional<double> proof_time,
+          const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
   PlanOptions options;
   options.truth = truth;
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
@@ -133,9 +132,9 @@ void bind_planning(py::module_& m) {
   m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
         py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
         py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
-        py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none, py::arg("gap") = none,
-        py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none,
+        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Searches for the poses to measure. What is not said is as in the problem.
 
 poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there

@@ -128,7 +128,8 @@ void Drawing::keep_to_budget() {
   for (const DrawnBody& body : bodies_) all += body.mesh.triangles.size();
   if (all <= most_of_all) return;
   const double share = double(most_of_all) / double(all);
-  for (DrawnBody& body : bodies_) body.mesh = thinned(body.mesh, std::size_t(share * double(body.mesh.triangles.size())));
+  for (DrawnBody& body : bodies_)
+    body.mesh = thinned(body.mesh, std::size_t(share * double(body.mesh.triangles.size())));
 }
 
 void Drawing::add_chain(const ChainDescription& chain) {
@@ -138,8 +139,8 @@ void Drawing::add_chain(const ChainDescription& chain) {
     const auto& all = model_->coordinates();
     const auto at = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name; });
     if (at == all.end()) return;
-    drawn.joints.push_back({joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset,
-                            int(at - all.begin())});
+    drawn.joints.push_back(
+        {joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset, int(at - all.begin())});
   }
   if (model_->tips() < 2) chain_ = std::move(drawn);
 }
@@ -154,8 +155,11 @@ void Drawing::add_instrument(const Problem& problem, const Cell& cell) {
     const auto placed = [&](const std::string& name, const Placement& placement) {
       return nominal_placement(model_->parameters(), name, isometry(placement));
     };
-    camera_ = DrawnCamera{view.places_on_tip, placed(view.places.front().parameters, view.places.front().station.placement),
-                          *view.image, placed(view.points_parameters, view.points_at), {}};
+    camera_ = DrawnCamera{view.places_on_tip,
+                          placed(view.places.front().parameters, view.places.front().station.placement),
+                          *view.image,
+                          placed(view.points_parameters, view.points_at),
+                          {}};
     for (const InstrumentView::Point& point : view.points) camera_->points.emplace_back(point.name, point.position);
   }
   if (cell.sight == nullptr || cell.sight->rides_on_tip()) return;

@@ -12,12 +12,12 @@ namespace {
 
 po::options_description report_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                          //
-      ("output,o", text("FILE"), "the page (report.html; - for none)")                           //
-      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")       //
-      ("problem", text("FILE"), "problem file (the one the plan names)")                         //
+  options.add_options()                                                                                       //
+      ("output,o", text("FILE"), "the page (report.html; - for none)")                                        //
+      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")                    //
+      ("problem", text("FILE"), "problem file (the one the plan names)")                                      //
       ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates, moved poses")  //
-      ("force", "replace files that posewright did not write")                                   //
+      ("force", "replace files that posewright did not write")                                                //
       ("time-limit", text("S"), "begin no other number of poses after S seconds");
   options.add(problem_options());
   return options;

@@ -68,8 +68,8 @@ Eigen::Vector2d by_lens(const Eigen::Vector3d& p, const Lens& lens, int k) {
 
 namespace {
 
-/// Line of sight (z = 1) whose image is the pixel, by Newton's iteration from where it would be without distortion; what
-/// is beyond the reach of the lens's polynomial stays there.
+/// Line of sight (z = 1) whose image is the pixel, by Newton's iteration from where it would be without distortion;
+/// what is beyond the reach of the lens's polynomial stays there.
 Eigen::Vector3d line_of_sight(const Lens& lens, const Eigen::Vector2d& pixel) {
   const Eigen::Vector3d straight((pixel.x() - lens[2]) / lens[0], (pixel.y() - lens[3]) / lens[1], 1);
   Eigen::Vector3d p = straight;
@@ -93,8 +93,9 @@ Lens lens_of(const CameraMeasurement& camera) {
 InstrumentView view_of(const CameraMeasurement& camera) {
   InstrumentView view;
   view.image = InstrumentView::Image{camera.width, camera.height, {}};
-  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(camera.width, 0),
-                                        Eigen::Vector2d(camera.width, camera.height), Eigen::Vector2d(0, camera.height)})
+  for (const Eigen::Vector2d& corner :
+       {Eigen::Vector2d(0, 0), Eigen::Vector2d(camera.width, 0), Eigen::Vector2d(camera.width, camera.height),
+        Eigen::Vector2d(0, camera.height)})
     view.image->corners.push_back(line_of_sight(lens_of(camera), corner));
   view.has_places = true;
   view.places = {{{"camera", camera.camera}, "camera", "the camera"}};

@@ -25,7 +25,7 @@ std::string headline(const Plan& plan) {
   });
   const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
   std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
-  if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(", {} of them fixed,", fixed);
+  if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(" ({} fixed)", fixed);
   if (measured > 0) text += fmt::format(" beside {} that are measured already,", measured);
   if (!plan.variant.empty())
     text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);

@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::string_view marked[] = {"yes", "true", "1"}, unmarked[] = {"no", "false", "0", ""};
 
-SourcePlace place_of(const PoseList& list, std::size_t i) { return {list.name, i < list.lines.size() ? list.lines[i] : 0}; }
+SourcePlace place_of(const PoseList& list, std::size_t i) {
+  return {list.name, i < list.lines.size() ? list.lines[i] : 0};
+}
 
 int id_of(const PoseList& list, std::size_t i) {
   return i < list.own_ids.size() && list.own_ids[i] > 0 ? list.own_ids[i] : int(i) + 1;
@@ -75,8 +77,9 @@ void fix_poses(Study& study, const PoseList& list, Repeats repeats) {
 std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings) {
   const std::filesystem::path file = options.fixed ? "" : problem.design.fixed.value_or("");
   if (!options.fixed && file.empty()) return {};
-  const PoseList list = options.fixed ? *options.fixed
-                                      : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
+  const PoseList list = options.fixed
+                            ? *options.fixed
+                            : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
   if (list.configurations.empty()) return {};
   PoseList fixed = fixed_of(list);
   const std::size_t count = fixed.configurations.size();
@@ -86,7 +89,8 @@ std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& o
                      fmt::format("{} poses are fixed of a plan of {}", count, settings.poses),
                      "fewer: something is to be chosen (evaluate judges a whole list)");
   if (settings.reserve)
-    throw InputError({list.name, 0}, "reserve stands beside fixed poses", "one of both: what is fixed may be lost, too");
+    throw InputError({list.name, 0}, "reserve stands beside fixed poses",
+                     "one of both: what is fixed may be lost, too");
   settings.fixed = std::move(fixed);
   return list.notes;
 }

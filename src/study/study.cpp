@@ -100,8 +100,8 @@ void fill_prior(const Study& study, Variant& variant, const Settings& settings) 
 
 void resolve(Study& study, Variant& variant, const Problem& problem, const Settings& settings) {
   const bool known = settings.prior || study.measured.count() + study.fixed.count() > 0;
-  ResolvedColumns resolved = resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known,
-                                             settings.planner.threads);
+  ResolvedColumns resolved =
+      resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known, settings.planner.threads);
   variant.columns = std::move(resolved.columns);
   variant.dropped = std::move(resolved.dropped);
   variant.reasons = std::move(resolved.reasons);

@@ -26,8 +26,8 @@ struct NeighbourErrors {
 class BlockSurface {
  public:
   using BlockAt = std::function<std::optional<Eigen::MatrixXd>(const std::vector<int>&)>;
-  /// The polynomial that is exact at 0, at `node` steps of one coordinate to either side and, in its mixed differences, of
-  /// two; rows that a factorisation turned over are turned back first. None where a block is missing.
+  /// The polynomial that is exact at 0, at `node` steps of one coordinate to either side and, in its mixed differences,
+  /// of two; rows that a factorisation turned over are turned back first. None where a block is missing.
   static std::optional<BlockSurface> through(std::size_t coordinates, int node, const BlockAt& block_at);
 
   Eigen::MatrixXd at(const std::vector<int>& k) const;

@@ -171,7 +171,8 @@ class Neighbourhood {
         const auto there = block_at(result_.places[p]);
         if (!there) continue;
         ++known;
-        const NeighbourErrors off = figures_.compare(pose.id, surface->at(result_.places[p]), surface->middle(), *there);
+        const NeighbourErrors off =
+            figures_.compare(pose.id, surface->at(result_.places[p]), surface->middle(), *there);
         if (!off.small()) continue;
         pose.told[p] = true;
         ++told;
@@ -195,8 +196,8 @@ class Neighbourhood {
     return Eigen::MatrixXd(rows * figures_.tolerance().asDiagonal());
   }
 
-  void judge(const std::vector<double>& q, ReportNeighbours::Pose& pose, std::vector<std::optional<Separation>>& nearest,
-             const Monitor& monitor) const {
+  void judge(const std::vector<double>& q, ReportNeighbours::Pose& pose,
+             std::vector<std::optional<Separation>>& nearest, const Monitor& monitor) const {
     for (const std::vector<int>& place : result_.places) {
       if (monitor.should_stop()) return;
       const std::vector<double> there = moved(q, pose.steps, place);

@@ -173,8 +173,7 @@ ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q) {
   return {std::nullopt, 0.0, std::move(drawn.frames), std::move(drawn.lines), drawn.tip, std::move(drawn.targets)};
 }
 
-void fill_scene(Report& report, const Drawing& drawing,
-                const std::vector<std::pair<int, std::vector<double>>>& poses,
+void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file) {
   if (!drawing.warning().empty()) report.notes.push_back(drawing.warning());
   if (!drawing.robot().empty()) report.title = drawing.robot();

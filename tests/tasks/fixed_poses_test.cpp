@@ -38,8 +38,9 @@ const std::string start =
     "y], device: {type: isotropic, noise: 1 mm}}\nvariants: {all: {parameters: [q1.offset, q2.offset, q2.x, "
     "target.T1.x]}}\n";
 
-const std::vector<Eigen::Vector2d> candidates = {{0, 1.5}, {0.4, 1.1},  {-2, -1},  {0.3, 0.5},  {1.5, 0.1},  {2.2, -1.9},
-                                                 {1, 1.9}, {2.5, -0.4}, {-1, 0.8}, {-2.4, 1.3}, {0.8, -1.4}, {-0.6, -0.2}};
+const std::vector<Eigen::Vector2d> candidates = {{0, 1.5},   {0.4, 1.1},  {-2, -1},    {0.3, 0.5},
+                                                 {1.5, 0.1}, {2.2, -1.9}, {1, 1.9},    {2.5, -0.4},
+                                                 {-1, 0.8},  {-2.4, 1.3}, {0.8, -1.4}, {-0.6, -0.2}};
 
 /// From the definition: derivatives of the point by both zero positions and both lengths.
 Eigen::Matrix<double, 2, 4> block(const Eigen::Vector2d& q) {
@@ -110,8 +111,7 @@ TEST_F(FixedPoses, TheRestIsTheBestOfAllWaysToFillThePlan) {
       EXPECT_FALSE(found.poses[i].measured);
     }
     for (std::size_t i = 0; i < 2; ++i)
-      for (std::size_t k = 0; k < 2; ++k)
-        EXPECT_EQ(found.poses[i].configuration[k].value, fixed[i][Eigen::Index(k)]);
+      for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(found.poses[i].configuration[k].value, fixed[i][Eigen::Index(k)]);
     // What is left without a pose, fixed or chosen, from the definition.
     for (std::size_t lost = 0; lost < 5; ++lost) {
       std::vector<Eigen::Vector2d> rest;
@@ -139,7 +139,7 @@ TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
   const auto json = parse_json(plan_json(found));
   EXPECT_FALSE(json["poses"][0].contains("fixed"));
   EXPECT_EQ(json["poses"][1]["fixed"], true);
-  EXPECT_THAT(plan_summary(found), HasSubstr("6 poses, 2 of them fixed, beside 1 that are measured already, for"));
+  EXPECT_THAT(plan_summary(found), HasSubstr("6 poses (2 fixed) beside 1 that are measured already, for"));
   EXPECT_THAT(plan_summary(found), HasSubstr("any plan of 6 that has the 2 fixed, all others of these"));
   EXPECT_THAT(poses_csv(found), HasSubstr("\n2,0.2,0.3\n")) << "still to be measured";
 }
@@ -170,16 +170,17 @@ TEST_F(FixedPoses, WhatCannotBeFixedIsToldWithFileAndLine) {
   EXPECT_THAT(refusal("q1,q2,fixed\n0,1,perhaps\n"), HasSubstr("fixed.csv:2: 'perhaps' in column 'fixed'"));
   EXPECT_THAT(refusal("q1,q2\n0,1\n", ", reserve: yes"), HasSubstr("reserve stands beside fixed poses"));
   folder_.write("measured.csv", "q1,q2\n0,1\n");
-  EXPECT_THAT(refusal("q1,q2\n0,1\n", ", measured: measured.csv"), HasSubstr("fixed.csv:2: pose 1 is measured already"));
+  EXPECT_THAT(refusal("q1,q2\n0,1\n", ", measured: measured.csv"),
+              HasSubstr("fixed.csv:2: pose 1 is measured already"));
   EXPECT_EQ(refusal("q1,q2\n0,1\n0,1\n", ", repeats: allow"), "accepted");
 }
 
 TEST_F(FixedPoses, APoseThatTheCellForbidsIsRefusedWithTheReason) {
   folder_.write("planar.urdf", urdf);
   folder_.write("fixed.csv", "q1,q2\n1,1\n0.7,-0.2\n");
-  const Problem walled = read_problem(folder_.write(
-      "p.yaml", start + "workspace: {tool: {x: [-3 m, 1.5 m]}}\n" +
-                    "design: {poses: 4, candidates: 60, fixed: fixed.csv}\n"));
+  const Problem walled =
+      read_problem(folder_.write("p.yaml", start + "workspace: {tool: {x: [-3 m, 1.5 m]}}\n" +
+                                               "design: {poses: 4, candidates: 60, fixed: fixed.csv}\n"));
   try {
     plan_problem(walled, {}, Monitor{});
     FAIL() << "accepted";

@@ -146,7 +146,8 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
     const int reason = study.first().workspace->violation(list[moved]);
     EXPECT_EQ(verdict < 0, reason < 0);
     ++(reason < 0 ? feasible : forbidden);
-    if (reason >= 0) EXPECT_EQ(n["reasons"][std::size_t(verdict)], study.first().workspace->reasons()[std::size_t(reason)]);
+    if (reason >= 0)
+      EXPECT_EQ(n["reasons"][std::size_t(verdict)], study.first().workspace->reasons()[std::size_t(reason)]);
     if (study.cell->collision != nullptr) {
       const auto nearest = study.cell->collision->nearest(list[moved]);
       ASSERT_TRUE(nearest.has_value());
@@ -158,13 +159,15 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
     const Eigen::MatrixXd B = block(pose, k, m), B0 = block(pose, std::vector<int>(k.size(), 0), m);
     const Eigen::MatrixXd changed = M + B.transpose() * B - B0.transpose() * B0;
     const auto log_det = [](const Eigen::MatrixXd& A) { return std::log(A.llt().matrixLLT().diagonal().prod()) * 2; };
-    const double stated = log_det(changed) - (nuisance > 0 ? log_det(changed.topLeftCorner(nuisance, nuisance)) : 0) - units;
+    const double stated =
+        log_det(changed) - (nuisance > 0 ? log_det(changed.topLeftCorner(nuisance, nuisance)) : 0) - units;
     EXPECT_NEAR(stated, judgement.evaluations.front().log_det,
                 double(m - nuisance) * n["errors"]["efficiency"].get<double>() * 1.001 + 1e-9);
     const Eigen::VectorXd sigma = changed.inverse().diagonal().cwiseSqrt();
     for (Eigen::Index j = 0; j < m; ++j) {
       const double true_sigma = judgement.evaluations.front().sigma[j];
-      EXPECT_NEAR(sigma[j] * tolerance[j], true_sigma, true_sigma * (n["errors"]["sigma"].get<double>() * 1.001 + 1e-9));
+      EXPECT_NEAR(sigma[j] * tolerance[j], true_sigma,
+                  true_sigma * (n["errors"]["sigma"].get<double>() * 1.001 + 1e-9));
     }
   }
   EXPECT_GT(told, told_share * looks);
@@ -270,9 +273,8 @@ TEST(ReportCamera, PointsOfTheBoardAreWhereAPinholeSeesThem) {
     const json& pixels = camera["pictures"][i]["pixels"];
     ASSERT_EQ(pixels.size(), std::size_t(spec.rows * spec.columns));
     for (std::size_t k = 0; k < pixels.size(); ++k) {
-      const Eigen::Vector3d p =
-          X_CameraBoard * Eigen::Vector3d(double(int(k) % spec.columns) * spec.spacing,
-                                          double(int(k) / spec.columns) * spec.spacing, 0);
+      const Eigen::Vector3d p = X_CameraBoard * Eigen::Vector3d(double(int(k) % spec.columns) * spec.spacing,
+                                                                double(int(k) / spec.columns) * spec.spacing, 0);
       // OpenCV's lens, written out.
       const auto& d = spec.distortion;
       const double x = p.x() / p.z(), y = p.y() / p.z(), s = x * x + y * y;
@@ -305,7 +307,8 @@ TEST(ReportNearest, WrittenPointsAreAsFarApartAsTheBodies) {
     if (!pose["nearest"].contains("points")) continue;
     ++stated;
     const json& p = pose["nearest"]["points"];
-    const double apart = (Eigen::Vector3d(p[0][0], p[0][1], p[0][2]) - Eigen::Vector3d(p[1][0], p[1][1], p[1][2])).norm();
+    const double apart =
+        (Eigen::Vector3d(p[0][0], p[0][1], p[0][2]) - Eigen::Vector3d(p[1][0], p[1][1], p[1][2])).norm();
     EXPECT_NEAR(apart, pose["nearest"]["distance"].get<double>(), 1e-5);
   }
   EXPECT_GT(stated, 10);

@@ -52,8 +52,8 @@ struct ReportCandidates {
   std::vector<int> chosen;                 ///< those that are poses of the plan
 };
 
-/// A serial arm as the page moves it: value of joint k = multiplier · coordinate + offset, about or along its axis behind
-/// its placement in the frame before.
+/// A serial arm as the page moves it: value of joint k = multiplier · coordinate + offset, about or along its axis
+/// behind its placement in the frame before.
 struct ReportChain {
   struct Joint {
     Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
@@ -70,7 +70,8 @@ struct ReportChain {
 
 /// A camera, its board and where the camera will see the board's points.
 struct ReportCamera {
-  bool on_tip = false;  ///< the camera rides on the tip and the board stands in the measurement frame, else the other way
+  bool on_tip =
+      false;  ///< the camera rides on the tip and the board stands in the measurement frame, else the other way
   Eigen::Isometry3d X_CarrierCamera = Eigen::Isometry3d::Identity(), X_CarrierBoard = Eigen::Isometry3d::Identity();
   double width = 0, height = 0;                                 ///< px
   std::vector<Eigen::Vector3d> corners;                         ///< lines of sight of the picture's corners, z = 1
@@ -83,8 +84,8 @@ struct ReportCamera {
 /// all of them looked at. `places` says their order.
 struct ReportNeighbours {
   struct Coordinate {
-    int index = 0;              ///< among those that are written of a pose
-    double step = 0.0;          ///< rad or m
+    int index = 0;      ///< among those that are written of a pose
+    double step = 0.0;  ///< rad or m
     double lower = 0.0, upper = 0.0;
   };
   /// One pose's; places in the order of `places`.
@@ -95,8 +96,8 @@ struct ReportNeighbours {
     std::vector<bool> told;         ///< whether the interpolated block stands for the model's there
     std::vector<double> clearance;  ///< m; empty: nothing is checked for collision
     std::vector<int> between;       ///< index into bodies; −1: none
-    /// Whitened blocks times tolerance near the pose: B(k) = T₀ + Σ k_i T_i + Σ_{i≤j} k_i k_j T_ij with the steps k, terms
-    /// in this order, rows × columns each, as whole numbers: entry · scale[order][column], order 0, 1, 2.
+    /// Whitened blocks times tolerance near the pose: B(k) = T₀ + Σ k_i T_i + Σ_{i≤j} k_i k_j T_ij with the steps k,
+    /// terms in this order, rows × columns each, as whole numbers: entry · scale[order][column], order 0, 1, 2.
     int rows = 0;
     std::vector<std::int16_t> terms;
     std::array<std::vector<double>, 3> scale;
@@ -109,8 +110,8 @@ struct ReportNeighbours {
   std::vector<std::string> reasons;
   std::vector<std::pair<std::string, std::string>> bodies;
   std::vector<Pose> poses;
-  /// Over all places that are told: |Δ log det| / parameters of interest, largest |Δσ|/σ, |Δρ0|/ρ0, of the plan with that
-  /// pose moved alone.
+  /// Over all places that are told: |Δ log det| / parameters of interest, largest |Δσ|/σ, |Δρ0|/ρ0, of the plan with
+  /// that pose moved alone.
   double efficiency_error = 0.0, sigma_error = 0.0, accuracy_error = 0.0;
 };
 

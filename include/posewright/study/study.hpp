@@ -37,9 +37,9 @@ struct Settings {
 /// Throws InputError for what contradicts itself, with the line where it was written.
 Settings settings_of(const Problem& problem, const PlanOptions& options);
 
-/// Takes up the poses that are fixed by the options or the problem, for what plans a whole list; what judges a given one
-/// does without. Of a list that marks poses as fixed, those. Throws InputError with file and line if none is left to be
-/// chosen beside them, and for `reserve`: what is fixed may be lost, too.
+/// Takes up the poses that are fixed by the options or the problem, for what plans a whole list; what judges a given
+/// one does without. Of a list that marks poses as fixed, those. Throws InputError with file and line if none is left
+/// to be chosen beside them, and for `reserve`: what is fixed may be lost, too.
 /// @return what to tell of how the list was read
 std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings);
 
@@ -95,8 +95,8 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
 /// How far poses stay apart: as stated, else usual_spacing() where it applies.
 void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings);
 
-/// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the policy
-/// forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
+/// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
+/// policy forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
 void keep_away_from_measured(Study& study, Repeats repeats);
 
 /// What a search finds there: configurations that are measured already, then fixed ones.

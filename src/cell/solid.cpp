@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "posewright/support/dense.hpp"
 
@@ -352,9 +353,11 @@ std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, con
   const auto on = [&](const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& p) {
     return solid.at_least(X.inverse() * p) < same;
   };
-  if (!(std::abs((points[0] - points[1]).norm() - apart) < same) || !on(a, X_a, points[0]) || !on(b, X_b, points[1]))
-    return std::nullopt;
-  return points;
+  const auto fit = [&] { return on(a, X_a, points[0]) && on(b, X_b, points[1]); };
+  if (!(std::abs((points[0] - points[1]).norm() - apart) < same)) return std::nullopt;
+  // Asked for a shape and a mesh, FCL answers for the mesh and the shape.
+  if (!fit()) std::swap(points[0], points[1]);
+  return fit() ? std::optional(points) : std::nullopt;
 }
 
 bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,

@@ -31,7 +31,7 @@ po::options_description plan_command_options() {
       ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
-          "fixed", text("POSES"), "poses that the plan has among its N (CSV, plan.json; of a column fixed: yes those)")(
+          "fixed", text("POSES"), "poses that the plan has among its N: CSV or plan.json; of marked ones those")(
           "reserve", "maximise what is left when the pose that hurts most is lost")(
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
           "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(

@@ -82,7 +82,7 @@ function keepText(list) {
   const locked = list.ids.filter((id) => list.locked.has(id));
   const { plan } = list.report;
   const variant = plan.variant && !(plan.variants?.length > 1) ? ` --variant ${shell(plan.variant)}` : '';
-  const command = `posewright plan ${shellFile(plan.problem.file)}${variant} --poses ${newPoses(plan).length} --fixed poses.csv -o new-plan.json`;
+  const command = `posewright plan ${shellFile(plan.problem.file)}${variant} --poses ${newPoses(plan).length} --fixed poses.csv -o new-plan.json --poses-csv new-poses.csv`;
   return [
     `Locked: ${joined(locked.map(String)) || 'none that is ticked'}. The saved list marks them; this keeps them and searches the others: `,
     h('code', {}, command),

@@ -110,7 +110,8 @@ class Neighbourhood {
     if (d == 0 || d > most_coordinates) return fmt::format("a pose has {} coordinates", d);
     if (!figures_.regular()) return "the poses do not determine all parameters";
     const Variant& variant = study_.first();
-    const double terms = double(poses) * double(1 + d + d * (d + 1) / 2) *
+    const std::size_t of_a_block = 1 + d + d * (d + 1) / 2;
+    const double terms = double(poses) * double(of_a_block) *
                          double(variant.model->block_rows(variant.columns.selected)) *
                          double(variant.columns.selected.size());
     if (terms > most_terms) return fmt::format("the page would hold {:.1f} million numbers more", terms * 1e-6);

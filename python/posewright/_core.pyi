@@ -59,6 +59,8 @@ class Pose:
     @property
     def measured(self) -> bool: ...
     @property
+    def fixed(self) -> bool: ...
+    @property
     def configuration(self) -> _Floats: ...
     @property
     def names(self) -> list[str]: ...
@@ -417,6 +419,7 @@ def plan(
     prior: Optional[str] = None,
     reserve: bool = False,
     measured: Optional[_Poses] = None,
+    fixed: Optional[_Poses] = None,
     truth: str = "",
     candidates_from: Optional[_Poses] = None,
     gap: Optional[float] = None,

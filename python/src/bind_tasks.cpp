@@ -270,7 +270,7 @@ Report report(const Shared& problem, const std::filesystem::path& plan, const py
               long long threads, Limit time_limit, py::object progress) {
   ReportOptions options;
   if (!route.is_none()) options.route = route.cast<std::filesystem::path>();
-  options.sizes = options.candidates = !brief;
+  options.sizes = options.candidates = options.moves = !brief;
   options.threads = checked("threads", threads, 0, most_threads);
   Report result;
   Watch watch(time_limit, std::move(progress));
@@ -374,7 +374,7 @@ elastic_target: the poses were found with the nominal springs; most: largest tur
         py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
   m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
         py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        "The page of a plan.json, with its route.json; brief: without other numbers of poses and candidates.");
+        "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved poses.");
 }
 
 }  // namespace posewright::python

@@ -19,9 +19,9 @@ using Limit = std::optional<double>;
 Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
-          const py::object& measured, const std::string& truth, const py::object& candidates_from,
-          std::optional<double> gap, std::optional<double> proof_time, const py::int_& seed, long long threads,
-          Limit time_limit, py::object progress) {
+          const py::object& measured, const py::object& fixed, const std::string& truth,
+          const py::object& candidates_from, std::optional<double> gap, std::optional<double> proof_time,
+          const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
   PlanOptions options;
   options.truth = truth;
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
@@ -41,9 +41,10 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
     throw InputError({}, "proof_time is no number of seconds", "0 or more are allowed");
   if (gap) options.proof.gap = *gap / 100;
   options.proof.seconds = proof_time;
-  if (!measured.is_none() || !candidates_from.is_none()) {
+  if (!measured.is_none() || !fixed.is_none() || !candidates_from.is_none()) {
     const std::vector<Coordinate> coordinates = coordinates_of(given, variant);
     if (!measured.is_none()) options.measured = pose_list(measured, coordinates);
+    if (!fixed.is_none()) options.fixed = pose_list(fixed, coordinates);
     if (!candidates_from.is_none()) options.candidates_from = pose_list(candidates_from, without_limits(coordinates));
   }
   Plan result;
@@ -131,13 +132,13 @@ void bind_planning(py::module_& m) {
   m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
         py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
         py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
-        py::arg("measured") = none, py::arg("truth") = "", py::arg("candidates_from") = none, py::arg("gap") = none,
-        py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none,
+        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Searches for the poses to measure. What is not said is as in the problem.
 
 poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
-already (Plan, file or array); candidates_from: choose among these (Plan, file or array); truth: an alternative model,
+already (Plan, file or array); fixed: poses that the plan has among its own; candidates_from: choose among these (Plan, file or array); truth: an alternative model,
 for criteria that test it; repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress;
 gap: percent at which the proof over the workspace ends, proof_time: s for it, 0: none.
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns

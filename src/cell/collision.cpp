@@ -85,8 +85,8 @@ class SmallestDistance {
 
   std::optional<Separation> result() const {
     if (nearest_ == nullptr) return std::nullopt;
-    return Separation{smallest_, scene_.bodies[std::size_t(nearest_->b)].name,
-                      scene_.bodies[std::size_t(nearest_->a)].name};
+    const Body &a = scene_.bodies[std::size_t(nearest_->a)], &b = scene_.bodies[std::size_t(nearest_->b)];
+    return Separation{smallest_, b.name, a.name, nearest_points(*b.solid, X_b_, *a.solid, X_a_)};
   }
 
  private:
@@ -109,6 +109,8 @@ class SmallestDistance {
     if (found < smallest_) {
       smallest_ = found;
       nearest_ = &pair;
+      X_a_ = X_a;
+      X_b_ = X_b;
     }
     return found;
   }
@@ -118,6 +120,7 @@ class SmallestDistance {
   std::vector<const BodyPair*> pairs_;
   double smallest_ = most_distance;
   const BodyPair* nearest_ = nullptr;
+  Eigen::Isometry3d X_a_, X_b_;  // of its bodies where they are nearest
 };
 
 }  // namespace

@@ -100,6 +100,7 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
   }
   if (problem.design.candidates_from) add(*problem.design.candidates_from);
   if (problem.design.measured) add(*problem.design.measured);
+  if (problem.design.fixed) add(*problem.design.fixed);
   if (problem.design.test_poses) add(problem.design.test_poses->file);
   if (problem.workspace.controller) add(problem.workspace.controller->path);
   if (!problem.workspace.collision) return files;

@@ -121,13 +121,13 @@ class StudyEnclosure : public ConfigurationSpace::Enclosure {
 
 class StudySpace : public ConfigurationSpace {
  public:
-  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
+  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, Configurations measured,
              const Spacing& spacing, Eigen::MatrixXd R)
-      : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
+      : parts_(std::move(parts)), candidates_(candidates), measured_(std::move(measured)), spacing_(spacing), R_(std::move(R)) {
     for (const Coordinate& c : parts_.front().workspace->proposed())
       axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad"});
     // Poses that are there already are holes in the box.
-    box_ = measured.count() == 0 || spacing.unit.size() == 0;
+    box_ = measured_.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
   }
 
@@ -159,7 +159,7 @@ class StudySpace : public ConfigurationSpace {
  private:
   std::vector<SpacePart> parts_;
   const Configurations& candidates_;
-  const Configurations& measured_;
+  Configurations measured_;
   Spacing spacing_;
   Eigen::MatrixXd R_;
   std::vector<Axis> axes_;

@@ -46,7 +46,7 @@ class PlanSearch {
 
   Plan plan(int poses) {
     SearchRequest request = spaced_request(study_, settings_, poses);
-    request.make_space = space_maker(study_, settings_.criterion);
+    if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
     request.prove = settings_.poses > 0;
     request.proof = settings_.proof;
     const SearchResult found = search(

@@ -31,6 +31,7 @@ struct Settings {
   /// The same as files that are still to be read; empty: none.
   std::filesystem::path measured_file, candidates_file;
   PlannerOptions planner;
+  bool candidates_alone = false;  ///< as PlanOptions
   ProofLimits proof{};
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.

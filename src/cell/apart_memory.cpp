@@ -15,7 +15,7 @@ void ApartMemory::forget(const Scene& scene) {
   scene_ = scene.number;
   const std::size_t places = scene.pairs.size() * std::size_t(scene.frames->poses_per_configuration());
   dimension_ = scene.pairs.empty() ? 0 : std::size_t(scene.pairs.front().travel.front().size());
-  spare_.assign(places, -1.0);
+  spare_.assign(places, never);
   states_.assign(places * dimension_, 0.0);
 }
 

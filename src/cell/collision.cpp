@@ -56,10 +56,11 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
       const BodyPair& pair = scene.pairs[p];
       const std::size_t place = std::size_t(pose) * scene.pairs.size() + p;
       if (pair.never_near || memory.covers(pair, place, pose, q)) continue;
+      if (memory.is_too_near(pair, place, pose, q)) return &pair;
       if (X == nullptr) X = &place_bodies(scene, q, pose);
       const double spare = spare_of(scene, pair, *X, memory.is_near(pair, place, pose, q) ? look_ahead : 0.0);
-      if (spare < 0) return &pair;
       memory.keep(place, q, spare);
+      if (spare < 0) return &pair;
     }
   }
   return nullptr;

@@ -645,6 +645,7 @@ def export(
     tool: Union[int, str, None] = None,
     base: Optional[int] = None,
     coupling: Optional[float] = None,
+    payload: Union[int, float, str, None] = None,
     controller: Optional[_Path] = None,
     group: Optional[str] = None,
     station: Optional[str] = None,

@@ -104,12 +104,14 @@ py::dict observe(const GivenProblem& given, const std::string& variant, long lon
 }
 
 Route route(const GivenProblem& given, const py::object& poses, const std::string& format, bool from_home, bool closed,
-            const py::object& start, long long milestones, const py::int_& seed, long long threads, Limit time_limit,
-            py::object progress) {
+            const py::object& start, const py::object& settle, const py::object& reading, long long milestones,
+            const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
   RouteOptions options;
   options.from_home = from_home;
   options.closed = closed;
   options.start = optional_number(start, "start", most_poses);
+  options.settle = within(settle, "settle", 0, 3600);
+  options.reading = within(reading, "reading", 0, 3600);
   options.milestones = checked("milestones", milestones, 1, 100000);
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
@@ -155,11 +157,12 @@ drop, add: which so many poses to leave out, or to measure more; format: of a li
         py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
         "What can be identified: {variant: Observation}, of one variant or of all.");
   m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("format") = "",
-        py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("milestones") = 200,
-        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("settle") = none,
+        py::arg("reading") = none, py::arg("milestones") = 200, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         "Order of measurement and collision-free motions for a Plan, the name of a pose list (format as in evaluate), "
         "or an "
-        "array N × n.");
+        "array N × n. settle: s at rest before a pose is read, reading: s of one reading; None: as in the problem.");
 }
 
 }  // namespace posewright::python

@@ -253,14 +253,14 @@ Eigen::Vector3d lowest(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_p
                                [&](const auto& p, const auto& q) { return down.dot(p) < down.dot(q); });
 }
 
-/// Largest gap between the boxes around two solids on the 15 axes where boxes that do not meet can be told apart
-/// (Gottschalk, Lin & Manocha 1996): a lower bound of the distance of what is in them.
-double gap_between_boxes(const FclSolid& a, const Eigen::Isometry3d& X_a, const FclSolid& b,
-                         const Eigen::Isometry3d& X_b) {
-  const Eigen::Matrix3d R = X_a.linear().transpose() * X_b.linear();
+/// Largest gap between two boxes on the 15 axes where boxes that do not meet can be told apart (Gottschalk, Lin &
+/// Manocha 1996): a lower bound of the distance of what is in them.
+/// @param g, h  half extents of both
+/// @param t     middle of b from that of a, frame a
+/// @param R     axes of b, frame a
+double gap_between_boxes(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen::Vector3d& t,
+                         const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d size = R.cwiseAbs();
-  const Eigen::Vector3d t = X_a.linear().transpose() * (X_b * b.middle() - X_a * a.middle());
-  const Eigen::Vector3d &g = a.half_extent(), &h = b.half_extent();
   double gap = std::max((t.cwiseAbs() - g - size * h).maxCoeff(),
                         ((R.transpose() * t).cwiseAbs() - h - size.transpose() * g).maxCoeff());
   for (int i = 0; i < 3; ++i)
@@ -303,7 +303,10 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
   if (std::isfinite(b.radius())) bound = std::max(bound, a.at_least(seen(X_a, centre_b)) - b.radius());
   if (std::isfinite(a.radius())) bound = std::max(bound, b.at_least(seen(X_b, centre_a)) - a.radius());
   if (!std::isfinite(a.radius()) || !std::isfinite(b.radius())) return bound;
-  return std::max(bound, gap_between_boxes(static_cast<const FclSolid&>(a), X_a, static_cast<const FclSolid&>(b), X_b));
+  const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
+  return std::max(bound, gap_between_boxes(first.half_extent(), second.half_extent(),
+                                           seen(X_a, X_b * second.middle()) - first.middle(),
+                                           X_a.linear().transpose() * X_b.linear()));
 }
 
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
@@ -372,13 +375,23 @@ bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3
   const Eigen::Vector3d c = X * solid.centre();
   const double t = length > 0 ? std::clamp((c - from).dot(way) / (length * length), 0.0, 1.0) : 0.0;
   if ((from + t * way - c).norm() > solid.radius() + radius) return false;
-  if (solid.holds(X.inverse() * from)) return true;
+  const auto& body = static_cast<const FclSolid&>(solid);
   Eigen::Isometry3d X_beam = Eigen::Isometry3d::Identity();
   X_beam.translation() = 0.5 * (from + to);
   if (length > 0)
     X_beam.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), way).toRotationMatrix();
+  // A box around the body and the segment, then the body's hull, before its triangles.
+  const Eigen::Matrix3d R = X.linear().transpose() * X_beam.linear();
+  const Eigen::Vector3d middle = X.linear().transpose() * (X_beam.translation() - X.translation());
+  if (gap_between_boxes(body.half_extent(), {0, 0, length / 2}, middle - body.middle(), R) > radius + hull_tolerance)
+    return false;
+  if (solid.holds(X.inverse() * from)) return true;
   const fcl::Capsuled beam(std::max(radius, 1e-5), std::max(length, 1e-9));
-  return fcl_distance(static_cast<const FclSolid&>(solid).geometry(), X, beam, X_beam, 1e-6) <= 0;
+  const Geometry* hull = body.hull();
+  if (hull != nullptr && hull != &body.geometry() &&
+      fcl_distance(*hull, X, beam, X_beam, 2 * hull_tolerance) > hull_tolerance)
+    return false;
+  return fcl_distance(body.geometry(), X, beam, X_beam, 1e-6) <= 0;
 }
 
 }  // namespace posewright

@@ -47,6 +47,17 @@ std::string single(const Words& positional, const std::string& what) {
   return positional.front();
 }
 
+std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
+                                     double upper) {
+  if (values.count(option) == 0) return std::nullopt;
+  const std::string text = text_of(values, option);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
+    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
+  return value;
+}
+
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper) {
   const std::string text = text_of(values, option);
   if (values.count(option) == 0) return std::nullopt;

@@ -9,8 +9,8 @@
 namespace posewright::cli {
 namespace {
 
-std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values) {
-  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+Packages packages_of(const po::variables_map& values) {
+  Packages packages;
   if (values.count("package") == 0) return packages;
   for (const std::string& text : values["package"].as<Words>()) {
     const std::size_t equal = text.find('=');
@@ -68,8 +68,7 @@ std::vector<std::string> variants_of(const po::variables_map& values) {
 }
 
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {
-  Problem problem = read_problem(file);
-  problem.packages = packages_of(values);
+  Problem problem = read_problem(file, packages_of(values));
   if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
   return problem;
 }

@@ -35,11 +35,13 @@ class PlanSearch {
         study_(make_study(problem, settings_, monitor)) {
     study_.notes.insert(study_.notes.end(), list_notes_.begin(), list_notes_.end());
     study_.first().everything_counts = options.everything_counts;
+    if (study_.has_minimum_distance)
+      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.spacing);
     if (study_.usual_distance)
       study_.notes.push_back(
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
-                      distance_text(study_.first().workspace->coordinates(), study_.spacing)));
+                      minimum_distance_));
     if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
       study_.notes.push_back(std::move(note));
   }
@@ -48,7 +50,7 @@ class PlanSearch {
 
   Plan plan(int poses) {
     SearchRequest request = spaced_request(study_, settings_, poses - fixed());
-    request.make_space = space_maker(study_, settings_.criterion);
+    if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
     request.prove = settings_.poses > 0;
     request.proof = settings_.proof;
     const SearchResult found = search(
@@ -181,8 +183,7 @@ class PlanSearch {
     plan.problem_sha256 = problem_.sha256;
     plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
-    if (study_.has_minimum_distance)
-      plan.minimum_distance = distance_text(study_.first().workspace->coordinates(), study_.spacing);
+    plan.minimum_distance = minimum_distance_;
     fill_judgement(plan, judgement, study_, settings_);
     plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, poses),
                                 judgement.evaluations.front(), settings_.planner.threads);
@@ -230,6 +231,7 @@ class PlanSearch {
   std::vector<std::string> list_notes_;
   const Monitor& monitor_;
   Study study_;
+  std::string minimum_distance_;  // for people; empty: none
 };
 
 }  // namespace

@@ -30,6 +30,8 @@ struct PlanOptions {
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
   /// many to draw.
   std::optional<PoseList> candidates_from{};
+  /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
+  bool candidates_alone = false;
   ProofLimits proof{};  ///< of the certificate over the workspace
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all

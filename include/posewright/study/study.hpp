@@ -32,6 +32,7 @@ struct Settings {
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
+  bool candidates_alone = false;  ///< as PlanOptions
   ProofLimits proof{};
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.

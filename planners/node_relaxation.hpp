@@ -53,7 +53,7 @@ class NodeRelaxation {
   bool search_along(std::vector<double>& numbers);
   void choose_working_set(const std::vector<double>& numbers);
   void solve_quadratic(const std::vector<double>& numbers);
-  /// The same for o3 by E ⪰ 0 of trace 1 (theory.md eq. (52)). False if that way is not open: too many candidates, or
+  /// The same for o3 by E ⪰ 0 of trace 1 (theory.md eq. (44)). False if that way is not open: too many candidates, or
   /// numbers that leave a parameter unknown.
   bool bound_least_eigenvalue(RelaxedBox& relaxed, double best);
   int branching_by_weight(const std::vector<double>& numbers) const;

@@ -19,7 +19,7 @@ constexpr double safe_pivot = 1e-4;
 /// the residuals at candidate j (A fitted columns, F effects), V = M_aa⁻¹, D_j = A_j V A_jᵀ and C = A_j V A_kᵀ:
 ///   adding j:          T rises by ‖L⁻¹ e_j‖², L Lᵀ = I + D_j,
 ///   then removing k:   T falls by tr(eᵀ H⁻¹ e), e = e_k − Cᵀ (I + D_j)⁻¹ e_j, H = I − D_k + Cᵀ (I + D_j)⁻¹ C
-/// (theory.md eq. (55); Björck 1996, 3.1). Added first, so that nobody is indispensable. T is concave in M, so a
+/// (theory.md eq. (47); Björck 1996, 3.1). Added first, so that nobody is indispensable. T is concave in M, so a
 /// swap gains no more than ‖e_j‖² − ‖e_k‖².
 class ResidualState : public DesignState {
  public:

@@ -22,7 +22,7 @@ constexpr Eigen::Index first_look = 4;
 
 /// Exact swaps of functions of eigenvalues. Where nuisance columns are eliminated too, what is left without the leaving
 /// member, diag(λ) in its own eigenvectors, changes by Yᵀ Y, Y = (I + D_n)^{-1/2} J C W V, D_n = J_n M_nn⁻¹ J_nᵀ. Of
-/// what that can gain there are bounds, each dearer and tighter (theory.md eq. (54)):
+/// what that can gain there are bounds, each dearer and tighter (theory.md eq. (46)):
 ///   - concavity in M: λ_min' ≤ λ_min + ‖J_j z‖² − ‖J_k z‖² with z of the eigenvector before (o2, o3, o4); o5² is
 ///     concave as a whole;
 ///   - interlacing (Weyl): a change of rank r lifts λ_min to λ_{r+1} at most;

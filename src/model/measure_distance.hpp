@@ -21,6 +21,7 @@ class DistanceModel : public MeasurementModel {
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
   bool sees(const Sighting& sighting) const override;
+  HarmonicNoise harmonic_noise() const override;
 
  private:
   /// From anchor to target, in M.

@@ -12,6 +12,7 @@
 #include "posewright/planning/extended_bound.hpp"
 #include "posewright/planning/spectral_bound.hpp"
 #include "posewright/planning/whiten.hpp"
+#include "posewright/planning/workspace_proof.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
@@ -232,23 +233,36 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
 
 namespace {
 
+// A proof that allows plans better by more than this share counts as a search with a loose proof beside it.
+constexpr double loose_proof = 0.05;
+
 /// Over the whole workspace: proved where the largest d is, else as far as searches tell.
 Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, double offset, bool box) {
   const WorkspaceProof& proof = found.proof;
-  if (proof.why_not.empty())
+  const double proved = proof.bound + found.degree * std::log(double(poses)) + offset;
+  const bool loose = proof.why_not.empty() && proof.bound - found.bound > loose_proof * found.degree;
+  if (proof.why_not.empty() && !loose)
     return {0.0,
-            proof.bound + found.degree * std::log(double(poses)) + offset,
+            proved,
             proof.max_ratio,
             fmt::format("largest d(q) over the limits by Bernstein coefficients of {} boxes{}{}", proof.boxes,
                         proof.ended.empty() ? "" : ", ", proof.ended),
             true,
-            ""};
-  return {0.0,
-          found.bound_for(poses) + offset,
-          found.max_ratio,
-          fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, box ? "SLSQP" : "SBPLX"),
-          false,
-          proof.why_not};
+            "",
+            proof.boxes};
+  Certificate::Workspace searched{
+      0.0,
+      found.bound_for(poses) + offset,
+      found.max_ratio,
+      fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, box ? "SLSQP" : "SBPLX"),
+      false,
+      proof.why_not};
+  if (loose) {
+    searched.why_not = proof.ended.empty() ? "the bound of the noise is loose" : "the proof was " + proof.ended;
+    searched.boxes = proof.boxes;
+    searched.loose_bound = proved;
+  }
+  return searched;
 }
 
 }  // namespace
@@ -316,8 +330,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.stopped = approximate.stopped || result.design.stopped;
   // Last, so that whoever stops it has his plan.
   if (workspace && request.prove)
-    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), joined.blocks.columns(), options,
-                    monitor);
+    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), options, monitor);
   result.references = joined.references;
   result.certificate.proved = share > 0;
   BlockArray added;
@@ -367,6 +380,8 @@ void certify(Certificate& certificate, double phi, double degree) {
   certificate.efficiency = short_of < 1e-9 ? 1.0 : std::exp(-short_of / degree);
   if (certificate.workspace)
     certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
+  if (certificate.workspace && certificate.workspace->loose_bound)
+    certificate.workspace->loose_efficiency = std::exp((phi - *certificate.workspace->loose_bound) / degree);
 }
 
 }  // namespace posewright

@@ -28,6 +28,8 @@ class JointEffects : public TipModel {
 
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
+  /// The offset's columns times the effects' functions, as long as no effect is known to be there.
+  HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
   void take_loads_at(std::span<const double> correction) override;
 
  private:

@@ -1,13 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "posewright/criterion/spacing.hpp"
+#include "posewright/planning/harmonic_form.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
+
+struct WeightedConfigurations {
+  std::vector<std::vector<double>> configurations;
+  std::vector<double> weights;
+};
 
 /// Where candidates come from: the feasible set and the block of any configuration in it. Planners that look beyond the
 /// candidates see this and nothing of robots.
@@ -30,19 +38,37 @@ class ConfigurationSpace {
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
   };
 
+  /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.
+  class Enclosure {
+   public:
+    virtual ~Enclosure() = default;
+    /// What is not negative wherever a configuration is feasible; more than that may be feasible.
+    /// @param q  one a coordinate, over the box
+    /// @return false if the box has no enclosure
+    virtual bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) = 0;
+    /// Of all that is allowed; elsewhere the model may say anything.
+    virtual bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) = 0;
+  };
+
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
-  /// Whether ‖J(q) T‖² is of degree 2 in cosine and sine of every angle and in every length, for any T: then its
-  /// largest value can be proved. Empty: it is; else why not, for people.
-  virtual std::string not_harmonic() const { return "this space does not say how blocks depend on its axes"; }
+  /// What bounds ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
+  /// @param where  configurations at which bounds that can be chosen ought to be good
+  virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;
   /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
   /// Configuration of a candidate of the task.
   virtual std::span<const double> candidate(int index) const = 0;
   virtual std::unique_ptr<Probe> probe() const = 0;
+  /// Null if the space has none.
+  virtual std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd&) const { return nullptr; }
 };
+
+inline HarmonicForms ConfigurationSpace::harmonic_forms(const WeightedConfigurations&) const {
+  return {"this space does not say how blocks depend on its axes", {}};
+}
 
 }  // namespace posewright

@@ -13,7 +13,7 @@ namespace posewright {
 ///   0 ≤ n_i ≤ room_i, Σ n_i = N.
 /// Its dual is a bound at every iterate, whatever the method did before: for E, F ⪰ 0, tr E = tr F = 1 (E on the
 /// interest block),
-///   λ_min − t λ_max ≤ tr(M0 (E − tF)) + Σ of the N largest tr(J_i (E − tF) J_iᵀ)            (theory.md eq. (53)).
+///   λ_min − t λ_max ≤ tr(M0 (E − tF)) + Σ of the N largest tr(J_i (E − tF) J_iᵀ)            (theory.md eq. (45)).
 /// Barrier method (Boyd & Vandenberghe 2004, 11.8): E and F are the normalised inverses of M − s P and L I − M. With
 /// t = 0 there is no F; t > 0 asks for no nuisance columns: λ_max of a Schur complement has no such bound.
 class EigenvalueRelaxation {

@@ -24,7 +24,7 @@ struct SpectralBoundOptions {
   int threads = 1;          ///< 0 = all
 };
 
-/// Bounds of o2, o3 and o4 (theory.md eq. (52), (53)). For any E, F ⪰ 0 of trace 1 and any N poses of information M,
+/// Bounds of o2, o3 and o4 (theory.md eq. (44), (45)). For any E, F ⪰ 0 of trace 1 and any N poses of information M,
 ///   λ_min(M) ≤ tr(E M) ≤ tr(E M0) + Σ of the N largest tr(J_i E J_iᵀ),
 ///   λ_min(M)/λ_max(M) ≤ t  if  tr(M0 (E − tF)) + Σ of the N largest tr(J_i (E − tF) J_iᵀ) ≤ 0;
 /// o4 = o3 · o2 is bounded by the product. E and F come from an interior-point method on a working set; the pass over

@@ -4,16 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "bernstein.hpp"
+
 namespace posewright {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-double binomial(int n, int k) {
-  double result = 1;
-  for (int i = 0; i < k; ++i) result = result * (n - i) / (i + 1);
-  return result;
-}
 
 /// Coefficient i of degree m of x^k on [−1, 1]: Σ_j C(i, j) C(m − i, k − j) (−1)^{k − j} / C(m, k), a whole number over
 /// another, at most 1.

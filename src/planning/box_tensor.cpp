@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bernstein.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
@@ -12,7 +13,6 @@ namespace {
 
 // Widest box to begin with: u = tan(w/4) stays well below 1, where the weights' coefficients would vanish.
 constexpr double widest = 2 * std::numbers::pi / 3;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // The weights are sums of few positive numbers: they are right to this.
 constexpr double weight_error = 1e-12;
 

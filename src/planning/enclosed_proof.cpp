@@ -13,22 +13,22 @@
 namespace posewright {
 namespace {
 
-constexpr std::size_t most_axes = 6, axes_for_nothing = 3;
+constexpr std::size_t most_enclosed = 6, quick_axes = 3;
 // Boxes of a proof that is not timed: of six axes each takes some milliseconds.
-constexpr long most_boxes = 6000;
+constexpr long most_enclosed_boxes = 6000;
 // d as blocks give it and its enclosure may differ by this share of h, at so many random places.
-constexpr double same_function = 1e-7;
-constexpr int places_compared = 100;
-constexpr std::uint64_t proof_stream = 0x9f00f;
+constexpr double same_value = 1e-7;
+constexpr int poses_compared = 100;
+constexpr std::uint64_t enclosed_stream = 0x9f00f;
 
 /// Whether d of blocks is within the enclosure at random feasible places, up to rounding.
 bool is_the_same(const WorkspaceBound& found, const ConfigurationSpace& space, int rows, std::uint64_t seed) {
   const auto enclosure = space.enclosure(found.factor);
   const auto probe = space.probe();
   ProbedBlock block(rows, int(found.factor.rows()));
-  Random random(seed, proof_stream);
+  Random random(seed, enclosed_stream);
   std::vector<double> q(space.axes().size());
-  for (int i = 0; i < places_compared; ++i) {
+  for (int i = 0; i < poses_compared; ++i) {
     std::vector<TaylorModel> place;
     for (std::size_t a = 0; a < q.size(); ++a) {
       const ConfigurationSpace::Axis& axis = space.axes()[a];
@@ -42,7 +42,7 @@ bool is_the_same(const WorkspaceBound& found, const ConfigurationSpace& space, i
     if (std::any_of(limits.begin(), limits.end(), [](const TaylorModel& c) { return !(c.lower() >= 0); })) continue;
     if (!enclosure->sensitivity(place, d)) return false;
     const double value = (block.map() * found.factor).squaredNorm();
-    if (!(std::abs(value - d.constant()) <= d.radius() + same_function * found.degree)) return false;
+    if (!(std::abs(value - d.constant()) <= d.radius() + same_value * found.degree)) return false;
   }
   return true;
 }
@@ -53,10 +53,10 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
                         const WorkspaceBoundOptions& options, const Monitor& monitor) {
   const auto moving = std::count_if(space.axes().begin(), space.axes().end(),
                                     [](const ConfigurationSpace::Axis& a) { return a.upper > a.lower; });
-  if (moving == 0 || std::size_t(moving) > most_axes || space.enclosure(result.factor) == nullptr) return false;
+  if (moving == 0 || std::size_t(moving) > most_enclosed || space.enclosure(result.factor) == nullptr) return false;
   WorkspaceProof& proof = result.proof;
   proof.why_not.clear();
-  if (candidates < few_candidates && std::size_t(moving) > axes_for_nothing) {
+  if (candidates < few_candidates && std::size_t(moving) > quick_axes) {
     proof.why_not = "a quick look at fewer than 1,000 candidates";
     return true;
   }
@@ -67,9 +67,9 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
   const double extra =
       options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
   BoxSearchOptions limits;
-  limits.slack = same_function * result.degree;
+  limits.slack = same_value * result.degree;
   limits.tolerance = options.tolerance;
-  limits.most_boxes = most_boxes;
+  limits.most_boxes = most_enclosed_boxes;
   limits.threads = options.threads;
   // Searches found as much: a bound that is hardly larger is as good as any.
   limits.enough = (result.max_ratio * result.degree - extra) * (1 + options.tolerance);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bernstein.hpp"
 #include "posewright/criterion/combine_rows.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
@@ -15,12 +16,6 @@ namespace {
 
 // Samples that one thread takes at a time.
 constexpr std::size_t chunk = 256;
-
-double binomial(int n, int k) {
-  double result = 1;
-  for (int i = 0; i < k; ++i) result = result * (n - i) / (i + 1);
-  return result;
-}
 
 double width_of(const HarmonicAxis& axis) { return axis.upper > axis.lower ? axis.upper - axis.lower : 1.0; }
 

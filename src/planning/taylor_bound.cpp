@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "bernstein.hpp"
 #include "bernstein_tensor.hpp"
 #include "posewright/support/taylor_model.hpp"
 
@@ -13,7 +14,6 @@ namespace posewright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Degree of the models by the number of axes: a box of six takes some milliseconds.
 constexpr std::array<int, 7> degrees = {4, 8, 8, 6, 5, 4, 4};
 // A cut that leaves more than this share of an axis is not worth another model.

@@ -23,6 +23,7 @@ class PointsModel : public MeasurementModel {
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
   bool linear_with_constant_noise() const override { return std::holds_alternative<GaussianNoise>(spec_.noise); }
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+  Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 
  private:
   std::span<const double> station_part(std::span<const double> correction) const;

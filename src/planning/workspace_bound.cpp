@@ -221,6 +221,10 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
   int evaluations = options.evaluations / 4;
   Random random(options.seed, 0);
   const auto probe = space.probe();
+  // Each round begins with the weights of the one before and what came in.
+  for (const int i : on_candidates.weighted())
+    weights.start.push_back(
+        int(std::lower_bound(pool.original.begin(), pool.original.end(), i) - pool.original.begin()));
   const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
   for (int round = 0; round < rounds; ++round) {
     design = solve_approximate_design(pool.blocks, function, weights, monitor);
@@ -251,6 +255,8 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     const bool thorough = evaluations == options.evaluations;
     if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
+    weights.start = design.weighted();
+    for (std::size_t i = 0; i < found.size(); ++i) weights.start.push_back(int(pool.blocks.count() + i));
     append(pool, found, *probe);
   }
   result.factor = design.factor;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,15 @@ class MeasurementModel {
     const Eigen::Isometry3d& X_MeasureTip;
     std::span<const double> correction;
     int station = 0;
+  };
+
+  /// How a number f depends on what an instrument gives at one sighting: what pull_back() takes to the tip's pose.
+  struct Adjoint {
+    Eigen::MatrixXd twist_rows;   ///< rows × 6: ∂f/∂(rows along unit twists)
+    std::vector<int> own;         ///< own parameters that f depends on
+    Eigen::MatrixXd own_columns;  ///< rows × own: ∂f/∂(their columns); of motions nothing
+    Twists own_motions;           ///< 6 × own: ∂f/∂(their motions); of columns nothing
+    Eigen::MatrixXd covariance;   ///< rows × rows, symmetric: ∂f/∂(covariance)
   };
 
   const std::vector<Parameter>& parameters() const { return parameters_; }
@@ -51,6 +61,10 @@ class MeasurementModel {
   virtual void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                               Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
+  /// a where f changes by a · ξ if the tip moves along the spatial twist ξ and its parameters' twists stay. An
+  /// instrument that does not say gets central differences in the tip's six motions.
+  virtual Twist pull_back(const Sighting& sighting, const Adjoint& f) const;
+
   /// Whether the noise is the same at every pose, and rows and own columns linear in the tip's pose and in twists.
   virtual bool linear_with_constant_noise() const { return false; }
 
@@ -67,6 +81,9 @@ class MeasurementModel {
   /// False if the instrument cannot read the tip there; unseen_reason() says why, empty if it always can.
   virtual bool sees(const Sighting& sighting) const;
   const std::string& unseen_reason() const { return unseen_reason_; }
+  /// IdentificationModel::measurable_margins() of what it sees alone.
+  virtual std::optional<int> margins() const;
+  virtual void margins_at(const Sighting& sighting, std::span<double> out) const;
 
  protected:
   std::vector<Parameter> parameters_;
@@ -78,6 +95,13 @@ class MeasurementModel {
   int rows_ = 0;
   int rows_per_target_ = 0;
 };
+
+/// Change by spatial twists of what moves a point at p (a · change of p) and turns vectors (b · small rotation).
+inline Twist change_by_motion(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Twist twist;
+  twist << a, p.cross(a) + b;
+  return twist;
+}
 
 /// Covariance (6 × 6) of the pose in spatial twists about the tip's origin, by the linear fit of the pose to an
 /// instrument's readings: Σ_X = (Yᵀ Σ_y⁻¹ Y)⁻¹, Y = derivative of the readings along those twists.

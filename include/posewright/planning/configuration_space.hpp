@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/block_array.hpp"
 #include "posewright/criterion/spacing.hpp"
 
 namespace posewright {
@@ -15,8 +17,9 @@ class ConfigurationSpace {
  public:
   struct Axis {
     double lower = 0.0, upper = 0.0;
-    bool continuous = true;  ///< false: a choice; keeps the value that a start has
-    bool turns = false;      ///< an angle, rad
+    bool continuous = true;         ///< false: a choice; keeps the value that a start has
+    bool turns = false;             ///< an angle, rad
+    std::vector<double> choices{};  ///< of a choice: its values
   };
   /// Evaluations of one thread.
   class Probe {
@@ -28,12 +31,23 @@ class ConfigurationSpace {
     /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False
     /// if q has none.
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
+    /// What margins() counts, at q: nowhere feasible where one is negative, and where all are positive at most
+    /// something forbids q that is seldom met. False if there are none.
+    virtual bool margins(std::span<const double>, std::span<double>) { return false; }
+    /// How a number that depends on q through JᵀJ alone changes with each continuous axis.
+    /// @param slope  its derivative by J (r × m), J the block as block() writes it at q
+    /// @param gradient  size of the axes; what it says of choices means nothing
+    /// @return false if derivatives are not known here: BlockGradient then takes differences of blocks
+    virtual bool gradient(std::span<const double>, const BlockArray::RowMatrix&, std::span<double>) { return false; }
   };
 
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
+  /// How many smooth functions of q bound the feasible set within the axes' limits, so that a search may follow them
+  /// with a gradient. None: what else bounds it is known as yes or no alone.
+  virtual std::optional<int> margins() const { return is_box() ? std::optional(0) : std::nullopt; }
   /// Whether ‖J(q) T‖² is of degree 2 in cosine and sine of every angle and in every length, for any T: then its
   /// largest value can be proved. Empty: it is; else why not, for people.
   virtual std::string not_harmonic() const { return "this space does not say how blocks depend on its axes"; }

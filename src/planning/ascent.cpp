@@ -16,7 +16,9 @@ namespace {
 constexpr double coordinate_tolerance = 1e-7;
 // Searches end this far within the margins, in their units; step of the margins' central differences, in units of the
 // range; a margin where there is none.
-constexpr double kept_margin = 1e-7, margin_step = 1e-6, no_margin = -0.1;
+constexpr double kept_margin = 1e-6, margin_step = 1e-6, no_margin = -0.1;
+// A look around without gradient takes this part of the evaluations.
+constexpr int look_around = 2;
 // First step of SBPLX, in units of the range.
 constexpr double first_step = 0.05;
 
@@ -61,6 +63,12 @@ class Evaluator {
   /// search.
   bool follows_margins() const { return margin_count_ > 0; }
   std::size_t margin_count() const { return margin_count_; }
+
+  /// From now on beyond them there is nothing, and nothing below what is reached counts.
+  void leave_margins() {
+    margin_count_ = 0;
+    floor_ = highest_ = best_.value;
+  }
 
   /// What must be ≤ 0: the margins less a little, so that where they end is still within; and their derivatives by u.
   void bounds(const std::vector<double>& u, double* result, double* gradient) {
@@ -155,22 +163,15 @@ double call(const std::vector<double>& u, std::vector<double>& gradient, void* d
   return (*static_cast<Evaluator*>(data))(u, gradient);
 }
 
-}  // namespace
-
-AscentResult ascend(const ConfigurationSpace& space, ConfigurationSpace::Probe& probe, BlockObjective& objective,
-                    int rows, int columns, std::vector<double> start, int max_evaluations,
-                    const std::function<bool(std::span<const double>)>& accept) {
-  Evaluator evaluator(space, probe, objective, rows, columns, std::move(start), accept);
-  if (!evaluator.can_move()) return evaluator.best();
+void run(nlopt::algorithm algorithm, Evaluator& evaluator, int evaluations) {
   std::vector<double> u = evaluator.unit_start();
-  const bool smooth = space.margins().has_value();
-  nlopt::opt method(smooth ? nlopt::LD_SLSQP : nlopt::LN_SBPLX, unsigned(u.size()));
+  nlopt::opt method(algorithm, unsigned(u.size()));
   method.set_lower_bounds(0.0);
   method.set_upper_bounds(1.0);
   method.set_max_objective(call, &evaluator);
   method.set_xtol_abs(coordinate_tolerance);
-  method.set_maxeval(max_evaluations);
-  if (!smooth) method.set_initial_step(first_step);
+  method.set_maxeval(evaluations);
+  if (algorithm == nlopt::LN_SBPLX) method.set_initial_step(first_step);
   if (evaluator.follows_margins())
     method.add_inequality_mconstraint(call_bounds, &evaluator, std::vector<double>(evaluator.margin_count(), 0.0));
   double value = 0.0;
@@ -181,6 +182,22 @@ AscentResult ascend(const ConfigurationSpace& space, ConfigurationSpace::Probe& 
   } catch (const std::runtime_error&) {
     // NLopt's "generic failure", e.g. of SLSQP's line search: the same.
   }
+}
+
+}  // namespace
+
+AscentResult ascend(const ConfigurationSpace& space, ConfigurationSpace::Probe& probe, BlockObjective& objective,
+                    int rows, int columns, std::vector<double> start, int max_evaluations,
+                    const std::function<bool(std::span<const double>)>& accept) {
+  Evaluator evaluator(space, probe, objective, rows, columns, std::move(start), accept);
+  if (!evaluator.can_move()) return evaluator.best();
+  const bool smooth = space.margins().has_value();
+  run(smooth ? nlopt::LD_SLSQP : nlopt::LN_SBPLX, evaluator, max_evaluations);
+  if (!evaluator.follows_margins()) return evaluator.best();
+  // Where margins end a search it may have found but the nearest place of many: one without gradient looks around it.
+  evaluator.best();
+  evaluator.leave_margins();
+  run(nlopt::LN_SBPLX, evaluator, max_evaluations / look_around);
   return evaluator.best();
 }
 

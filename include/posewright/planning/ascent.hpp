@@ -28,7 +28,7 @@ struct AscentResult {
 };
 
 /// Local maximum of f over the continuous axes of the space from a feasible start, by NLopt. Where the feasible set is
-/// bounded by the axes and smooth margins: SLSQP with the derivative of f (BlockGradient).
+/// bounded by the axes and smooth margins: SLSQP with the derivative of f (BlockGradient), and where there are margins SBPLX after it.
 /// Elsewhere SBPLX, infeasible configurations counting as worse than the start. Every configuration is checked: the
 /// result is feasible and never worse than the start.
 /// @param accept  more conditions on a result (minimum distance); may be empty

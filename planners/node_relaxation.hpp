@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "posewright/criterion/spectral.hpp"
 #include "posewright/planning/design_task.hpp"
 #include "rank_limited.hpp"
 
@@ -52,6 +53,10 @@ class NodeRelaxation {
   bool search_along(std::vector<double>& numbers);
   void choose_working_set(const std::vector<double>& numbers);
   void solve_quadratic(const std::vector<double>& numbers);
+  /// The same for o3 by E ⪰ 0 of trace 1 (theory.md eq. (44)). False if that way is not open: too many candidates, or
+  /// numbers that leave a parameter unknown.
+  bool bound_least_eigenvalue(RelaxedBox& relaxed, double best);
+  int branching_by_weight(const std::vector<double>& numbers) const;
   bool tighten(ChoiceBox& box, double best) const;
   int branching_candidate(const std::vector<double>& numbers);
   void copy_working_rows();
@@ -59,6 +64,7 @@ class NodeRelaxation {
   const DesignTask& task_;
   const BlockArray& blocks_;
   const InformationFunction& function_;
+  const SpectralFunction* least_eigenvalue_;  // null: another criterion
   int r_, m_;
   bool log_det_;                   // of all columns
   std::vector<int> free_;          // candidates whose number is open

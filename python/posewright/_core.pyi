@@ -59,6 +59,8 @@ class Pose:
     @property
     def measured(self) -> bool: ...
     @property
+    def fixed(self) -> bool: ...
+    @property
     def configuration(self) -> _Floats: ...
     @property
     def names(self) -> list[str]: ...
@@ -417,6 +419,7 @@ def plan(
     prior: Optional[str] = None,
     reserve: bool = False,
     measured: Optional[_Poses] = None,
+    fixed: Optional[_Poses] = None,
     truth: str = "",
     candidates_from: Optional[_Poses] = None,
     gap: Optional[float] = None,
@@ -461,6 +464,8 @@ def route(
     from_home: bool = False,
     closed: bool = False,
     start: Optional[int] = None,
+    settle: Optional[float] = None,
+    reading: Optional[float] = None,
     milestones: int = 200,
     seed: int = 0,
     threads: int = 0,
@@ -548,6 +553,25 @@ class Comparison:
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
 
+class Compensation:
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @property
+    def configurations(self) -> _Floats: ...
+    @property
+    def actuators(self) -> Optional[_Floats]: ...
+    @property
+    def compensated(self) -> list[bool]: ...
+    @property
+    def before(self) -> _Floats: ...
+    @property
+    def after(self) -> _Floats: ...
+    @property
+    def failures(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+
 class Stations:
     def summary(self) -> str: ...
     def to_json(self) -> str: ...
@@ -601,6 +625,19 @@ def simulate(
     time_limit: Optional[float] = None,
     progress: _Report = None,
 ) -> Simulation: ...
+def compensate(
+    problem: Problem,
+    poses: _Poses,
+    *,
+    base: bool = False,
+    tool: bool = True,
+    position_only: bool = False,
+    elastic_target: bool = False,
+    most: float = 0.17453292519943295,
+    format: str = "",
+    threads: int = 0,
+    progress: _Report = None,
+) -> Compensation: ...
 def compare(
     problem: Problem,
     plans: Mapping[str, _Poses] = ...,
@@ -643,6 +680,7 @@ def export(
     digital_output: Union[int, str, None] = None,
     digital_input: Union[int, str, None] = None,
     tool: Union[int, str, None] = None,
+    payload: Union[int, float, str, None] = None,
     base: Optional[int] = None,
     coupling: Optional[float] = None,
     controller: Optional[_Path] = None,

@@ -16,6 +16,14 @@ int checked(const std::string& name, long long value, int lower, int upper) {
   return int(value);
 }
 
+std::optional<double> within(const py::object& value, const std::string& name, double lower, double upper) {
+  if (value.is_none()) return std::nullopt;
+  const auto number = value.cast<double>();
+  if (number >= lower && number <= upper) return number;
+  throw InputError({}, name + " is " + py::str(value).cast<std::string>(),
+                   std::to_string(lower) + " to " + std::to_string(upper) + " is allowed");
+}
+
 std::optional<int> optional_number(const py::object& value, const std::string& name, int upper) {
   if (value.is_none()) return std::nullopt;
   if (PyBool_Check(value.ptr()) || !PyIndex_Check(value.ptr()))

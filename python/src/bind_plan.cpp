@@ -84,6 +84,7 @@ void bind_pose(py::module_& m) {
       .def_readonly("candidate", &P::candidate,
                     "zero-based index of the candidate or block; None where it was found between them")
       .def_readonly("measured", &P::measured, "was there before: not to be measured again")
+      .def_readonly("fixed", &P::fixed, "was in the plan before the search, still to be measured")
       .def_property_readonly("configuration", [](const P& p) { return array_of(values_of(p.configuration)); })
       .def_property_readonly("names", [](const P& p) { return texts(p.configuration, &NamedValue::name); })
       .def_property_readonly("units", [](const P& p) { return texts(p.configuration, &NamedValue::unit); })

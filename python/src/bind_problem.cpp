@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Packages = std::vector<std::pair<std::string, fs::path>>;
-
 Packages packages_of(const py::dict& given) {
   Packages packages;
   for (const auto& [name, folder] : given) {
@@ -29,8 +27,7 @@ Packages packages_of(const py::dict& given) {
 
 std::shared_ptr<GivenProblem> read(const fs::path& file, const py::dict& packages) {
   auto problem = std::make_shared<GivenProblem>();
-  problem->problem = read_problem(file);
-  problem->problem.packages = packages_of(packages);
+  problem->problem = read_problem(file, packages_of(packages));
   return problem;
 }
 
@@ -40,8 +37,7 @@ std::shared_ptr<GivenProblem> parse(const std::string& text, const fs::path& fil
   problem->places = std::move(places);
   // What a failed reading says needs the file's name before there is a problem.
   problem->problem.file = file;
-  problem->problem = with_places(*problem, [&] { return parse_problem(text, file); });
-  problem->problem.packages = packages_of(packages);
+  problem->problem = with_places(*problem, [&] { return parse_problem(text, file, packages_of(packages)); });
   return problem;
 }
 

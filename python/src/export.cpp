@@ -25,14 +25,6 @@ PoseSequence sequence_from(const py::object& plan) {
   throw InputError({}, "there is nothing to export", "a Plan, a Route or the name of a file of either");
 }
 
-std::optional<double> within(const py::object& value, const std::string& name, double lower, double upper) {
-  if (value.is_none()) return std::nullopt;
-  const auto number = value.cast<double>();
-  if (number >= lower && number <= upper) return number;
-  throw InputError({}, name + " is " + py::str(value).cast<std::string>(),
-                   std::to_string(lower) + " to " + std::to_string(upper) + " is allowed");
-}
-
 std::string text_or_none(const py::object& value) {
   return value.is_none() ? std::string() : py::str(value).cast<std::string>();
 }
@@ -45,7 +37,7 @@ std::optional<int> number_of(const py::object& value, const std::string& name) {
 Exported exported(const py::object& plan, const std::string& to, const std::shared_ptr<GivenProblem>& problem,
                   bool unchecked, const py::object& name, const py::object& speed, const py::object& settle,
                   const py::object& wait, const py::object& digital_output, const py::object& digital_input,
-                  const py::object& tool, const py::object& base, const py::object& coupling,
+                  const py::object& tool, const py::object& payload, const py::object& base, const py::object& coupling,
                   const py::object& controller, const py::object& group, const py::object& station) {
   const PoseFormat& format = find_pose_format(to);
   std::vector<std::string> given;
@@ -56,6 +48,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
                                                                {"digital-output", digital_output},
                                                                {"digital-input", digital_input},
                                                                {"tool", tool},
+                                                               {"payload", payload},
                                                                {"base", base},
                                                                {"coupling", coupling},
                                                                {"controller", controller},
@@ -69,6 +62,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
   wanted.wait = within(wait, "wait", 0.01, 3600);
   wanted.coupling = within(coupling, "coupling", -10, 10);
   wanted.tool = text_or_none(tool);
+  wanted.payload = text_or_none(payload);
   wanted.base = number_of(base, "base");
   wanted.digital_output = text_or_none(digital_output);
   wanted.digital_input = text_or_none(digital_input);
@@ -120,8 +114,8 @@ void bind_export(py::module_& m) {
   m.def("export", &exported, py::arg("plan"), py::arg("to"), py::arg("problem") = nullptr, py::kw_only(),
         py::arg("unchecked") = false, py::arg("name") = none, py::arg("speed") = none, py::arg("settle") = none,
         py::arg("wait") = none, py::arg("digital_output") = none, py::arg("digital_input") = none,
-        py::arg("tool") = none, py::arg("base") = none, py::arg("coupling") = none, py::arg("controller") = none,
-        py::arg("group") = none, py::arg("station") = none,
+        py::arg("tool") = none, py::arg("payload") = none, py::arg("base") = none, py::arg("coupling") = none,
+        py::arg("controller") = none, py::arg("group") = none, py::arg("station") = none,
         R"(A Plan, a Route or a file of either as a robot program or a list of a calibration tool (docs/export.md).
 
 Programs are checked against the robot of `problem`, unless unchecked. The rest is as the command's options: speed in

@@ -19,9 +19,9 @@ using Limit = std::optional<double>;
 Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
-          const py::object& measured, const std::string& truth, const py::object& candidates_from,
-          std::optional<double> gap, std::optional<double> proof_time, const py::int_& seed, long long threads,
-          Limit time_limit, py::object progress) {
+          const py::object& measured, const py::object& fixed, const std::string& truth,
+          const py::object& candidates_from, std::optional<double> gap, std::optional<double> proof_time,
+          const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
   PlanOptions options;
   options.truth = truth;
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
@@ -41,9 +41,10 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
     throw InputError({}, "proof_time is no number of seconds", "0 or more are allowed");
   if (gap) options.proof.gap = *gap / 100;
   options.proof.seconds = proof_time;
-  if (!measured.is_none() || !candidates_from.is_none()) {
+  if (!measured.is_none() || !fixed.is_none() || !candidates_from.is_none()) {
     const std::vector<Coordinate> coordinates = coordinates_of(given, variant);
     if (!measured.is_none()) options.measured = pose_list(measured, coordinates);
+    if (!fixed.is_none()) options.fixed = pose_list(fixed, coordinates);
     if (!candidates_from.is_none()) options.candidates_from = pose_list(candidates_from, without_limits(coordinates));
   }
   Plan result;
@@ -103,12 +104,14 @@ py::dict observe(const GivenProblem& given, const std::string& variant, long lon
 }
 
 Route route(const GivenProblem& given, const py::object& poses, const std::string& format, bool from_home, bool closed,
-            const py::object& start, long long milestones, const py::int_& seed, long long threads, Limit time_limit,
-            py::object progress) {
+            const py::object& start, const py::object& settle, const py::object& reading, long long milestones,
+            const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
   RouteOptions options;
   options.from_home = from_home;
   options.closed = closed;
   options.start = optional_number(start, "start", most_poses);
+  options.settle = within(settle, "settle", 0, 3600);
+  options.reading = within(reading, "reading", 0, 3600);
   options.milestones = checked("milestones", milestones, 1, 100000);
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
@@ -131,13 +134,13 @@ void bind_planning(py::module_& m) {
   m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
         py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
         py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
-        py::arg("measured") = none, py::arg("truth") = "", py::arg("candidates_from") = none, py::arg("gap") = none,
-        py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none,
+        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Searches for the poses to measure. What is not said is as in the problem.
 
 poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
-already (Plan, file or array); candidates_from: choose among these (Plan, file or array); truth: an alternative model,
+already (Plan, file or array); fixed: poses that the plan has among its own; candidates_from: choose among these (Plan, file or array); truth: an alternative model,
 for criteria that test it; repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress;
 gap: percent at which the proof over the workspace ends, proof_time: s for it, 0: none.
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
@@ -154,11 +157,12 @@ drop, add: which so many poses to leave out, or to measure more; format: of a li
         py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
         "What can be identified: {variant: Observation}, of one variant or of all.");
   m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("format") = "",
-        py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("milestones") = 200,
-        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("settle") = none,
+        py::arg("reading") = none, py::arg("milestones") = 200, py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         "Order of measurement and collision-free motions for a Plan, the name of a pose list (format as in evaluate), "
         "or an "
-        "array N × n.");
+        "array N × n. settle: s at rest before a pose is read, reading: s of one reading; None: as in the problem.");
 }
 
 }  // namespace posewright::python

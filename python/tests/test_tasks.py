@@ -107,6 +107,26 @@ def test_an_export_that_moves_a_robot_is_checked_against_it(kr270, small_plan, t
         pw.export(small_plan, "abb-rapid", kr270, sped=10)
 
 
+def test_a_compensation_is_that_of_the_command_line(program, examples, tmp_path):
+    file = tmp_path / "cal.yaml"
+    file.write_text("posewright_parameters: 1\nvariant: geometric\n"
+                    "parameters: {joint_a2.x: {value: 0.3502}, joint_a3.offset: {value: 0.0004}}\n")
+    problem = pw.Problem(examples / "kr270" / "problem.yaml", parameters=file)
+    poses = np.array([[0.1, -1.2, 1.0, 0.3, 0.5, 0.2], [-0.4, -0.8, 0.9, -0.6, 0.7, 0.1]])
+    result = pw.compensate(problem, poses)
+    assert result.compensated == [True, True] and not result.failures and result.actuators is None
+    assert np.all(np.abs(result.configurations - poses) < 2e-3) and np.any(result.configurations != poses)
+    assert np.all(result.before[:, 0] > 1e-4) and np.all(result.after < 1e-9)
+    names = ",".join(f"joint_a{i}" for i in range(1, 7))
+    (tmp_path / "poses.csv").write_text(names + "\n" + "\n".join(",".join(map(repr, map(float, row))) for row in poses) + "\n")
+    theirs = program("compensate", file, tmp_path / "poses.csv", "--problem", examples / "kr270" / "problem.yaml")
+    assert np.array_equal([pose["configuration"] for pose in theirs["lists"][0]["poses"]], result.configurations)
+    with pytest.raises(pw.InputError, match="no calibrated parameters"):
+        pw.compensate(pw.Problem(examples / "kr270" / "problem.yaml"), poses)
+    with pytest.raises(pw.InputError):
+        pw.compensate(problem, poses, most=0)
+
+
 def test_stations_need_a_number_of_places(examples):
     cell = pw.Problem(examples / "cell" / "problem.yaml")
     with pytest.raises(pw.InputError):

@@ -2,14 +2,15 @@
 const quoted = (name) => (/[",]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
 
 /**
- * The list as poses.csv: header `pose,NAME [unit],…`, one line a pose, actuators after the configuration, then load
- * case and station where there are some. Numbers read back bit-equal.
- * @param {any[]} poses of plan.json, in order @param {Object<string, string>} actuatorUnits
+ * The list as poses.csv: header `pose,NAME [unit],…`, one line a pose, actuators after the configuration (none of a pose
+ * that was moved), then load case and station where there are some, and `fixed` where poses are locked. Numbers read back
+ * bit-equal.
+ * @param {any[]} poses of plan.json, in order @param {Object<string, string>} actuatorUnits @param {Set<number>} locked
  */
-export function posesCsv(poses, actuatorUnits = {}) {
+export function posesCsv(poses, actuatorUnits = {}, locked = new Set()) {
   if (poses.length === 0) return '';
   const first = poses[0];
-  const actuators = Object.keys(first.actuators ?? {});
+  const actuators = Object.keys(poses.find((pose) => pose.actuators)?.actuators ?? {});
   const conditions = Object.keys(first.conditions ?? {});
   const withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const header = [
@@ -18,14 +19,16 @@ export function posesCsv(poses, actuatorUnits = {}) {
     ...actuators.map((name) => withUnit(name, actuatorUnits[name])),
     ...['load_case', 'station'].filter((choice) => first[choice]),
     ...conditions,
+    ...(locked.size > 0 ? ['fixed'] : []),
   ];
   const lines = poses.map((pose) =>
     [
       pose.id,
       ...pose.configuration,
-      ...actuators.map((name) => pose.actuators[name]),
+      ...actuators.map((name) => pose.actuators?.[name] ?? ''),
       ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice])),
       ...conditions.map((name) => quoted(pose.conditions[name])),
+      ...(locked.size > 0 ? [locked.has(pose.id) ? 'yes' : 'no'] : []),
     ].join(','),
   );
   return [header.join(','), ...lines, ''].join('\n');

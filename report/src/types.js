@@ -23,6 +23,44 @@
  * @typedef {{poses: number, log_det: number|null, rho0: number|null, largest_sigma_ratio: number|null}} CurvePoint
  * @typedef {{sensitivity: number[], bound: number, positions: number[], chosen: number[]}} Candidates
  *
+ * Near a pose: whole steps k of one or two coordinates (numerics/neighbours.js). `places` are the k that were looked at, a
+ * pose's lists follow them; clearance in tenths of a millimetre; verdicts −1: feasible.
+ * @typedef {object} Neighbourhood
+ * @property {number} id
+ * @property {number[]} steps rad or m, one a coordinate
+ * @property {number[]} verdicts
+ * @property {(0|1)[]} told whether the interpolated block stands for the model's
+ * @property {number[]} clearance
+ * @property {number[]} between
+ * @property {number} rows
+ * @property {[number[], number[], number[]]} scale by order and column
+ * @property {string} terms base64 of 16-bit whole numbers, low byte first
+ * @property {Keyframe[]} drawn at `reach` steps of each coordinate, of a robot without chain
+ * @typedef {object} Neighbours
+ * @property {number} reach
+ * @property {{index: number, step: number, lower: number, upper: number}[]} coordinates
+ * @property {number[][]} places
+ * @property {string[]} reasons
+ * @property {[string, string][]} bodies
+ * @property {{efficiency: number, sigma: number, rho0: number}} errors largest that was found
+ * @property {Neighbourhood[]} poses
+ *
+ * @typedef {object} Chain of a serial arm
+ * @property {Placement} base
+ * @property {{placement: Placement, axis: Point, prismatic: boolean, multiplier: number, offset: number, coordinate: number}[]} joints
+ * @property {Placement} tip behind the last joint
+ * @property {Point[]} targets in the tip's frame
+ *
+ * @typedef {object} Camera
+ * @property {boolean} on_tip the camera rides on the tip, the board does not; else the other way
+ * @property {Placement} camera in what carries it
+ * @property {Placement} board
+ * @property {[number, number]} size px
+ * @property {Point[]} corners lines of sight of the picture's corners, camera frame
+ * @property {string[]} names
+ * @property {Point[]} points board frame
+ * @property {{pose: number, pixels: ([number, number]|null)[]}[]} pictures
+ *
  * @typedef {object} Information
  * @property {{id: number, packed: number[]}[]} poses
  * @property {number[]|null} prior
@@ -43,6 +81,10 @@
  * @property {Information} information
  * @property {number[]} singular_values
  * @property {Candidates|null} candidates
+ * @property {Chain|null} chain
+ * @property {Camera|null} camera
+ * @property {Neighbours|null} neighbours
+ * @property {string} [why_no_neighbours]
  * @property {number[]} [position_errors] predicted at feasible configurations, m
  * @property {CurvePoint[]} curve
  * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <set>
 
@@ -28,6 +29,8 @@ class SceneBuilder {
  public:
   SceneBuilder(const Problem& problem, const IdentificationModel& model)
       : problem_(problem), spec_(*problem.workspace.collision), model_(model) {
+    static std::atomic<std::uint64_t> made{0};
+    scene_.number = ++made;
     scene_.frames = make_body_frames(problem, model);
     scene_.bodies = build_bodies(problem, *scene_.frames);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "apart_memory.hpp"
 #include "posewright/support/dense.hpp"
 #include "scene.hpp"
 
@@ -34,12 +35,33 @@ double distance_of(const Scene& scene, const BodyPair& pair, const Poses& X, dou
                   *scene.bodies[std::size_t(pair.b)].solid, X[std::size_t(pair.b)], cap);
 }
 
+/// How much a pair has beyond its clearance, at least: exact where it is negative, so that the sign is the verdict.
+/// @param more  m beyond the clearance that is worth knowing
+double spare_of(const Scene& scene, const BodyPair& pair, const Poses& X, double more) {
+  const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+  const Eigen::Isometry3d &X_a = X[std::size_t(pair.a)], &X_b = X[std::size_t(pair.b)];
+  const double apart = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
+  if (apart > more / 2 || (apart > 0 && more == 0)) return apart;
+  const double hulls = distance_of_hulls(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
+  if (hulls > more / 4 && hulls > 0) return hulls;
+  return distance_of(scene, pair, X, pair.clearance + more / 4) - pair.clearance;
+}
+
 /// First pair that is too near, or null.
 const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
+  ApartMemory& memory = ApartMemory::of(scene);
   for (int pose = 0; pose < scene.frames->poses_per_configuration(); ++pose) {
-    const Poses& X = place_bodies(scene, q, pose);
-    for (const BodyPair& pair : scene.pairs)
-      if (!pair.never_near && distance_of(scene, pair, X, pair.clearance) < pair.clearance) return &pair;
+    const Poses* X = nullptr;
+    for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+      const BodyPair& pair = scene.pairs[p];
+      const std::size_t place = std::size_t(pose) * scene.pairs.size() + p;
+      if (pair.never_near || memory.covers(pair, place, pose, q)) continue;
+      if (memory.is_too_near(pair, place, pose, q)) return &pair;
+      if (X == nullptr) X = &place_bodies(scene, q, pose);
+      const double spare = spare_of(scene, pair, *X, memory.is_near(pair, place, pose, q) ? look_ahead : 0.0);
+      memory.keep(place, q, spare);
+      if (spare < 0) return &pair;
+    }
   }
   return nullptr;
 }
@@ -85,8 +107,8 @@ class SmallestDistance {
 
   std::optional<Separation> result() const {
     if (nearest_ == nullptr) return std::nullopt;
-    return Separation{smallest_, scene_.bodies[std::size_t(nearest_->b)].name,
-                      scene_.bodies[std::size_t(nearest_->a)].name};
+    const Body &a = scene_.bodies[std::size_t(nearest_->a)], &b = scene_.bodies[std::size_t(nearest_->b)];
+    return Separation{smallest_, b.name, a.name, nearest_points(*b.solid, X_b_, *a.solid, X_a_)};
   }
 
  private:
@@ -109,6 +131,8 @@ class SmallestDistance {
     if (found < smallest_) {
       smallest_ = found;
       nearest_ = &pair;
+      X_a_ = X_a;
+      X_b_ = X_b;
     }
     return found;
   }
@@ -118,6 +142,7 @@ class SmallestDistance {
   std::vector<const BodyPair*> pairs_;
   double smallest_ = most_distance;
   const BodyPair* nearest_ = nullptr;
+  Eigen::Isometry3d X_a_, X_b_;  // of its bodies where they are nearest
 };
 
 }  // namespace

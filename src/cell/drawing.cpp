@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "mesh_file.hpp"
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/model/variant.hpp"
@@ -14,10 +17,40 @@
 namespace posewright {
 namespace {
 
-// A picture needs no more, and a report stays small.
-constexpr std::size_t most_triangles = 3000;
+// A picture needs no more, and a report stays small: of one mesh, and of all.
+constexpr std::size_t most_triangles = 3000, most_of_all = 30000;
 // Cells along the longest edge of the box around a mesh, for the first attempt.
 constexpr int finest_grid = 64;
+
+/// Shapes of the robot's links as they look, where all of a link can be drawn; others as they are checked.
+std::vector<BodyShape> looks(const Problem& problem, std::vector<BodyShape> checked) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return checked;
+  std::vector<BodyShape> shapes;
+  std::set<std::string> seen;
+  for (const LinkGeometry& link : read_urdf_visuals(*arm, problem.at(arm->line))) {
+    std::vector<BodyShape> own;
+    try {
+      for (const LinkShape& s : link.shapes) {
+        const SourcePlace place{arm->urdf.string(), link.line};
+        ShapeSpec shape = s.shape;
+        if (const std::optional<TriangleMesh> mesh = mesh_of(shape, problem, place)) {
+          const TriangleMesh thin = thinned(*mesh, most_triangles);
+          shape = std::make_shared<const TrianglesShape>(TrianglesShape{thin.vertices, thin.triangles});
+        }
+        own.push_back({link.name, "", "", BodyShape::Kind::link, link.frame, s.X_FrameShape, std::move(shape), place,
+                       link.follower, link.colour});
+      }
+    } catch (const InputError&) {
+      continue;  // no picture is worth an error: the shapes that are checked will do
+    }
+    seen.insert(link.name);
+    shapes.insert(shapes.end(), own.begin(), own.end());
+  }
+  for (BodyShape& s : checked)
+    if (s.kind != BodyShape::Kind::link || seen.count(s.name) == 0) shapes.push_back(std::move(s));
+  return shapes;
+}
 
 const char* kind_name(BodyShape::Kind kind) {
   if (kind == BodyShape::Kind::tool) return "tool";
@@ -59,6 +92,7 @@ Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model),
     robot_ = chain.robot;
     base_ = chain.X_MeasureBase.translation();
     for (const ChainJoint& joint : chain.joints) frame_names_.push_back(joint.name);
+    add_chain(chain);
     arm_ = make_body_frames(problem, *model_);
   } else {
     tip_ = make_tip(problem, find_variant(problem, ""));
@@ -73,7 +107,7 @@ Drawing::~Drawing() = default;
 void Drawing::add_bodies(const Problem& problem) {
   if (arm_ == nullptr && tip_ == nullptr) return;
   const Eigen::Isometry3d X_FrameTip = arm_ != nullptr ? arm_->X_FrameTip() : Eigen::Isometry3d::Identity();
-  for (const BodyShape& s : list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip)) {
+  for (const BodyShape& s : looks(problem, list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip))) {
     DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, s.colour, {}};
     try {
       if (const std::optional<TriangleMesh> mesh = mesh_of(s.shape, problem, s.place)) {
@@ -86,12 +120,47 @@ void Drawing::add_bodies(const Problem& problem) {
     }
     bodies_.push_back(std::move(body));
   }
+  keep_to_budget();
+}
+
+void Drawing::keep_to_budget() {
+  std::size_t all = 0;
+  for (const DrawnBody& body : bodies_) all += body.mesh.triangles.size();
+  if (all <= most_of_all) return;
+  const double share = double(most_of_all) / double(all);
+  for (DrawnBody& body : bodies_)
+    body.mesh = thinned(body.mesh, std::size_t(share * double(body.mesh.triangles.size())));
+}
+
+void Drawing::add_chain(const ChainDescription& chain) {
+  DrawnChain drawn{chain.X_MeasureBase, {}, chain.X_LastTip, {}};
+  for (const ChainJoint& joint : chain.joints) {
+    const std::string& name = chain.coordinates[std::size_t(joint.coordinate)].name;
+    const auto& all = model_->coordinates();
+    const auto at = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name; });
+    if (at == all.end()) return;
+    drawn.joints.push_back(
+        {joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset, int(at - all.begin())});
+  }
+  if (model_->tips() < 2) chain_ = std::move(drawn);
 }
 
 void Drawing::add_instrument(const Problem& problem, const Cell& cell) {
   for (const TargetSpec& target : view_of(problem.measurement).targets) {
     target_names_.push_back(target.name);
     targets_.push_back(target.position);
+  }
+  if (chain_) chain_->targets = targets_;
+  if (const InstrumentView view = view_of(problem.measurement); view.image && !view.places.empty()) {
+    const auto placed = [&](const std::string& name, const Placement& placement) {
+      return nominal_placement(model_->parameters(), name, isometry(placement));
+    };
+    camera_ = DrawnCamera{view.places_on_tip,
+                          placed(view.places.front().parameters, view.places.front().station.placement),
+                          *view.image,
+                          placed(view.points_parameters, view.points_at),
+                          {}};
+    for (const InstrumentView::Point& point : view.points) camera_->points.emplace_back(point.name, point.position);
   }
   if (cell.sight == nullptr || cell.sight->rides_on_tip()) return;
   for (std::size_t s = 0; s < cell.sight->stations().size(); ++s)

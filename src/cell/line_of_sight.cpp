@@ -1,6 +1,7 @@
 #include "posewright/cell/line_of_sight.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "posewright/cell/collision.hpp"
@@ -17,11 +18,33 @@ enum Reason { range, elevation, azimuth, field_of_view, acceptance, occluded, re
 constexpr const char* reason_names[reason_count] = {"out of range of",          "elevation at",     "azimuth at",
                                                     "outside field of view of", "facing away from", "occluded from"};
 
+// Of a target that nobody looked for yet.
+constexpr int not_known = -2;
+
 bool outside(const std::optional<std::pair<double, double>>& limits, double value) {
   return limits && (value < limits->first || value > limits->second);
 }
 
 }  // namespace
+
+/// One configuration: where its tip is, and what hides each target from each station.
+struct LineOfSight::Looked {
+  std::uint64_t sight = 0;
+  std::vector<double> q;
+  Eigen::Isometry3d X_MeasureTip;
+  std::vector<int> hidden_by[2];  // bodies passed over, and with them
+};
+
+LineOfSight::Looked& LineOfSight::looked_at(std::span<const double> q) const {
+  static thread_local Looked looked;
+  if (looked.sight == number_ && std::equal(q.begin(), q.end(), looked.q.begin(), looked.q.end())) return looked;
+  looked.sight = 0;
+  looked.q.assign(q.begin(), q.end());
+  looked.X_MeasureTip = model_.tool_pose(q);
+  for (std::vector<int>& hidden : looked.hidden_by) hidden.assign(station_names_.size() * targets_.size(), not_known);
+  looked.sight = number_;
+  return looked;
+}
 
 std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const IdentificationModel& model,
                                                const Collision* collision) {
@@ -49,6 +72,8 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
       // What nobody asked for is not judged: places only.
       collision_(problem.workspace.line_of_sight ? collision : nullptr),
       judges_(problem.workspace.line_of_sight.has_value()) {
+  static std::atomic<std::uint64_t> made{0};
+  number_ = ++made;
   const InstrumentView view = view_of(problem.measurement);
   if (view.has_places && !spec_.stations.empty())
     throw InputError(problem.at(spec_.line), "workspace.line_of_sight.stations stands beside the device's own",
@@ -153,12 +178,14 @@ Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_M
   return s;
 }
 
-bool LineOfSight::seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station,
-                            std::span<char> seen, int* reason, bool past_bodies) const {
+bool LineOfSight::seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
+                            bool past_bodies) const {
   const int needed = spec_.visible == 0 ? targets() : spec_.visible;
   int found = 0, hidden = 0;
   for (std::size_t t = 0; t < targets_.size(); ++t) {
-    const int why = sight(q, X_Tip, station, targets_[t], targets_on_tip_, past_bodies).hidden_by;
+    int& why = looked.hidden_by[past_bodies ? 1 : 0][std::size_t(station) * targets_.size() + t];
+    if (why == not_known)
+      why = sight(q, looked.X_MeasureTip, station, targets_[t], targets_on_tip_, past_bodies).hidden_by;
     if (!seen.empty()) seen[t] = char(why < 0 && seen[t] != 0);
     found += why < 0;
     hidden += why >= 0;
@@ -171,17 +198,17 @@ bool LineOfSight::seen_from(std::span<const double> q, const Eigen::Isometry3d& 
 
 void LineOfSight::visible(std::span<const double> q, std::span<char> seen) const {
   std::fill(seen.begin(), seen.end(), char(1));
-  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  Looked& looked = looked_at(q);
   const auto [first, last] = stations_of(q);
-  for (int s = first; s <= last; ++s) seen_from(q, X_Tip, s, seen, nullptr, true);
+  for (int s = first; s <= last; ++s) seen_from(q, looked, s, seen, nullptr, true);
 }
 
 int LineOfSight::violation(std::span<const double> q, bool past_bodies) const {
-  const Eigen::Isometry3d X_Tip = model_.tool_pose(q);
+  Looked& looked = looked_at(q);
   const auto [first, last] = stations_of(q);
   for (int s = first; s <= last; ++s) {
     int reason = -1;
-    if (!seen_from(q, X_Tip, s, {}, &reason, past_bodies)) return reason;
+    if (!seen_from(q, looked, s, {}, &reason, past_bodies)) return reason;
   }
   return -1;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -50,7 +51,8 @@ struct Scene {
   std::vector<std::string> reasons;  ///< what a pair that comes too near is called in the table of rejections
   std::vector<std::string> always;   ///< "link_1 and link_3": left out because they always touch
   std::vector<ReducedClearance> reduced;
-  double margin = 0.0;  ///< m, largest that was added for a robot that is not calibrated yet
+  double margin = 0.0;       ///< m, largest that was added for a robot that is not calibrated yet
+  std::uint64_t number = 0;  ///< of this scene among all that the program made: what a thread remembers is of one
 };
 
 /// Whether a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it

@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "posewright/support/dense.hpp"
 
@@ -44,6 +45,17 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
   fcl::DistanceResultd result(cap);
   fcl::distance(&a, X_a, &b, X_b, request, result);
   return std::clamp(result.min_distance, 0.0, cap);
+}
+
+/// Nearest points of two shapes that do not meet, as FCL finds them.
+std::array<Eigen::Vector3d, 2> fcl_nearest_points(const Geometry& a, const Eigen::Isometry3d& X_a, const Geometry& b,
+                                                  const Eigen::Isometry3d& X_b) {
+  fcl::DistanceRequestd request(true);
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  request.distance_tolerance = 1e-9;
+  fcl::DistanceResultd result;
+  fcl::distance(&a, X_a, &b, X_b, request, result);
+  return {result.nearest_points[0], result.nearest_points[1]};
 }
 
 class FclSolid : public Solid {
@@ -225,14 +237,30 @@ double above(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_plane, cons
   return centre + lowest;
 }
 
-/// Largest gap between the boxes around two solids on the 15 axes where boxes that do not meet can be told apart
-/// (Gottschalk, Lin & Manocha 1996): a lower bound of the distance of what is in them.
-double gap_between_boxes(const FclSolid& a, const Eigen::Isometry3d& X_a, const FclSolid& b,
-                         const Eigen::Isometry3d& X_b) {
-  const Eigen::Matrix3d R = X_a.linear().transpose() * X_b.linear();
+/// The point of a solid that is lowest above the plane.
+Eigen::Vector3d lowest(const HalfSpaceSolid& plane, const Eigen::Isometry3d& X_plane, const Solid& solid,
+                       const Eigen::Isometry3d& X) {
+  const Eigen::Vector3d down = -(X.linear().transpose() * (X_plane.linear() * plane.normal()));
+  if (dynamic_cast<const SphereSolid*>(&solid) != nullptr) return X * (solid.radius() * down);
+  if (dynamic_cast<const CylinderSolid*>(&solid) != nullptr) {
+    const Eigen::Vector3d& c = solid.corners().front();
+    Eigen::Vector3d point(0, 0, down.z() < 0 ? -std::abs(c.z()) : std::abs(c.z()));
+    if (const double across = down.head<2>().norm(); across > 1e-12)
+      point.head<2>() = std::abs(c.x()) / across * down.head<2>();
+    return X * point;
+  }
+  return X * *std::max_element(solid.corners().begin(), solid.corners().end(),
+                               [&](const auto& p, const auto& q) { return down.dot(p) < down.dot(q); });
+}
+
+/// Largest gap between two boxes on the 15 axes where boxes that do not meet can be told apart (Gottschalk, Lin &
+/// Manocha 1996): a lower bound of the distance of what is in them.
+/// @param g, h  half extents of both
+/// @param t     middle of b from that of a, frame a
+/// @param R     axes of b, frame a
+double gap_between_boxes(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen::Vector3d& t,
+                         const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d size = R.cwiseAbs();
-  const Eigen::Vector3d t = X_a.linear().transpose() * (X_b * b.middle() - X_a * a.middle());
-  const Eigen::Vector3d &g = a.half_extent(), &h = b.half_extent();
   double gap = std::max((t.cwiseAbs() - g - size * h).maxCoeff(),
                         ((R.transpose() * t).cwiseAbs() - h - size.transpose() * g).maxCoeff());
   for (int i = 0; i < 3; ++i)
@@ -275,7 +303,10 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
   if (std::isfinite(b.radius())) bound = std::max(bound, a.at_least(seen(X_a, centre_b)) - b.radius());
   if (std::isfinite(a.radius())) bound = std::max(bound, b.at_least(seen(X_b, centre_a)) - a.radius());
   if (!std::isfinite(a.radius()) || !std::isfinite(b.radius())) return bound;
-  return std::max(bound, gap_between_boxes(static_cast<const FclSolid&>(a), X_a, static_cast<const FclSolid&>(b), X_b));
+  const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
+  return std::max(bound, gap_between_boxes(first.half_extent(), second.half_extent(),
+                                           seen(X_a, X_b * second.middle()) - first.middle(),
+                                           X_a.linear().transpose() * X_b.linear()));
 }
 
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
@@ -303,6 +334,35 @@ double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, co
   return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
 }
 
+std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, const Eigen::Isometry3d& X_a,
+                                                             const Solid& b, const Eigen::Isometry3d& X_b) {
+  const double apart = distance(a, X_a, b, X_b, std::numeric_limits<double>::max());
+  if (!(apart > 0)) return std::nullopt;
+  if (dynamic_cast<const HalfSpaceSolid*>(&b) != nullptr) {
+    const auto points = nearest_points(b, X_b, a, X_a);
+    return points ? std::optional(std::array<Eigen::Vector3d, 2>{(*points)[1], (*points)[0]}) : std::nullopt;
+  }
+  std::array<Eigen::Vector3d, 2> points;
+  if (const auto* plane = dynamic_cast<const HalfSpaceSolid*>(&a)) {
+    points[1] = lowest(*plane, X_a, b, X_b);
+    const Eigen::Vector3d n = X_a.linear() * plane->normal();
+    points[0] = points[1] - n.dot(points[1] - X_a.translation()) * n;
+  } else {
+    points = fcl_nearest_points(static_cast<const FclSolid&>(a).geometry(), X_a,
+                                static_cast<const FclSolid&>(b).geometry(), X_b);
+  }
+  // Of some pairs of shapes FCL 0.7 states other points than those that its distance is between.
+  constexpr double same = 1e-5;  // m
+  const auto on = [&](const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& p) {
+    return solid.at_least(X.inverse() * p) < same;
+  };
+  const auto fit = [&] { return on(a, X_a, points[0]) && on(b, X_b, points[1]); };
+  if (!(std::abs((points[0] - points[1]).norm() - apart) < same)) return std::nullopt;
+  // Asked for a shape and a mesh, FCL answers for the mesh and the shape.
+  if (!fit()) std::swap(points[0], points[1]);
+  return fit() ? std::optional(points) : std::nullopt;
+}
+
 bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
             double radius) {
   const Eigen::Vector3d way = to - from;
@@ -315,13 +375,23 @@ bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3
   const Eigen::Vector3d c = X * solid.centre();
   const double t = length > 0 ? std::clamp((c - from).dot(way) / (length * length), 0.0, 1.0) : 0.0;
   if ((from + t * way - c).norm() > solid.radius() + radius) return false;
-  if (solid.holds(X.inverse() * from)) return true;
+  const auto& body = static_cast<const FclSolid&>(solid);
   Eigen::Isometry3d X_beam = Eigen::Isometry3d::Identity();
   X_beam.translation() = 0.5 * (from + to);
   if (length > 0)
     X_beam.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), way).toRotationMatrix();
+  // A box around the body and the segment, then the body's hull, before its triangles.
+  const Eigen::Matrix3d R = X.linear().transpose() * X_beam.linear();
+  const Eigen::Vector3d middle = X.linear().transpose() * (X_beam.translation() - X.translation());
+  if (gap_between_boxes(body.half_extent(), {0, 0, length / 2}, middle - body.middle(), R) > radius + hull_tolerance)
+    return false;
+  if (solid.holds(X.inverse() * from)) return true;
   const fcl::Capsuled beam(std::max(radius, 1e-5), std::max(length, 1e-9));
-  return fcl_distance(static_cast<const FclSolid&>(solid).geometry(), X, beam, X_beam, 1e-6) <= 0;
+  const Geometry* hull = body.hull();
+  if (hull != nullptr && hull != &body.geometry() &&
+      fcl_distance(*hull, X, beam, X_beam, 2 * hull_tolerance) > hull_tolerance)
+    return false;
+  return fcl_distance(body.geometry(), X, beam, X_beam, 1e-6) <= 0;
 }
 
 }  // namespace posewright

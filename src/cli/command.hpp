@@ -39,6 +39,7 @@ Command evaluate_command();
 Command compare_command();
 Command simulate_command();
 Command calibrate_command();
+Command compensate_command();
 Command route_command();
 Command stations_command();
 Command export_command();
@@ -66,6 +67,9 @@ std::string single(const Words& positional, const std::string& what);
 
 /// A whole number within [lower, upper] as an optional; InputError names the option and the range.
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper);
+/// A number within [lower, upper] likewise.
+std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
+                                     double upper);
 /// The text of an option, empty if it is not given.
 std::string text_of(const po::variables_map& values, const std::string& option);
 /// One of the allowed words, or empty if the option is not given. Throws InputError for another word.

@@ -8,10 +8,10 @@
 namespace posewright::cli {
 
 const std::vector<Command>& commands() {
-  static const std::vector<Command> table = {observe_command(),   plan_command(),    select_command(),
-                                             evaluate_command(),  compare_command(), simulate_command(),
-                                             calibrate_command(), route_command(),   stations_command(),
-                                             export_command(),    report_command()};
+  static const std::vector<Command> table = {observe_command(),   plan_command(),       select_command(),
+                                             evaluate_command(),  compare_command(),    simulate_command(),
+                                             calibrate_command(), compensate_command(), route_command(),
+                                             stations_command(),  export_command(),     report_command()};
   return table;
 }
 
@@ -45,6 +45,17 @@ std::string single(const Words& positional, const std::string& what) {
   if (positional.size() > 1)
     throw InputError({}, "unexpected argument '" + positional[1] + "'", "one " + what + " is expected");
   return positional.front();
+}
+
+std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
+                                     double upper) {
+  if (values.count(option) == 0) return std::nullopt;
+  const std::string text = text_of(values, option);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
+    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
+  return value;
 }
 
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper) {

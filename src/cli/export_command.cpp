@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 
 #include "command.hpp"
@@ -35,11 +34,12 @@ po::options_description export_command_options() {
       ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")            //
       ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")              //
       ("digital-output", text("N"),
-       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")         //
-      ("digital-input", text("N"), "signals that it has measured")                                  //
-      ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")  //
-      ("base", text("N"), "base or user frame of the controller")                                   //
-      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")         //
+       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")                        //
+      ("digital-input", text("N"), "signals that it has measured")                                                 //
+      ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")                 //
+      ("payload", text("N|KG,X,Y,Z"), "load: payload schedule for fanuc-tp; kg and m of its centre for urscript")  //
+      ("base", text("N"), "base or user frame of the controller")                                                  //
+      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")                        //
       ("controller", text("NAME"),
        "known one, or YAML file: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
       ("station", text("NAME"), "whose targets a list of targets has")                                               //
@@ -51,20 +51,10 @@ po::options_description export_command_options() {
   return options;
 }
 
-std::optional<double> number(const po::variables_map& values, const std::string& option, double lower, double upper) {
-  if (values.count(option) == 0) return std::nullopt;
-  const std::string text = text_of(values, option);
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
-    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
-  return value;
-}
-
 std::vector<std::string> given_options(const po::variables_map& values) {
   std::vector<std::string> given;
-  for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base",
-                             "coupling", "controller", "group", "station"})
+  for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload",
+                             "base", "coupling", "controller", "group", "station"})
     if (values.count(option) > 0) given.emplace_back(option);
   return given;
 }
@@ -73,16 +63,17 @@ ExportOptions export_options(const PoseFormat& format, const po::variables_map& 
   require_read(format, given_options(values));
   ExportOptions result;
   if (const auto speed = whole_number(values, "speed", 1, 100)) result.speed = *speed;
-  result.settle = number(values, "settle", 0, 3600);
+  result.settle = number_between(values, "settle", 0, 3600);
   // Programs say hundredths of a second.
-  result.wait = number(values, "wait", 0.01, 3600);
-  result.coupling = number(values, "coupling", -10, 10);
+  result.wait = number_between(values, "wait", 0.01, 3600);
+  result.coupling = number_between(values, "coupling", -10, 10);
   result.digital_output = text_of(values, "digital-output");
   result.digital_input = text_of(values, "digital-input");
   result.name = text_of(values, "name");
   result.group = text_of(values, "group");
   result.station = text_of(values, "station");
   result.tool = text_of(values, "tool");
+  result.payload = text_of(values, "payload");
   result.base = whole_number(values, "base", 0, 255);
   if (const std::string name = text_of(values, "controller"); !name.empty())
     result.controller = controller_settings(name);

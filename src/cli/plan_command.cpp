@@ -31,6 +31,7 @@ po::options_description plan_command_options() {
       ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
+          "fixed", text("POSES"), "poses that the plan has among its N: CSV or plan.json; of marked ones those")(
           "reserve", "maximise what is left when the pose that hurts most is lost")(
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
           "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(
@@ -66,18 +67,20 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   const std::filesystem::path list = text_of(values, "candidates-from");
   if (!list.empty() && plan_options.candidates)
     throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
-  const std::filesystem::path augment = text_of(values, "augment");
+  const std::filesystem::path augment = text_of(values, "augment"), fixed = text_of(values, "fixed");
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = given_problem(file, values);
-  if (!list.empty() || !augment.empty()) {
+  if (!list.empty() || !augment.empty() || !fixed.empty()) {
     const std::vector<Coordinate> coordinates = pose_coordinates(problem, plan_options.variant);
     if (!augment.empty()) plan_options.measured = read_poses(augment, coordinates);
+    if (!fixed.empty()) plan_options.fixed = read_poses(fixed, coordinates);
     if (!list.empty()) plan_options.candidates_from = read_poses(list, without_limits(coordinates));
   }
   std::vector<std::filesystem::path> inputs = files_of(problem);
   if (!augment.empty()) inputs.push_back(augment);
+  if (!fixed.empty()) inputs.push_back(fixed);
   if (!list.empty()) inputs.push_back(list);
   const std::optional<int> validation = whole_number(values, "validation", 1, 1000000);
   const Outputs outputs(values, inputs, true, validation.has_value());

@@ -9,8 +9,8 @@
 namespace posewright::cli {
 namespace {
 
-std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po::variables_map& values) {
-  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+Packages packages_of(const po::variables_map& values) {
+  Packages packages;
   if (values.count("package") == 0) return packages;
   for (const std::string& text : values["package"].as<Words>()) {
     const std::size_t equal = text.find('=');
@@ -26,19 +26,29 @@ std::vector<std::pair<std::string, std::filesystem::path>> packages_of(const po:
   return packages;
 }
 
+void add_package_option(po::options_description& options) {
+  options.add_options()(
+      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
+}
+
 void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
   print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
 }
 
 }  // namespace
 
+po::options_description package_options() {
+  po::options_description options("Robot");
+  add_package_option(options);
+  return options;
+}
+
 po::options_description problem_options() {
   po::options_description options("Problem");
-  options.add_options()(
-      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)")(
-      "parameters", po::value<std::string>()->value_name("FILE"),
-      "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
+  add_package_option(options);
+  options.add_options()("parameters", po::value<std::string>()->value_name("FILE"),
+                        "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
   return options;
 }
 
@@ -58,8 +68,7 @@ std::vector<std::string> variants_of(const po::variables_map& values) {
 }
 
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {
-  Problem problem = read_problem(file);
-  problem.packages = packages_of(values);
+  Problem problem = read_problem(file, packages_of(values));
   if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
   return problem;
 }
@@ -90,6 +99,7 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
   }
   if (problem.design.candidates_from) add(*problem.design.candidates_from);
   if (problem.design.measured) add(*problem.design.measured);
+  if (problem.design.fixed) add(*problem.design.fixed);
   if (problem.design.test_poses) add(problem.design.test_poses->file);
   if (problem.workspace.controller) add(problem.workspace.controller->path);
   if (!problem.workspace.collision) return files;

@@ -9,6 +9,8 @@
 
 namespace posewright::cli {
 
+/// --package NAME=DIR.
+po::options_description package_options();
 /// --package NAME=DIR and --parameters FILE, for every command that reads a problem file.
 po::options_description problem_options();
 /// Names of --variant, given once, several times or with commas; none if the command has no such option.

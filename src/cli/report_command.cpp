@@ -12,12 +12,12 @@ namespace {
 
 po::options_description report_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                          //
-      ("output,o", text("FILE"), "the page (report.html; - for none)")                           //
-      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")       //
-      ("problem", text("FILE"), "problem file (the one the plan names)")                         //
-      ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates")  //
-      ("force", "replace files that posewright did not write")                                   //
+  options.add_options()                                                                                       //
+      ("output,o", text("FILE"), "the page (report.html; - for none)")                                        //
+      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")                    //
+      ("problem", text("FILE"), "problem file (the one the plan names)")                                      //
+      ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates, moved poses")  //
+      ("force", "replace files that posewright did not write")                                                //
       ("time-limit", text("S"), "begin no other number of poses after S seconds");
   options.add(problem_options());
   return options;
@@ -28,7 +28,7 @@ int run_report(const po::variables_map& values, const Words& positional) {
   const std::filesystem::path plan = single(positional, "PLAN");
   ReportOptions report_options;
   report_options.route = text_of(values, "route");
-  report_options.sizes = report_options.candidates = values.count("brief") == 0;
+  report_options.sizes = report_options.candidates = report_options.moves = values.count("brief") == 0;
   report_options.threads = common.threads;
   const std::filesystem::path file = problem_file(values, plan);
   const std::filesystem::path page = output_file(values, "output", "report.html");

@@ -17,16 +17,19 @@ namespace {
 
 po::options_description route_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                      //
-      ("from-home", "begin at home (workspace: motion: home, else zero)")                    //
-      ("closed", "end where the route began")                                                //
-      ("start", text("ID"), "pose to begin with")                                            //
-      ("problem", text("FILE"), "problem file (the one the plan names)")                     //
-      ("milestones", text("n"), "of the roadmap for motions that cannot be straight (200)")  //
-      ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                   //
-      ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                  //
-      ("force", "replace files that posewright did not write")                               //
-      ("time-limit", text("S"), "give up after S seconds")                                   //
+  options.add_options()                                                                              //
+      ("from-home", "begin at home (workspace: motion: home, else zero)")                            //
+      ("closed", "end where the route began")                                                        //
+      ("start", text("ID"), "pose to begin with")                                                    //
+      ("problem", text("FILE"), "problem file (the one the plan names)")                             //
+      ("milestones", text("n"), "of the roadmap for motions that cannot be straight (200)")          //
+      ("settle", text("S"), "seconds at rest before a pose is read (workspace: motion: settle, 0)")  //
+      ("reading", text("S"),
+       "seconds of one reading, of each target seen where they are read in turn (workspace: motion: reading, 0)")  //
+      ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                         //
+      ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                        //
+      ("force", "replace files that posewright did not write")                                                     //
+      ("time-limit", text("S"), "give up after S seconds")                                                         //
       ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;
@@ -42,6 +45,8 @@ int run_route(const po::variables_map& values, const Words& positional) {
   route_options.closed = values.count("closed") > 0;
   route_options.start = whole_number(values, "start", 1, 1000000);
   route_options.milestones = whole_number(values, "milestones", 1, 100000).value_or(200);
+  route_options.settle = number_between(values, "settle", 0, 3600);
+  route_options.reading = number_between(values, "reading", 0, 3600);
   route_options.seed = common.seed;
   route_options.threads = common.threads;
   if (route_options.from_home && route_options.start)

@@ -22,10 +22,15 @@ std::vector<std::string> known_controllers() {
   return names;
 }
 
-ControllerSettings controller_settings(const std::string& name_or_file, const std::filesystem::path& folder) {
+bool is_controller_file(const std::string& name_or_file, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / name_or_file;
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored)) {
+  return std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored);
+}
+
+ControllerSettings controller_settings(const std::string& name_or_file, const std::filesystem::path& folder) {
+  if (is_controller_file(name_or_file, folder)) {
+    const std::filesystem::path file = folder / name_or_file;
     ControllerSettings settings = parse_controller_settings(read_text(file, size_limit), file.string());
     settings.path = file;
     return settings;

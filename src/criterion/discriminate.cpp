@@ -1,11 +1,15 @@
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "effects.hpp"
 #include "posewright/criterion/discrepancy.hpp"
 #include "posewright/support/dense.hpp"
 #include "product_curvature.hpp"
 #include "regular.hpp"
+#include "residual_state.hpp"
 
 namespace posewright {
 namespace {
@@ -80,11 +84,28 @@ std::unique_ptr<Expansion> DiscriminateFunction::expand(const Eigen::MatrixXd& i
   return std::make_unique<DiscriminateExpansion>(residual, residual.directions(information, half_));
 }
 
+namespace {
+
+class DiscriminateCriterion : public Criterion {
+ public:
+  explicit DiscriminateCriterion(const CriterionData& data)
+      : function_(
+            std::make_shared<DiscriminateFunction>(int(data.R.cols()) - data.effects.columns, whitened_mix(data))) {}
+  std::string name() const override { return "discriminate"; }
+  const InformationFunction& function() const override { return *function_; }
+  std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
+    return start_residual(view, std::move(members), function_);
+  }
+
+ private:
+  std::shared_ptr<const DiscriminateFunction> function_;
+};
+
+}  // namespace
+
 std::unique_ptr<Criterion> make_discriminate_criterion(const CriterionData& data) {
   require_effects(data);
-  return std::make_unique<FunctionCriterion>(
-      "discriminate",
-      std::make_shared<DiscriminateFunction>(int(data.R.cols()) - data.effects.columns, whitened_mix(data)));
+  return std::make_unique<DiscriminateCriterion>(data);
 }
 
 }  // namespace posewright

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "mixed_state.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -100,6 +102,13 @@ class MixedFunction : public InformationFunction {
   bool concave() const override { return true; }
   double degree() const override { return 1.0; }
 
+  /// Their weights sum to one.
+  std::vector<VariantGroup> variants() const {
+    std::vector<VariantGroup> groups;
+    for (const Part& part : parts_) groups.push_back(part.group);
+    return groups;
+  }
+
   std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override {
     auto mixed = std::make_unique<MixedExpansion>();
     Eigen::VectorXd efficiency{Eigen::Index(parts_.size())}, weight{Eigen::Index(parts_.size())};
@@ -139,14 +148,30 @@ class MixedFunction : public InformationFunction {
   std::vector<Part> parts_;
 };
 
+class MixedCriterion : public Criterion {
+ public:
+  MixedCriterion(std::string name, const CriterionData& data, bool minimum)
+      : name_(std::move(name)), minimum_(minimum), function_(data, minimum) {}
+  std::string name() const override { return name_; }
+  const InformationFunction& function() const override { return function_; }
+  std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
+    return start_mixed(view, std::move(members), function_.variants(), minimum_);
+  }
+
+ private:
+  std::string name_;
+  bool minimum_;
+  MixedFunction function_;
+};
+
 }  // namespace
 
 std::unique_ptr<Criterion> make_compound_criterion(const CriterionData& data) {
-  return std::make_unique<FunctionCriterion>("compound", std::make_shared<MixedFunction>(data, false));
+  return std::make_unique<MixedCriterion>("compound", data, false);
 }
 
 std::unique_ptr<Criterion> make_maximin_criterion(const CriterionData& data) {
-  return std::make_unique<FunctionCriterion>("maximin", std::make_shared<MixedFunction>(data, true));
+  return std::make_unique<MixedCriterion>("maximin", data, true);
 }
 
 }  // namespace posewright

@@ -103,6 +103,7 @@ class ColumnMap {
     }
     for (std::size_t i = 0; i < table_.names.size(); ++i) {
       if (table_.names[i] == "weight") weight_ = int(i);
+      if (table_.names[i] == "fixed") mark_ = int(i);
       if (table_.names[i] == "id" || table_.names[i] == "pose") id_ = int(i);
     }
     list_.columns = table_.names;
@@ -144,6 +145,7 @@ class ColumnMap {
     list_.ids.push_back(row.id > 0 ? row.id : int(list_.configurations.size()));
     list_.lines.push_back(row.line);
     if (id_ >= 0 || row.id > 0) list_.own_ids.push_back(row.id > 0 ? row.id : id_of(row.cells[std::size_t(id_)]));
+    if (mark_ >= 0) list_.marks.push_back(text_of(row.cells[std::size_t(mark_)]));
     if (weight_ >= 0) list_.weights.push_back(weight_of(row.cells[std::size_t(weight_)], place));
   }
 
@@ -158,6 +160,11 @@ class ColumnMap {
     if (c.choice()) return of_label(fmt::format("{}", value), c, place);
     if (unit != degrees_or_millimetres) return value;
     return c.unit == "m" ? value * 1e-3 : value * (std::numbers::pi / 180);
+  }
+
+  static std::string text_of(const PoseCell& cell) {
+    const auto* text = std::get_if<std::string>(&cell);
+    return text == nullptr ? fmt::format("{}", std::get<double>(cell)) : *text;
   }
 
   static int id_of(const PoseCell& cell) {
@@ -187,7 +194,7 @@ class ColumnMap {
   const std::vector<Coordinate>& coordinates_;
   const PoseTable& table_;
   std::vector<int> column_;
-  int weight_ = -1, id_ = -1;
+  int weight_ = -1, id_ = -1, mark_ = -1;
   PoseList list_;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "displacement.hpp"
 #include "posewright/model/placement.hpp"
@@ -297,6 +298,85 @@ std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<con
     if (change.cwiseAbs().maxCoeff() < newton_tolerance) return q;
   }
   return std::nullopt;
+}
+
+bool ClosedChain::do_enclose(std::span<const TaylorModel>, std::span<const double>, std::span<const int>,
+                             Enclosed&) const {
+  return false;
+}
+
+namespace {
+
+using EnclosedMatrix = TipModel::EnclosedResidual::Matrix;
+
+/// Rows along spatial twists in B become rows along spatial twists in A, X_BA the pose of A in B: row · adjoint.
+EnclosedMatrix in_frame(const EnclosedMatrix& rows, const Frame<TaylorModel>& X_BA) {
+  using Vector = Eigen::Matrix<TaylorModel, 3, 1>;
+  EnclosedMatrix result(rows.rows(), 6);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    Vector force, moment;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      force[k] = rows(i, k);
+      moment[k] = rows(i, 3 + k);
+    }
+    moment += force.cross(X_BA.p);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      result(i, k) = force.dot(X_BA.R.col(k));
+      result(i, 3 + k) = moment.dot(X_BA.R.col(k));
+    }
+  }
+  return result;
+}
+
+Frame<TaylorModel> constant_frame(const Eigen::Isometry3d& X) {
+  Frame<TaylorModel> frame;
+  frame.then(X);
+  return frame;
+}
+
+/// Who moves the tip by a twist changes the residual as if the platform had moved back: column −rows · twist.
+void fill_column(const EnclosedMatrix& rows, const Twist& twist, Eigen::Index c, EnclosedMatrix& parameter) {
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    TaylorModel sum;
+    for (Eigen::Index k = 0; k < 6; ++k)
+      if (twist[k] != 0) sum.add(-twist[k], rows(i, k));
+    parameter(i, c) = std::move(sum);
+  }
+}
+
+}  // namespace
+
+bool ClosedChain::enclose_residual(std::span<const TaylorModel> q, std::span<const double> correction,
+                                   std::span<const int> selected, EnclosedResidual& out) const {
+  const auto d = Eigen::Index(coordinates_.size()), columns = Eigen::Index(selected.size());
+  if (d != 6 || q.size() != 6) return false;
+  Enclosed chain;
+  std::vector<int> own;
+  own_selection(selected, own);
+  chain.loops.parameter.setZero(d, columns);
+  chain.loops.platform.setZero(d, 6);
+  chain.loops.actuator.setZero(d, Eigen::Index(actuators_.size()));
+  chain.loops.value.setZero(d);
+  if (!do_enclose(q, own_part(correction), own, chain)) return false;
+  out.actuator = std::move(chain.loops.actuator);
+  out.parameter = std::move(chain.loops.parameter);
+  out.allowed = std::move(chain.allowed);
+
+  Frame<double> base_frame = frame_of(X_MeasureBase_), tool_frame;
+  const DisplacementAxes base = displace(base_frame, correction.empty() ? nullptr : correction.data());
+  const std::size_t first_tool = std::size_t(first_own() + own_count_);
+  const DisplacementAxes tool =
+      displace(tool_frame, correction.size() > first_tool ? correction.data() + first_tool : nullptr);
+  const EnclosedMatrix along_base = in_frame(chain.loops.platform, constant_frame(isometry_of(base_frame).inverse()));
+  const EnclosedMatrix along_platform = in_frame(chain.loops.platform, chain.X_BasePlatform);
+  out.platform = in_frame(along_platform, constant_frame(isometry_of(tool_frame)));
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const int index = selected[std::size_t(c)];
+    if (index < 6) fill_column(along_base, base.twist(index), c, out.parameter);
+    else if (index >= int(first_tool))
+      fill_column(along_platform, tool.twist(index - int(first_tool)), c, out.parameter);
+  }
+  return true;
 }
 
 }  // namespace posewright

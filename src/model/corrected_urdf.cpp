@@ -4,101 +4,87 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
+#include <string_view>
 
-#include "posewright/model/placement.hpp"
+#include "origin_editor.hpp"
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/support/text_file.hpp"
 #include "urdf_document.hpp"
 #include "xml_tags.hpp"
 
 namespace posewright {
 namespace {
 
-/// Shortest digits that read back as the same doubles; no negative zero.
-std::string three(const Eigen::Vector3d& v) { return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0); }
-
-/// New text of an origin's attributes; none: it stays as it is.
-struct NewOrigin {
-  std::optional<std::string> xyz, rpy;
-};
-
-NewOrigin new_origin(const urdf::Pose& pose, const Eigen::Isometry3d& X) {
-  const Eigen::Isometry3d old = isometry(pose);
-  NewOrigin origin;
-  if (!X.translation().isZero(0.0)) origin.xyz = three((old * X).translation());
-  if (!(X.linear() - Eigen::Matrix3d::Identity()).isZero(0.0)) origin.rpy = three(rpy_of((old * X).linear()));
-  return origin;
+/// The tags of a URDF's joints by their names.
+std::map<std::string, std::size_t> joint_tags(const std::string& text) {
+  std::map<std::string, std::size_t> result;
+  const std::vector<XmlTag> tags = xml_tags(text);
+  // The scanner knows no entities; tinyxml2 tells the names of the same joints in the same order.
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  const auto* joint = document.RootElement()->FirstChildElement("joint");
+  for (std::size_t i = 0; i < tags.size() && joint != nullptr; ++i) {
+    if (tags[i].depth != 1 || tags[i].name != "joint") continue;
+    result.emplace(joint->Attribute("name") == nullptr ? "" : joint->Attribute("name"), i);
+    joint = joint->NextSiblingElement("joint");
+  }
+  return result;
 }
 
-/// A stretch of the text and what stands there instead.
-struct Edit {
-  std::size_t begin, end;
-  std::string text;
-};
+/// What a macro's text says of a name: ${…} and $(…) stand for anything.
+bool may_be(std::string_view pattern, std::string_view name) {
+  const std::size_t dollar = std::min(pattern.find("${"), pattern.find("$("));
+  if (dollar == std::string_view::npos) return pattern == name;
+  if (!name.starts_with(pattern.substr(0, dollar))) return false;
+  const char close = pattern[dollar + 1] == '{' ? '}' : ')';
+  const std::size_t end = pattern.find(close, dollar);
+  if (end == std::string_view::npos) return false;
+  for (std::size_t skip = dollar; skip <= name.size(); ++skip)
+    if (may_be(pattern.substr(end + 1), name.substr(skip))) return true;
+  return false;
+}
 
-/// Changes the origins of a URDF's joints.
-class OriginEditor {
+/// The tags of a xacro file that make the joints of its URDF, each tag one joint and each joint of one tag.
+class XacroJoints {
  public:
-  OriginEditor(const std::string& text, const std::string& file) : text_(text), file_(file), tags_(xml_tags(text)) {
-    // The scanner knows no entities; tinyxml2 tells the names of the same joints in the same order.
-    tinyxml2::XMLDocument document;
-    document.Parse(text.data(), text.size());
-    const auto* joint = document.RootElement()->FirstChildElement("joint");
-    for (std::size_t i = 0; i < tags_.size() && joint != nullptr; ++i) {
-      if (tags_[i].depth != 1 || tags_[i].name != "joint") continue;
-      joint_.emplace(joint->Attribute("name") == nullptr ? "" : joint->Attribute("name"), i);
-      joint = joint->NextSiblingElement("joint");
-    }
-  }
+  XacroJoints(const std::string& text, const std::string& file, const urdf::ModelInterface& model)
+      : text_(text), file_(file), model_(model), tags_(xml_tags(text)) {}
 
-  void set(const std::string& joint, const NewOrigin& origin) {
-    if (!origin.xyz && !origin.rpy) return;
-    const auto found = joint_.find(joint);
-    if (found == joint_.end())
-      throw InputError({file_, 0}, "the text has no joint '" + joint + "' to correct",
-                       "names without malformed entities (&…;) are needed");
-    const std::size_t at = found->second;
-    const auto tag = std::find_if(tags_.begin() + std::ptrdiff_t(at), tags_.end(), [&](const XmlTag& t) {
-      return t.depth == 2 && t.parent == at && t.name == "origin";
-    });
-    if (tag == tags_.end()) insert_origin(tags_[at].end, origin);
-    else change_origin(*tag, origin);
-  }
-
-  std::string text() {
-    std::stable_sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
-    std::string result;
-    std::size_t done = 0;
-    for (const Edit& edit : edits_) {
-      result.append(text_, done, edit.begin - done).append(edit.text);
-      done = edit.end;
-    }
-    return result.append(text_, done);
+  std::size_t tag_of(const std::string& joint) const {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < tags_.size(); ++i)
+      if (is_joint(i) && may_be(name_of(i), joint)) found.push_back(i);
+    if (found.empty()) refuse(joint, "is not in this file");
+    if (found.size() > 1) refuse(joint, "is in this file more than once");
+    for (const auto& [other, any] : model_.joints_)
+      if (other != joint && may_be(name_of(found.front()), other))
+        refuse(joint, "is made by the same lines as '" + other + "'");
+    for (std::size_t i = found.front() + 1; i < tags_.size(); ++i)
+      if (tags_[i].parent == found.front() && tags_[i].name.find(':') != std::string_view::npos)
+        refuse(joint, "has its origin from a macro");
+    return found.front();
   }
 
  private:
-  void insert_origin(std::size_t at, const NewOrigin& origin) {
-    const std::size_t next = std::min(text_.find_first_not_of(" \t\r\n", at), text_.size());
-    edits_.push_back({at, at,
-                      fmt::format("{}<origin xyz=\"{}\" rpy=\"{}\"/>", text_.substr(at, next - at),
-                                  origin.xyz.value_or("0 0 0"), origin.rpy.value_or("0 0 0"))});
+  [[noreturn]] void refuse(const std::string& joint, const std::string& why) const {
+    throw CannotDo(file_ + ": joint '" + joint + "' " + why + "; --urdf writes what xacro made of it");
   }
-
-  void change_origin(const XmlTag& tag, const NewOrigin& origin) {
-    for (const auto& [name, value] : {std::pair("xyz", &origin.xyz), std::pair("rpy", &origin.rpy)}) {
-      if (!*value) continue;
-      if (const XmlAttribute* attribute = tag.find(name)) edits_.push_back({attribute->begin, attribute->end, **value});
-      else edits_.push_back({tag.after_attributes, tag.after_attributes, fmt::format(" {}=\"{}\"", name, **value)});
-    }
+  std::string_view name_of(std::size_t tag) const {
+    const XmlAttribute* name = tags_[tag].find("name");
+    return name == nullptr ? std::string_view() : std::string_view(text_).substr(name->begin, name->end - name->begin);
+  }
+  /// A transmission names joints too, and says nothing of their links.
+  bool is_joint(std::size_t tag) const {
+    if (tags_[tag].name != "joint") return false;
+    return std::any_of(tags_.begin() + std::ptrdiff_t(tag), tags_.end(),
+                       [&](const XmlTag& t) { return t.parent == tag && t.name == "parent"; });
   }
 
   const std::string& text_;
   std::string file_;
+  const urdf::ModelInterface& model_;
   std::vector<XmlTag> tags_;
-  std::map<std::string, std::size_t> joint_;
-  std::vector<Edit> edits_;
 };
 
 /// Joints beside the chain that follow one of its joints: they read it without its new offset.
@@ -119,23 +105,28 @@ const char* reason_of(const std::string& name) {
   return name.ends_with(".gear") ? "a URDF has no gear errors" : "a URDF has no place for it";
 }
 
-}  // namespace
+/// Joints from base to tip that change, with their new origins; what a URDF cannot say.
+struct ChangedJoints {
+  std::vector<std::pair<std::string, NewOrigin>> origins;
+  std::vector<std::string> left_out;
+};
 
-CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
-                             const std::vector<CalibratedValue>& values) {
+ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place, const UrdfDocument& urdf,
+                             VariantSpec::Convention convention, const std::vector<CalibratedValue>& values) {
   const ChainDescription chain = read_urdf_chain(arm, place);
   const ChainCorrection correction = chain_correction(chain, convention, values);
-  const UrdfDocument urdf(arm, place);
-  OriginEditor editor(urdf.text(), arm.urdf.string());
+  ChangedJoints result;
+  const auto change = [&](const urdf::Joint& joint, const Eigen::Isometry3d& X) {
+    const NewOrigin origin = new_origin(isometry(joint.parent_to_joint_origin_transform), X);
+    if (origin.xyz || origin.rpy) result.origins.emplace_back(joint.name, origin);
+  };
   std::size_t next = 0;
   for (const auto& joint : urdf.joints())
-    if (joint->type != urdf::Joint::FIXED)
-      editor.set(joint->name, new_origin(joint->parent_to_joint_origin_transform, correction.joints[next++].X));
+    if (joint->type != urdf::Joint::FIXED) change(*joint, correction.joints[next++].X);
   const auto& last = urdf.joints().back();
   const bool has_tip = last->type == urdf::Joint::FIXED;
-  if (has_tip) editor.set(last->name, new_origin(last->parent_to_joint_origin_transform, correction.tip.X));
+  if (has_tip) change(*last, correction.tip.X);
 
-  CorrectedUrdf result{editor.text(), {}};
   for (const CalibratedValue& v : correction.base.by)
     result.left_out.push_back(left_out_text(v, "where the robot stands is not part of the robot"));
   if (!has_tip)
@@ -145,6 +136,31 @@ CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place,
   if (convention == VariantSpec::Convention::frames)
     for (std::string& note : stray_mimics(urdf, values)) result.left_out.push_back(std::move(note));
   return result;
+}
+
+}  // namespace
+
+CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
+                             const std::vector<CalibratedValue>& values) {
+  const UrdfDocument urdf(arm, place);
+  ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
+  OriginEditor editor(urdf.text(), arm.urdf.string(), joint_tags(urdf.text()));
+  for (const auto& [joint, origin] : changed.origins) editor.set(joint, origin);
+  return {editor.text(), std::move(changed.left_out)};
+}
+
+CorrectedUrdf corrected_xacro(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
+                              const std::vector<CalibratedValue>& values) {
+  if (arm.expanded == nullptr) throw InputError(place, arm.urdf.string() + " is no xacro file", "--urdf corrects it");
+  const UrdfDocument urdf(arm, place);
+  ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
+  const std::string text = read_xml_text(arm.urdf, 20'000'000);
+  const XacroJoints joints(text, arm.urdf.string(), urdf.model());
+  std::map<std::string, std::size_t> tags;
+  for (const auto& [joint, origin] : changed.origins) tags.emplace(joint, joints.tag_of(joint));
+  OriginEditor editor(text, arm.urdf.string(), std::move(tags));
+  for (const auto& [joint, origin] : changed.origins) editor.set(joint, origin);
+  return {editor.text(), std::move(changed.left_out)};
 }
 
 }  // namespace posewright

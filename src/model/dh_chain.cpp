@@ -139,6 +139,13 @@ DhChain::DhChain(DhDescription chain) : chain_(std::move(chain)) {
   for (int i = 0; i < int(parameters_.size()); ++i) geometric_.push_back({i, i < 6 ? 0 : i >= tool_ ? 1 : 2});
 }
 
+HarmonicColumns DhChain::harmonic_columns(std::span<const int> selected, std::span<const double>) const {
+  HarmonicColumns result;
+  result.selected.assign(selected.begin(), selected.end());
+  result.degrees.assign(coordinates_.size(), 1);
+  return result;
+}
+
 struct DhChain::State {
   std::vector<Twist> motions;         ///< of every elementary motion
   std::vector<Twist> along;           ///< of base, named motions, tool, as parameters are counted

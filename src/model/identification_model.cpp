@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/pair_names.hpp"
 
 namespace posewright {
@@ -61,7 +62,23 @@ void IdentificationModel::take_loads_at(std::span<const double> correction) {
   do_take_loads_at(total(correction, sum));
 }
 
-bool IdentificationModel::do_multilinear(std::span<const int>, std::span<const double>) const { return false; }
+std::unique_ptr<HarmonicRows> IdentificationModel::do_harmonic_rows(const Point&, std::span<const int>,
+                                                                    std::string& why_not) const {
+  why_not = "readings that are not of one tip alone";
+  return nullptr;
+}
+
+std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_rows(std::span<const double> q,
+                                                                 std::span<const int> selected,
+                                                                 std::string& why_not) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  return do_harmonic_rows(point(q, shift_), selected, why_not);
+}
+
+bool IdentificationModel::do_enclose(std::span<const TaylorModel>, std::span<const int>, const Eigen::MatrixXd*,
+                                     std::span<const double>, Enclosure&) const {
+  return false;
+}
 
 void IdentificationModel::do_take_loads_at(std::span<const double>) {}
 

@@ -32,6 +32,10 @@ std::string unit_of_ratio(const Coordinate& own, const Coordinate& other) {
   return own.unit == other.unit ? "1" : own.unit + "/" + other.unit;
 }
 
+ColumnFactor::Kind factor_of(bool cosine, bool sine) {
+  return cosine ? ColumnFactor::Kind::cosine : sine ? ColumnFactor::Kind::sine : ColumnFactor::Kind::linear;
+}
+
 }  // namespace
 
 double JointEffects::Effect::value(double q) const {
@@ -165,6 +169,40 @@ double JointEffects::coefficient(const Point& at, std::size_t effect) const {
   return parameters_[i].nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
 }
 
+HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected,
+                                               std::span<const double> correction) const {
+  const int count = int(effects_.size());
+  for (std::size_t e = 0; e < effects_.size(); ++e)
+    if (parameters_[std::size_t(first_) + e].nominal != 0.0 ||
+        (!correction.empty() && correction[std::size_t(first_) + e] != 0.0))
+      return {"an effect of joint " + coordinates_[std::size_t(effects_[e].joint)].name + " that is known", {}, {}, {}};
+  std::vector<int> of_arm;
+  std::vector<ColumnFactor> factors;
+  for (const int index : selected) {
+    const int e = index - first_;
+    if (e >= 0 && e < count) {
+      const Effect& effect = effects_[std::size_t(e)];
+      const int offset = arm_->offset_of(effect.joint);
+      if (offset < 0) return {"effects of joints of a robot without offsets", {}, {}, {}};
+      factors.push_back({int(of_arm.size()), effect.of,
+                         factor_of(effect.kind == Kind::cosine, effect.kind == Kind::sine),
+                         effect.kind == Kind::side ? 0.5 : effect.constant});
+      of_arm.push_back(offset);
+    } else {
+      of_arm.push_back(index < first_ ? index : index - count);
+    }
+  }
+  std::vector<double> rest;
+  HarmonicColumns result = arm_->harmonic_columns(of_arm, without_block(correction, first_, effects_.size(), rest));
+  if (!result.why_not.empty()) return result;
+  // Back to the indices of this robot.
+  for (int& index : result.selected)
+    if (index >= first_) index += count;
+  result.degrees.resize(coordinates_.size(), 0);
+  result.factors.insert(result.factors.end(), factors.begin(), factors.end());
+  return result;
+}
+
 void JointEffects::take_loads_at(std::span<const double> correction) {
   std::vector<double> rest;
   arm_->take_loads_at(without_block(correction, first_, effects_.size(), rest));
@@ -191,7 +229,7 @@ JointEffects::Inside& JointEffects::inside(const Point& at, std::span<const int>
   for (const int index : selected)
     in.selected.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
   in.arm = {in.turned, without_block(at.correction, first_, effects_.size(), in.rest), at.station, at.load_case,
-            at.q.first(own)};
+            at.readings().first(own)};
   return in;
 }
 

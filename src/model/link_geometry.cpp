@@ -12,14 +12,17 @@ namespace {
 
 Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
+enum class ShapesOf { collision, visual };
+
 class LinkCollector {
  public:
-  LinkCollector(UrdfDocument urdf, std::filesystem::path folder, const Eigen::Isometry3d& X_MeasureBase)
-      : urdf_(std::move(urdf)), folder_(std::move(folder)) {
+  LinkCollector(UrdfDocument urdf, std::filesystem::path folder, const Eigen::Isometry3d& X_MeasureBase,
+                ShapesOf wanted = ShapesOf::collision)
+      : urdf_(std::move(urdf)), folder_(std::move(folder)), wanted_(wanted) {
     int frame = 0;
     for (const auto& joint : urdf_.joints())
       if (joint->type != urdf::Joint::FIXED) frame_after_[joint->name] = ++frame;
-    urdf_.lines().check_collision_shapes();
+    if (wanted_ == ShapesOf::collision) urdf_.lines().check_collision_shapes();
     // Above the base everything stands where zero position puts it.
     Eigen::Isometry3d X_RootBase = Eigen::Isometry3d::Identity();
     for (urdf::LinkConstSharedPtr link = urdf_.model().getLink(urdf_.base()); link->parent_joint != nullptr;
@@ -34,9 +37,13 @@ class LinkCollector {
   void collect(const urdf::Link& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent,
                const std::string& follower) {
     LinkGeometry geometry{link.name, parent, frame, {}, urdf_.lines().link(link.name).line, colour_of(link), follower};
-    for (const auto& collision : link.collision_array)
-      if (collision != nullptr && collision->geometry != nullptr)
-        geometry.shapes.push_back({shape_of(*collision->geometry), X_FrameLink * isometry(collision->origin)});
+    const auto add = [&](const auto& elements) {
+      for (const auto& element : elements)
+        if (element != nullptr && element->geometry != nullptr)
+          geometry.shapes.push_back({shape_of(*element->geometry), X_FrameLink * isometry(element->origin)});
+    };
+    if (wanted_ == ShapesOf::collision) add(link.collision_array);
+    else add(link.visual_array);
     const bool seen = !geometry.shapes.empty();
     if (seen) links_.push_back(geometry);
     for (const auto& joint : link.child_joints) {
@@ -80,6 +87,7 @@ class LinkCollector {
 
   UrdfDocument urdf_;
   std::filesystem::path folder_;
+  ShapesOf wanted_;
   std::map<std::string, int> frame_after_;
   std::vector<LinkGeometry> links_;
 };
@@ -88,6 +96,11 @@ class LinkCollector {
 
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place) {
   return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement)).take();
+}
+
+std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place) {
+  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement), ShapesOf::visual)
+      .take();
 }
 
 std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file) {

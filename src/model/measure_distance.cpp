@@ -100,6 +100,16 @@ void DistanceModel::own_column(const Sighting& sighting, int index, Eigen::Ref<E
   }
 }
 
+HarmonicNoise DistanceModel::harmonic_noise() const {
+  HarmonicNoise noise;
+  noise.kind = HarmonicNoise::Kind::distances;
+  noise.along = squared(spec_.sigma, spec_.sigma_per_m, repeats_);
+  // What a reading is too long by is no multiple of a direction.
+  for (std::size_t a = 0; a < spec_.anchors.size(); ++a)
+    noise.excluded.push_back(int(3 * (spec_.targets.size() + spec_.anchors.size()) + a));
+  return noise;
+}
+
 void DistanceModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   covariance.setZero();
   for (int row = 0; row < rows_; ++row)

@@ -33,6 +33,7 @@ class DistanceModel : public MeasurementModel {
   bool sees(const Sighting& sighting) const override;
   std::optional<int> margins() const override { return rows_ * span_margins(spec_); }
   void margins_at(const Sighting& sighting, std::span<double> out) const override;
+  HarmonicNoise harmonic_noise() const override;
 
  private:
   /// From anchor to target, in M.

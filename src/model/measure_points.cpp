@@ -4,6 +4,7 @@
 
 #include "point_noise.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 InstrumentView view_of(const PointsMeasurement& points) {
@@ -37,6 +38,19 @@ PointsModel::PointsModel(const MeasurementSpec& spec)
   for (int i = targets + 6; i < int(parameters_.size()); ++i) preferences_.push_back({i, 0});
 }
 
+std::optional<Eigen::Matrix<double, 6, 6>> PointsModel::tip_covariance() const {
+  const auto* noise = std::get_if<GaussianNoise>(&spec_.noise);
+  if (noise == nullptr || spec_.components.size() != 3 || !places_.empty()) return std::nullopt;
+  const Eigen::Matrix3d& C = noise->covariance;
+  // Points that are as good in all directions turn with the tip.
+  if (C != C(0, 0) * Eigen::Matrix3d::Identity()) return std::nullopt;
+  try {
+    return fitted_pose_covariance(*this, Eigen::Isometry3d::Identity());
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
+}
+
 std::span<const double> PointsModel::station_part(std::span<const double> correction) const {
   return correction.empty() ? correction : correction.subspan(3 * spec_.targets.size());
 }
@@ -56,6 +70,19 @@ void PointsModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) 
     const Eigen::Vector3d p = X_StationMeasure * target(sighting, t);
     for (const int c : spec_.components) y[row++] = p[c];
   }
+}
+
+HarmonicNoise PointsModel::harmonic_noise() const {
+  HarmonicNoise noise;
+  const auto* tracker = std::get_if<TrackerNoise>(&spec_.noise);
+  if (tracker == nullptr) {
+    noise.kind = HarmonicNoise::Kind::constant;
+  } else if (spec_.components.size() == 3) {
+    noise.kind = HarmonicNoise::Kind::beams;
+    noise.along = squared(tracker->range, tracker->range_per_m, repeats_);
+    noise.across = squared(tracker->transverse, tracker->angle, repeats_);
+  }
+  return noise;
 }
 
 void PointsModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

@@ -21,7 +21,8 @@ class PointsModel : public MeasurementModel {
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
   bool motion(const Sighting& sighting, int index, Twist* twist) const override;
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
-  bool linear_with_constant_noise() const override { return std::holds_alternative<GaussianNoise>(spec_.noise); }
+  HarmonicNoise harmonic_noise() const override;
+  std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
   Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 

@@ -65,6 +65,17 @@ void PoseModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd&
   if (turns_ == 3) out.tail<3>() = rotation_vector(rotation_by(change.tail<3>()) * rotation_by(predicted.tail<3>()));
 }
 
+HarmonicNoise PoseModel::harmonic_noise() const {
+  HarmonicNoise noise;
+  noise.kind = HarmonicNoise::Kind::constant;
+  if (points_ == nullptr) return noise;
+  // A pose fitted to points tells what the points tell; a part of it does not.
+  if (rows_ < 6) return {};
+  noise.instead = points_.get();
+  noise.repeats = repeats_;
+  return noise;
+}
+
 void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                                Eigen::Ref<Eigen::MatrixXd> rows) const {
   const Eigen::Vector3d p = sighting.X_MeasureTip.translation();
@@ -75,6 +86,20 @@ void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const 
       rows(row, j) = c < 3 ? twists(c, j) + twists(3 + a, j) * p[b] - twists(3 + b, j) * p[a] : twists(c, j);
     ++row;
   }
+}
+
+std::optional<Eigen::Matrix<double, 6, 6>> PoseModel::tip_covariance() const {
+  if (rows_ != 6) return std::nullopt;
+  std::optional<Eigen::Matrix<double, 6, 6>> C = points_ != nullptr ? points_->tip_covariance() : spec_.covariance;
+  if (!C) return std::nullopt;
+  if (points_ == nullptr) {
+    // Given along the axes of M; the same along those of the tip if no direction is better than another.
+    Eigen::Matrix<double, 6, 1> alike;
+    alike << (*C)(0, 0), (*C)(0, 0), (*C)(0, 0), (*C)(3, 3), (*C)(3, 3), (*C)(3, 3);
+    if (*C != Eigen::Matrix<double, 6, 6>(alike.asDiagonal())) return std::nullopt;
+  }
+  *C /= repeats_;
+  return C;
 }
 
 void PoseModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {

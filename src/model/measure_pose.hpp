@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
@@ -24,7 +25,8 @@ class PoseModel : public MeasurementModel {
   void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
   void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
-  bool linear_with_constant_noise() const override { return points_ == nullptr; }
+  HarmonicNoise harmonic_noise() const override;
+  std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
   Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 

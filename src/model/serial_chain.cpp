@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -102,17 +103,32 @@ bool SerialChain::linearise(const Point& at, std::span<const int> selected, Eige
   return true;
 }
 
-bool SerialChain::multilinear(std::span<const int> selected, std::span<const double> correction) const {
-  for (const int i : selected)
-    if (i < layout_.count && columns_[std::size_t(i)].kind == 7) return false;
+HarmonicColumns SerialChain::harmonic_columns(std::span<const int> selected, std::span<const double> correction) const {
+  HarmonicColumns result;
   for (std::size_t c = 0; c < coordinates_.size(); ++c) {
-    if (coordinates_[c].choice()) continue;
-    const std::vector<int>& joints = joints_of_coordinate_[c];
-    if (joints.size() != 1 || std::abs(chain_.joints[std::size_t(joints.front())].multiplier) != 1.0) return false;
+    int highest = 0;
+    for (const int k : joints_of_coordinate_[c]) {
+      const ChainJoint& joint = chain_.joints[std::size_t(k)];
+      const double ratio = std::abs(joint.multiplier);
+      if (!joint.prismatic && ratio != std::round(ratio))
+        return {"joint " + joint.name + " follows another at a ratio that is no whole number", {}, {}, {}};
+      highest += joint.prismatic ? 1 : int(std::min(ratio, 99.0));
+    }
     const auto gear = std::size_t(layout_.offset[c] + 1);
-    if (gear < correction.size() && correction[gear] != 0.0) return false;
+    if (gear < correction.size() && correction[gear] != 0.0)
+      return {"a gear error of " + coordinates_[c].name + " that is known", {}, {}, {}};
+    result.degrees.push_back(highest);
   }
-  return true;
+  for (const int i : selected) {
+    const bool of_gear = i < layout_.count && columns_[std::size_t(i)].kind == 7;
+    if (of_gear)
+      result.factors.push_back({int(result.selected.size()),
+                                chain_.joints[std::size_t(columns_[std::size_t(i)].joint)].coordinate,
+                                ColumnFactor::Kind::linear, 0.0});
+    // The offset stands before the gear.
+    result.selected.push_back(of_gear ? i - 1 : i);
+  }
+  return result;
 }
 
 void SerialChain::linearise_deflected(std::span<const double> q, std::span<const double> deflection,

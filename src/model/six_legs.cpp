@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "displacement.hpp"
@@ -19,6 +21,10 @@ constexpr double default_deformation_tolerance = 0.01;  // m of platform per m o
 // enough.
 constexpr int most_iterations = 200;
 
+// A deformation is enclosed where its rows' absolute sums are below this, in so many steps at most.
+constexpr double most_contraction = 0.5;
+constexpr int tube_iterations = 30;
+
 // Parameters of the deformation: kappa, kappa_1 … kappa_6, K_11 … K_66.
 constexpr int first_of_matrix = 1 + leg_count;
 
@@ -28,6 +34,8 @@ enum Entry { ax, ay, az, bx, by, bz, ux, uy, length };
 constexpr std::array<Entry, 9> slide_entries = {ax, ay, az, bx, by, bz, ux, uy, length};
 constexpr std::array<Entry, 7> extend_entries = {ax, ay, az, bx, by, bz, length};
 constexpr std::array<const char*, 9> entry_names = {"ax", "ay", "az", "bx", "by", "bz", "ux", "uy", "l"};
+
+double farthest(const TaylorModel& f) { return std::max(std::abs(f.lower()), std::abs(f.upper())); }
 
 /// One leg with its corrections applied.
 struct PlacedLeg {
@@ -59,9 +67,10 @@ struct Deformation {
     for (int i = 0; i < leg_count; ++i) K[std::size_t(7 * i)] += correction[0] + correction[std::size_t(1 + i)];
     none = std::all_of(correction.begin(), correction.end(), [](double x) { return x == 0; });
   }
-  double lift(int leg, std::span<const double> rho, const std::array<double, 6>& reference) const {
-    double sum = 0;
-    for (std::size_t j = 0; j < leg_count; ++j) sum += K[std::size_t(6 * leg) + j] * (rho[j] - reference[j]);
+  template <class S>
+  S lift(int leg, std::span<const S> rho, const std::array<double, 6>& reference) const {
+    S sum(0);
+    for (std::size_t j = 0; j < leg_count; ++j) sum += S(K[std::size_t(6 * leg) + j]) * (rho[j] - S(reference[j]));
     return sum;
   }
 };
@@ -73,15 +82,46 @@ int lifting_actuator(int index, int leg) {
   return (index - first_of_matrix) / leg_count == leg ? (index - first_of_matrix) % leg_count : -1;
 }
 
-/// Slide that gives the leg its length: ‖q − ρu‖ = l, q = p + R b − a.
+template <class S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+
+/// Slide that gives the leg its length: ‖q − ρu‖ = l, q = p + R b − a. It is `along` less the root of `under_root`.
+template <class S>
+struct Slide {
+  S along, under_root;
+
+  Slide(const PlacedLeg& leg, const Vector3<S>& joint) {
+    const Vector3<S> q = joint - leg.a.cast<S>();
+    along = leg.u.cast<S>().dot(q);
+    under_root = along * along - (q.dot(q) - S(leg.l * leg.l));
+  }
+};
+
 bool slide_of(const PlacedLeg& leg, const Eigen::Vector3d& joint, double& rho) {
-  const Eigen::Vector3d q = joint - leg.a;
-  const double along = leg.u.dot(q);
-  const double under_root = along * along - (q.squaredNorm() - leg.l * leg.l);
-  if (!(under_root > 0)) return false;
-  rho = along - std::sqrt(under_root);
+  const Slide<double> slide(leg, joint);
+  if (!(slide.under_root > 0)) return false;
+  rho = slide.along - std::sqrt(slide.under_root);
   return true;
 }
+
+/// A leg that slides by ρ or is longer by it, its upper joint lifted.
+template <class S>
+struct LegAt {
+  Vector3<S> joint, e, e_platform;  ///< base frame; along the leg; the same in the platform's axes
+  S value;                          ///< of the loop equation
+
+  LegAt(const PlacedLeg& leg, const Frame<S>& platform, const S& lift, const S& slide, const S& extension) {
+    using std::sqrt;
+    Vector3<S> b = leg.b.cast<S>();
+    b.z() += lift;
+    joint = platform.p + platform.R * b;
+    const Vector3<S> h = joint - leg.a.cast<S>() - leg.u.cast<S>() * slide;
+    const S length = sqrt(h.dot(h));
+    for (Eigen::Index k = 0; k < 3; ++k) e[k] = h[k] / length;
+    e_platform = platform.R.transpose() * e;
+    value = S(leg.l) + extension - length;
+  }
+};
 
 std::span<const Entry> entries_of(LegActuation actuation) {
   if (actuation == LegActuation::slide) return slide_entries;
@@ -182,7 +222,7 @@ bool SixLegs::do_inverse_kinematics(std::span<const double> q, std::span<const d
     }
     if (deformation.none || std::equal(rho.begin(), rho.end(), before.begin())) return true;
     std::copy(rho.begin(), rho.end(), before.begin());
-    for (int i = 0; i < leg_count; ++i) lift[std::size_t(i)] = deformation.lift(i, rho, reference_rho_);
+    for (int i = 0; i < leg_count; ++i) lift[std::size_t(i)] = deformation.lift<double>(i, rho, reference_rho_);
   }
   return true;  // alternates between neighbouring doubles
 }
@@ -206,40 +246,43 @@ std::vector<Polyline> SixLegs::do_skeleton(std::span<const double> q, std::span<
   return lines;
 }
 
-void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                       std::span<const int> selected, Loops& out) const {
-  const Eigen::Isometry3d X = platform_pose(q);
+template <class S>
+void SixLegs::loops_at(const Frame<S>& platform, std::span<const S> rho, std::span<const double> own,
+                       std::span<const int> selected, LoopsOf<S>& out) const {
   const auto entries = entries_of(spec_.actuation);
   const bool slides = spec_.actuation == LegActuation::slide;
   const int first_deformation = leg_count * per_leg_;
   const Deformation deformation(slides && !own.empty() ? own.subspan(std::size_t(first_deformation)) : own.first(0));
   for (int i = 0; i < leg_count; ++i) {
-    const double slide = slides ? rho[std::size_t(i)] : 0.0, extension = slides ? 0.0 : rho[std::size_t(i)];
+    const S slide = slides ? rho[std::size_t(i)] : S(0), extension = slides ? S(0) : rho[std::size_t(i)];
     const PlacedLeg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
-    const double lift = deformation.none ? 0.0 : deformation.lift(i, rho, reference_rho_);
-    const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift * Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d h = joint - leg.a - slide * leg.u, e = h.normalized();
-    const Eigen::Vector3d e_platform = X.linear().transpose() * e;
-    out.value[i] = leg.l + extension - h.norm();
-    const auto column_entry = [&](Entry entry) {
-      if (entry <= az) return e[entry];
-      if (entry <= bz) return -e_platform[entry - bx];
-      if (entry <= uy) return slide * (e[entry - ux] - e.z() * leg.u[entry - ux] / leg.u.z());
-      return 1.0;
+    const LegAt<S> at(leg, platform, deformation.none ? S(0) : deformation.lift<S>(i, rho, reference_rho_), slide,
+                      extension);
+    out.value[i] = at.value;
+    const auto column_entry = [&](Entry entry) -> S {
+      if (entry <= az) return at.e[entry];
+      if (entry <= bz) return -at.e_platform[entry - bx];
+      if (entry <= uy) return slide * (at.e[entry - ux] - at.e.z() * S(leg.u[entry - ux] / leg.u.z()));
+      return S(1);
     };
     for (std::size_t c = 0; c < selected.size(); ++c) {
       const int j = selected[c];
-      double& value = out.parameter(i, Eigen::Index(c));
+      S& value = out.parameter(i, Eigen::Index(c));
       if (j < 0) continue;
-      if (j < first_deformation) value = j / per_leg_ == i ? column_entry(entries[std::size_t(j % per_leg_)]) : 0.0;
+      if (j < first_deformation) value = j / per_leg_ == i ? column_entry(entries[std::size_t(j % per_leg_)]) : S(0);
       else if (const int by = lifting_actuator(j - first_deformation, i); by >= 0)
-        value = -e_platform.z() * (rho[std::size_t(by)] - reference_rho_[std::size_t(by)]);
+        value = -at.e_platform.z() * (rho[std::size_t(by)] - S(reference_rho_[std::size_t(by)]));
     }
     // A twist (v, ω) moves the platform joint by v + ω × joint.
-    out.platform.row(i) << -e.transpose(), -joint.cross(e).transpose();
-    out.actuator(i, i) = slides ? leg.u.dot(e) : 1.0;
+    const Vector3<S> moment = at.joint.cross(at.e);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      out.platform(i, k) = -at.e[k];
+      out.platform(i, 3 + k) = -moment[k];
+    }
+    out.actuator(i, i) = slides ? leg.u.cast<S>().dot(at.e) : S(1);
     if (deformation.none) continue;
-    for (int j = 0; j < leg_count; ++j) out.actuator(i, j) -= deformation.K[std::size_t(6 * i + j)] * e_platform.z();
+    for (int j = 0; j < leg_count; ++j)
+      out.actuator(i, j) -= S(deformation.K[std::size_t(6 * i + j)]) * at.e_platform.z();
   }
 }
 
@@ -255,7 +298,7 @@ bool SixLegs::do_loops_change(std::span<const double> q, std::span<const double>
   for (int i = 0; i < leg_count; ++i) {
     const double slide = slides ? rho[std::size_t(i)] : 0.0;
     const PlacedLeg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
-    const double lift = deformation.none ? 0.0 : deformation.lift(i, rho, reference_rho_);
+    const double lift = deformation.none ? 0.0 : deformation.lift<double>(i, rho, reference_rho_);
     const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift * Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d h = joint - leg.a - slide * leg.u;
     const double length_now = h.norm();
@@ -297,6 +340,99 @@ bool SixLegs::do_loops_change(std::span<const double> q, std::span<const double>
     by_platform.head<3>() += by_joint;
     by_platform.tail<3>() += joint.cross(by_joint) + in_base.cross(e);
   }
+  return true;
+}
+
+void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                       std::span<const int> selected, Loops& out) const {
+  loops_at<double>(frame_of(platform_pose(q)), rho, own, selected, out);
+}
+
+/// Slides of all legs where the platform is not lifted by what they were before; `allowed` as Enclosed has it.
+std::vector<TaylorModel> SixLegs::enclosed_actuators(const Frame<TaylorModel>& platform, std::span<const double> own,
+                                                     std::span<const TaylorModel> lifts,
+                                                     std::vector<TaylorModel>& allowed) const {
+  std::vector<TaylorModel> rho;
+  for (int i = 0; i < leg_count; ++i) {
+    const auto k = std::size_t(i);
+    const PlacedLeg leg(spec_.legs[k], entries_of(spec_.actuation), leg_part(own, i, per_leg_));
+    Vector3<TaylorModel> b = leg.b.cast<TaylorModel>();
+    if (!lifts.empty()) b.z() += lifts[k];
+    const Vector3<TaylorModel> joint = platform.p + platform.R * b;
+    if (spec_.actuation == LegActuation::extend) {
+      const Vector3<TaylorModel> h = joint - leg.a.cast<TaylorModel>();
+      rho.push_back(sqrt(h.dot(h)) - TaylorModel(leg.l));
+      continue;
+    }
+    const Slide<TaylorModel> slide(leg, joint);
+    rho.push_back(slide.along - sqrt(slide.under_root));
+    allowed.push_back(slide.under_root);
+  }
+  return rho;
+}
+
+/// ρ = slides(lift(ρ)): a tube that this map takes into itself has a solution at every pose of the box (Brouwer), and
+/// where the deformation shrinks distances there is no other.
+bool SixLegs::enclose_lifted(const Frame<TaylorModel>& platform, std::span<const double> own, Enclosed& out) const {
+  const Deformation deformation(own.subspan(std::size_t(leg_count * per_leg_)));
+  for (int i = 0; i < leg_count; ++i) {
+    double sum = 0;
+    for (int j = 0; j < leg_count; ++j) sum += std::abs(deformation.K[std::size_t(6 * i + j)]);
+    if (!(sum < most_contraction)) return false;
+  }
+  const auto next = [&](const std::vector<TaylorModel>& rho) {
+    std::vector<TaylorModel> lifts;
+    for (int i = 0; i < leg_count; ++i) lifts.push_back(deformation.lift<TaylorModel>(i, rho, reference_rho_));
+    out.allowed.clear();
+    return enclosed_actuators(platform, own, lifts, out.allowed);
+  };
+  std::vector<TaylorModel> rho = enclosed_actuators(platform, own, {}, out.allowed);
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < tube_iterations; ++iteration) {
+    for (TaylorModel& r : rho) r = r.with_radius(0.0);
+    // Twice what the last step still moved is more than all that follow.
+    std::vector<TaylorModel> moved = next(rho), tube;
+    std::vector<double> radii;
+    double change = 0;
+    for (std::size_t i = 0; i < rho.size(); ++i) change = std::max(change, farthest(moved[i] - rho[i]));
+    for (const TaylorModel& m : moved) {
+      tube.push_back(m.widened(2 * change));
+      radii.push_back(tube.back().radius());
+    }
+    out.actuators = next(tube);
+    bool inside = true;
+    for (std::size_t i = 0; i < rho.size(); ++i) {
+      // The farthest of the image from the middle of the tube.
+      const double away = farthest(out.actuators[i] - moved[i].with_radius(0.0));
+      inside = inside && away <= radii[i];
+    }
+    // Narrower than what it encloses no tube gets.
+    if (inside && change > 0.5 * before) return true;
+    before = change;
+    rho = std::move(moved);
+  }
+  return false;
+}
+
+bool SixLegs::do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
+                         Enclosed& out) const {
+  out.X_BasePlatform = {};
+  Frame<TaylorModel>& platform = out.X_BasePlatform;
+  platform.p = X_BaseReference_.translation().cast<TaylorModel>() + Vector3<TaylorModel>(q[0], q[1], q[2]);
+  platform.then_rotate(Eigen::Vector3d::UnitZ(), q[5]);
+  platform.then_rotate(Eigen::Vector3d::UnitY(), q[4]);
+  platform.then_rotate(Eigen::Vector3d::UnitX(), q[3]);
+  platform.R = (platform.R * X_BaseReference_.linear().cast<TaylorModel>()).eval();
+  out.allowed.clear();
+  const bool lifted = spec_.actuation == LegActuation::slide && !own.empty() &&
+                      !Deformation(own.subspan(std::size_t(leg_count * per_leg_))).none;
+  if (!lifted) out.actuators = enclosed_actuators(platform, own, {}, out.allowed);
+  else if (!enclose_lifted(platform, own, out)) return false;
+  for (std::size_t i = 0; i < out.actuators.size(); ++i) {
+    out.allowed.push_back(out.actuators[i] - TaylorModel(actuators_[i].lower));
+    out.allowed.push_back(TaylorModel(actuators_[i].upper) - out.actuators[i]);
+  }
+  loops_at<TaylorModel>(platform, out.actuators, own, selected, out.loops);
   return true;
 }
 

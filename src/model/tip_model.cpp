@@ -48,7 +48,16 @@ bool TipModel::pull_back(const Point& at, std::span<const int> selected, const T
   return true;
 }
 
-bool TipModel::multilinear(std::span<const int>, std::span<const double>) const { return false; }
+HarmonicColumns TipModel::harmonic_columns(std::span<const int>, std::span<const double>) const {
+  return {"columns of this robot that are no polynomials of the joints' cosines and sines", {}, {}, {}};
+}
+
+int TipModel::offset_of(int) const { return -1; }
+
+bool TipModel::enclose_residual(std::span<const TaylorModel>, std::span<const double>, std::span<const int>,
+                                EnclosedResidual&) const {
+  return false;
+}
 
 void TipModel::take_loads_at(std::span<const double>) {}
 

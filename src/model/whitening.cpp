@@ -73,7 +73,7 @@ bool whitened_block(const IdentificationModel& model, std::span<const double> q,
   return true;
 }
 
-/// Theory.md eq. (47). With J = Uᵀ G, U Uᵀ = Σ⁻¹ on the rows' span: ∂f/∂G = U ∂f/∂J, ∂f/∂Σ = −½ U (∂f/∂J Jᵀ) Uᵀ; the
+/// Theory.md eq. (48). With J = Uᵀ G, U Uᵀ = Σ⁻¹ on the rows' span: ∂f/∂G = U ∂f/∂J, ∂f/∂Σ = −½ U (∂f/∂J Jᵀ) Uᵀ; the
 /// product is symmetric, for f does not change if the rows of J are turned.
 bool whitened_gradient(const IdentificationModel& model, std::span<const double> q, std::span<const int> selected,
                        const BlockArray::RowMatrix& block, const BlockArray::RowMatrix& slope, Linearisation& scratch,

@@ -40,7 +40,11 @@ Json certificate_json(const Plan& plan) {
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
                  {"method", c.workspace->method},
                  {"proved", c.workspace->proved},
-                 {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)}};
+                 {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)},
+                 {"boxes", c.workspace->boxes},
+                 {"loose_proof", c.workspace->loose_bound ? Json{{"efficiency", c.workspace->loose_efficiency},
+                                                                 {"bound", *c.workspace->loose_bound}}
+                                                          : Json(nullptr)}};
   return {{"candidates", candidates}, {"workspace", workspace}};
 }
 
@@ -108,7 +112,10 @@ nlohmann::ordered_json actuators_json(const PlannedPose& pose) {
 
 nlohmann::ordered_json nearest_json(const std::optional<BodyDistance>& nearest) {
   if (!nearest) return nullptr;
-  return {{"distance", nearest->distance}, {"between", {nearest->first, nearest->second}}};
+  Json json = {{"distance", nearest->distance}, {"between", {nearest->first, nearest->second}}};
+  if (nearest->points)
+    for (const Eigen::Vector3d& p : *nearest->points) json["points"].push_back({p.x(), p.y(), p.z()});
+  return json;
 }
 
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
@@ -152,6 +159,7 @@ Json pose_json(const PlannedPose& pose) {
     json["listed"] = {{"id", pose.listed->id},
                       {"line", pose.listed->line > 0 ? Json(pose.listed->line) : Json(nullptr)}};
   if (pose.measured) json["measured"] = true;
+  if (pose.fixed) json["fixed"] = true;
   if (!pose.configuration.empty()) {
     Json values = Json::array(), names = Json::array(), units = Json::array();
     for (const NamedValue& v : pose.configuration) {

@@ -13,6 +13,10 @@
 namespace posewright {
 namespace {
 
+long fixed_poses(const Plan& plan) {
+  return std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.fixed; });
+}
+
 std::string headline(const Plan& plan) {
   const auto kept = std::count_if(plan.parameters.begin(), plan.parameters.end(),
                                   [](const PlannedParameter& p) { return p.sigma.has_value(); });
@@ -21,6 +25,7 @@ std::string headline(const Plan& plan) {
   });
   const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
   std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
+  if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(" ({} fixed)", fixed);
   if (measured > 0) text += fmt::format(" beside {} that are measured already,", measured);
   if (!plan.variant.empty())
     text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);
@@ -35,6 +40,17 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
+std::string workspace_text(const Certificate::Workspace& w) {
+  if (w.proved)
+    return fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
+                       proved_percent(w.efficiency));
+  const std::string why = w.loose_bound
+                              ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)
+                              : "no proof: " + w.why_not;
+  return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
+                     searched_percent(w.efficiency), why);
+}
+
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved)
@@ -47,22 +63,16 @@ std::string certificate_text(const Plan& plan) {
                              : c.repeats == "allow" ? ", repeats allowed"
                                                     : fmt::format(", each at most {} times", c.repeats);
   const std::string found = c.found > 0 ? fmt::format(" ({} found beyond those drawn)", c.found) : "";
-  std::string text = fmt::format("At least {} {} any plan of {} of these {} candidates{}{}.\n", percent(c.efficiency),
-                                 as, poses, c.count, found, policy);
+  const long fixed = fixed_poses(plan);
+  const std::string with_fixed = fixed > 0 ? fmt::format(" that has the {} fixed, all others", fixed) : "";
+  std::string text = fmt::format("At least {} {} any plan of {}{} of these {} candidates{}{}.\n", percent(c.efficiency),
+                                 as, poses, with_fixed, c.count, found, policy);
   if (plan.proved_optimal)
-    text += fmt::format("No plan of these candidates{} {}.\n",
+    text += fmt::format("No plan of these candidates{}{} {}.\n", fixed > 0 ? " and the fixed poses" : "",
                         plan.minimum_distance.empty() ? "" : " that keeps its poses apart",
                         plan.reserve ? "keeps more when its worst pose is lost: all others are ruled out"
                                      : "is better: every other one is ruled out");
-  if (c.workspace)
-    text +=
-        c.workspace->proved
-            ? fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
-                          proved_percent(c.workspace->efficiency))
-            : fmt::format(
-                  "Over the whole workspace: {} of the best (by a search for the largest sensitivity, no proof: {}).\n",
-                  searched_percent(c.workspace->efficiency), c.workspace->why_not);
-  return text;
+  return c.workspace ? text + workspace_text(*c.workspace) : text;
 }
 
 std::string variants_text(const Plan& plan) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "nearest.hpp"
 #include "posewright/outputs/route.hpp"
@@ -89,7 +90,7 @@ std::string steps_table(const Route& route) {
         pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())};
     if (conditions) row.push_back(conditions_text(pose.conditions));
     table.row(std::move(row));
-    elapsed += route.settle;
+    elapsed += route.settle + (route.reading.empty() ? 0.0 : route.reading[k]);
   }
   return table.text();
 }
@@ -125,6 +126,8 @@ double Route::change_seconds() const {
   return sum;
 }
 
+double Route::reading_seconds() const { return std::accumulate(reading.begin(), reading.end(), 0.0); }
+
 std::string route_json(const Route& route, const std::vector<WrittenWith>& files) {
   Json json = {{"schema", "posewright/route/1"},
                {"version", version},
@@ -142,7 +145,8 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
   for (const PlannedPose& pose : route.poses) json["order"].push_back(pose.id);
   json["seconds"] = {{"travel", route.travel_seconds()},
                      {"changes", route.change_seconds()},
-                     {"settle", route.settle * double(route.poses.size())},
+                     {"settle", route.settle_seconds()},
+                     {"reading", route.reading_seconds()},
                      {"planned_order_at_least", route.planned_seconds},
                      {"optimal", route.optimal}};
   json["poses"] = Json::array();
@@ -167,9 +171,13 @@ std::string route_summary(const Route& route) {
   const double total = route.travel_seconds() + route.change_seconds();
   text += fmt::format("{} poses in {} of motion", route.poses.size(), seconds_text(route.travel_seconds()));
   if (route.change_seconds() > 0) text += fmt::format(" and {} of changes", seconds_text(route.change_seconds()));
-  if (route.settle > 0) text += fmt::format(", {} at rest", seconds_text(route.settle * double(route.poses.size())));
+  if (route.settle > 0) text += fmt::format(", {} at rest", seconds_text(route.settle_seconds()));
+  if (route.reading_seconds() > 0) text += fmt::format(", {} of readings", seconds_text(route.reading_seconds()));
   text += route.from_home ? ", from home" : "";
   text += route.closed ? ", and back to the start.\n" : ".\n";
+  if (const double still = route.settle_seconds() + route.reading_seconds(); still > 0)
+    text += fmt::format("The whole job takes {}{}.\n", seconds_text(total + still),
+                        route.reading_seconds() > 0 ? "" : ", readings not counted (motion: reading)");
   if (route.planned_seconds > 0)
     text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
                         seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),

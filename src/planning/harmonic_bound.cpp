@@ -1,335 +1,403 @@
 #include "posewright/planning/harmonic_bound.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <queue>
+#include <map>
 
-#include "posewright/support/parallel.hpp"
+#include "box_tensor.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/random.hpp"
 
 namespace posewright {
 namespace {
 
-using Matrix = Eigen::Matrix<double, 5, 5, Eigen::RowMajor>;
+// Tensors of more coefficients leave out the products with a distance: a box would take too long.
+constexpr std::size_t most_with_products = 400'000;
+// A function and its polynomial may differ by this share of its size, at so many random places; and as many times the
+// largest difference found is added to it. Values were interpolated as they are computed: what rounding makes of them
+// is far below.
+constexpr double same_function = 1e-7, difference_factor = 100.0, own_rounding = 1e-10;
+constexpr int places_compared = 100;
+// A box is halved along the axis that moves an instrument's distance where the line above a factor is higher by this.
+constexpr double loose_factor = 0.04;
+// How near an instrument may come is worth so much work.
+constexpr long boxes_for_a_distance = 20'000;
+constexpr std::uint64_t compared_stream = 0x9f00f;
 
-// Widest box to begin with: u = tan(w/4) stays well below 1, where the weights' coefficients would vanish.
-constexpr double widest = 2 * std::numbers::pi / 3;
-// Boxes of one round; more threads than this would have nothing to do.
-constexpr std::size_t boxes_a_round = 16;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-double binomial(int n, int k) {
-  double result = 1;
-  for (int i = 0; i < k; ++i) result = result * (n - i) / (i + 1);
-  return result;
+std::vector<int> sum_of(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> sum(a);
+  for (std::size_t i = 0; i < b.size(); ++i) sum[i] += b[i];
+  return sum;
 }
 
-double basis(bool turns, int k, double x) {
-  if (!turns) return k == 0 ? 1 : k == 1 ? x : x * x;
-  switch (k) {
-    case 0:
-      return 1;
-    case 1:
-      return std::cos(x);
-    case 2:
-      return std::sin(x);
-    case 3:
-      return std::cos(2 * x);
-    default:
-      return std::sin(2 * x);
+std::vector<int> larger_of(std::vector<int> a, const std::vector<int>& b) {
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] = std::max(a[i], b[i]);
+  return a;
+}
+
+bool fits(const std::vector<int>& degrees, const std::vector<int>& room) {
+  for (std::size_t i = 0; i < degrees.size(); ++i)
+    if (degrees[i] > room[i]) return false;
+  return true;
+}
+
+/// Degrees of ‖B_k T‖², and with the distance.
+std::vector<int> squared(const HarmonicForm& form, std::size_t part) {
+  return sum_of(form.degrees()[part], form.degrees()[part]);
+}
+std::vector<int> with_distance(const HarmonicForm& form, std::size_t part) {
+  const int distance = form.parts()[part].distance;
+  const std::vector<int> square = squared(form, part);
+  return distance < 0 ? square : sum_of(square, form.distance_degrees()[std::size_t(distance)]);
+}
+
+/// Degrees of all tensors: with every product if they are not too large.
+std::vector<int> common_degrees(const HarmonicForm& form) {
+  std::vector<int> plain(form.axes().size(), 0), all = plain;
+  for (std::size_t k = 0; k < form.parts().size(); ++k) {
+    plain = larger_of(plain, squared(form, k));
+    all = larger_of(all, with_distance(form, k));
   }
+  return harmonic_size(form.axes(), all) <= most_with_products ? all : plain;
 }
 
-/// Coefficients in powers of v on [0, 1] to Bernstein coefficients of the same degree.
-Matrix bernstein(int degree) {
-  Matrix B = Matrix::Zero();
-  for (int i = 0; i <= degree; ++i)
-    for (int k = 0; k <= i; ++k) B(i, k) = binomial(i, k) / binomial(degree, k);
-  return B;
+double largest_size(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double v : values) largest = std::max(largest, std::abs(v));
+  return largest;
 }
 
-/// Powers of x = shift + scale v as powers of v.
-Matrix substituted(int degree, double shift, double scale) {
-  Matrix S = Matrix::Zero();
-  for (int p = 0; p <= degree; ++p)
-    for (int k = 0; k <= p; ++k) S(k, p) = binomial(p, k) * std::pow(scale, k) * std::pow(shift, p - k);
-  return S;
+void add_to(std::vector<double>& sum, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
 }
 
-/// From (1, cos q, …, sin 2q) to Bernstein coefficients of f (1 + u²)² on [lower, upper].
-Matrix of_angle(double lower, double upper) {
-  const double c = 0.5 * (lower + upper), t = std::tan(0.25 * (upper - lower));
-  Matrix R = Matrix::Zero();  // about c
-  R(0, 0) = 1;
-  for (int n = 1; n <= 2; ++n) {
-    const int k = 2 * n - 1;
-    R(k, k) = R(k + 1, k + 1) = std::cos(n * c);
-    R(k, k + 1) = std::sin(n * c);
-    R(k + 1, k) = -std::sin(n * c);
-  }
-  Matrix W = Matrix::Zero();  // powers of u by 1, cos, sin, cos 2, sin 2, times (1 + u²)²
-  W(0, 0) = 1, W(2, 0) = 2, W(4, 0) = 1;
-  W(0, 1) = 1, W(4, 1) = -1;
-  W(1, 2) = 2, W(3, 2) = 2;
-  W(0, 3) = 1, W(2, 3) = -6, W(4, 3) = 1;
-  W(1, 4) = 4, W(3, 4) = -4;
-  return bernstein(4) * substituted(4, -t, 2 * t) * W * R;
+/// What the function is nowhere below, to a percent of its range or so.
+double smallest_value(const HarmonicFunction& function, int threads) {
+  BoxSearchOptions options;
+  options.tolerance = 1e-2;
+  options.most_boxes = boxes_for_a_distance;
+  options.threads = threads;
+  return -largest_value(function.negated(), options, Monitor{}).bound;
 }
 
-Matrix of_axis(const HarmonicAxis& axis, double lower, double upper) {
-  return axis.turns ? of_angle(lower, upper) : Matrix(bernstein(2) * substituted(2, lower, upper - lower));
-}
-
-/// Bernstein coefficients of the weight (1 + u²)² alone.
-Eigen::Matrix<double, 5, 1> weight_of(const HarmonicAxis& axis, const Matrix& M) {
-  if (axis.turns) return M.col(0);
-  return Eigen::Matrix<double, 5, 1>::Ones();
-}
-
-/// out = M along one axis of a row-major tensor.
-void apply(const std::vector<double>& in, std::vector<double>& out, const Matrix& M, int terms, std::size_t stride) {
-  const std::size_t outer = in.size() / (std::size_t(terms) * stride);
-  for (std::size_t o = 0; o < outer; ++o) {
-    const double* from = in.data() + o * std::size_t(terms) * stride;
-    double* to = out.data() + o * std::size_t(terms) * stride;
-    for (int i = 0; i < terms; ++i) {
-      double* row = to + std::size_t(i) * stride;
-      for (std::size_t x = 0; x < stride; ++x) row[x] = M(i, 0) * from[x];
-      for (int k = 1; k < terms; ++k) {
-        const double m = M(i, k);
-        if (m == 0) continue;
-        const double* other = from + std::size_t(k) * stride;
-        for (std::size_t x = 0; x < stride; ++x) row[x] += m * other[x];
-      }
-    }
-  }
-}
-
-std::vector<std::size_t> strides_of(const std::vector<HarmonicAxis>& axes) {
-  std::vector<std::size_t> strides(axes.size(), 1);
-  for (std::size_t a = axes.size(); a-- > 1;)
-    strides[a - 1] = strides[a] * std::size_t(HarmonicFunction::terms(axes[a]));
-  return strides;
-}
-
-std::size_t size_of(const std::vector<HarmonicAxis>& axes) {
-  std::size_t size = 1;
-  for (const HarmonicAxis& axis : axes) size *= std::size_t(HarmonicFunction::terms(axis));
-  return size;
-}
-
-/// Where the function is interpolated along an axis.
-double node(const HarmonicAxis& axis, int k) {
-  return axis.turns ? axis.lower + 2 * std::numbers::pi * k / 5 : axis.lower + (axis.upper - axis.lower) * k / 2;
-}
-
-struct Box {
-  std::vector<double> lower, upper;
-  double bound = std::numeric_limits<double>::infinity();
-  int longest = 0;  ///< axis along which the coefficients vary most
-  bool operator<(const Box& other) const { return bound < other.bound; }
-};
-
-/// What one box tells.
-class BoxBound {
+/// ‖B_k T‖² of all parts at values of the axes.
+class PartSquares {
  public:
-  explicit BoxBound(const HarmonicFunction& function)
-      : function_(function),
-        strides_(strides_of(function.axes())),
-        now_(function.coefficients().size()),
-        next_(now_.size()),
-        weight_(now_.size()) {
-    for (const double c : function.coefficients()) most_ = std::max(most_, std::abs(c));
-  }
-
-  /// Fills the box's bound; values at its corners that exceed `largest` take its place.
-  void judge(Box& box, double& largest, std::vector<double>& where) {
-    const auto& axes = function_.axes();
-    now_ = function_.coefficients();
-    weight_.assign(1, 1.0);
-    double growth = 1;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      const Matrix M = of_axis(axes[a], box.lower[a], box.upper[a]);
-      const int terms = HarmonicFunction::terms(axes[a]);
-      apply(now_, next_, M, terms, strides_[a]);
-      now_.swap(next_);
-      growth *= M.topLeftCorner(terms, terms).cwiseAbs().rowwise().sum().maxCoeff();
-      const auto w = weight_of(axes[a], M);
-      next_weight_.clear();
-      for (const double before : weight_)
-        for (int k = 0; k < terms; ++k) next_weight_.push_back(before * w[k]);
-      weight_.swap(next_weight_);
+  PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T) : form_(form), T_(T), evaluator_(form.evaluator()) {}
+  HarmonicForm::Evaluator& evaluator() { return *evaluator_; }
+  void operator()(std::span<const double> values, std::span<double> squares) {
+    if (!evaluator_->rows(values, B_)) {
+      std::fill(squares.begin(), squares.end(), std::numeric_limits<double>::quiet_NaN());
+      return;
     }
-    // Every coefficient is a sum of products: its rounding is that of all terms' sizes, a dozen operations an axis.
-    const double rounding = 16.0 * double(axes.size()) * epsilon * growth * most_;
-    box.bound = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < now_.size(); ++i) {
-      const double w = weight_[i] * (1 - 1e-12);
-      const double quotient = (now_[i] + rounding) / (now_[i] + rounding > 0 ? w : weight_[i] * (1 + 1e-12));
-      box.bound = std::max(box.bound, quotient);
+    turned_.noalias() = B_ * T_;
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < form_.parts().size(); ++k) {
+      const Eigen::Index rows = form_.parts()[k].rows;
+      squares[k] = turned_.middleRows(first, rows).squaredNorm();
+      first += rows;
     }
-    for (std::size_t i = 0; i < now_.size(); ++i) now_[i] /= weight_[i];
-    corners(box, largest, where);
-    box.longest = most_varied(axes);
   }
 
  private:
-  void corners(const Box& box, double& largest, std::vector<double>& where) const {
-    const auto& axes = function_.axes();
-    for (std::size_t corner = 0; corner < (std::size_t(1) << axes.size()); ++corner) {
-      std::size_t at = 0;
-      for (std::size_t a = 0; a < axes.size(); ++a)
-        if ((corner >> a & 1) != 0) at += std::size_t(HarmonicFunction::terms(axes[a]) - 1) * strides_[a];
-      const double value = now_[at];
-      if (!(value > largest)) continue;
-      largest = value;
-      where.resize(axes.size());
-      for (std::size_t a = 0; a < axes.size(); ++a) where[a] = (corner >> a & 1) != 0 ? box.upper[a] : box.lower[a];
-    }
-  }
-
-  int most_varied(const std::vector<HarmonicAxis>& axes) const {
-    int most = 0;
-    double largest = -1;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      const int terms = HarmonicFunction::terms(axes[a]);
-      const std::size_t stride = strides_[a], outer = now_.size() / (std::size_t(terms) * stride);
-      double variation = 0;
-      for (std::size_t o = 0; o < outer; ++o)
-        for (std::size_t x = 0; x < stride; ++x) {
-          const std::size_t first = o * std::size_t(terms) * stride + x;
-          double sum = 0;
-          for (int k = 0; k + 1 < terms; ++k) {
-            const std::size_t i = first + std::size_t(k) * stride;
-            sum += std::abs(now_[i + stride] - now_[i]);
-          }
-          variation = std::max(variation, sum);
-        }
-      if (variation > largest) {
-        largest = variation;
-        most = int(a);
-      }
-    }
-    return most;
-  }
-
-  const HarmonicFunction& function_;
-  std::vector<std::size_t> strides_;
-  std::vector<double> now_, next_;  // the coefficients; at last their quotients with the weights
-  std::vector<double> weight_, next_weight_;
-  double most_ = 0;
+  const HarmonicForm& form_;
+  const Eigen::MatrixXd& T_;
+  std::unique_ptr<HarmonicForm::Evaluator> evaluator_;
+  BlockArray::RowMatrix B_, turned_;
 };
 
-/// The box of all axes in parts that are narrow enough.
-std::vector<Box> first_boxes(const std::vector<HarmonicAxis>& axes) {
-  std::vector<Box> boxes(1);
-  for (const HarmonicAxis& axis : axes) {
-    // A turn and more is one turn.
-    const double width = axis.turns ? std::min(axis.upper - axis.lower, 2 * std::numbers::pi) : axis.upper - axis.lower;
-    const int parts = axis.turns ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
-    std::vector<Box> finer;
-    for (const Box& box : boxes)
-      for (int k = 0; k < parts; ++k) {
-        Box part = box;
-        part.lower.push_back(axis.lower + width * k / parts);
-        part.upper.push_back(axis.lower + width * (k + 1) / parts);
-        finer.push_back(std::move(part));
-      }
-    boxes = std::move(finer);
-  }
-  return boxes;
+std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, Random& random) {
+  std::vector<double> values;
+  values.reserve(axes.size());
+  for (const HarmonicAxis& axis : axes) values.push_back(random.uniform(axis.lower, axis.upper));
+  return values;
 }
 
 }  // namespace
 
-HarmonicFunction::HarmonicFunction(std::vector<HarmonicAxis> axes,
-                                   const std::function<std::function<double(std::span<const double>)>()>& make,
-                                   int threads)
-    : axes_(std::move(axes)), coefficients_(size_of(axes_)) {
-  const std::vector<std::size_t> strides = strides_of(axes_);
-  constexpr std::size_t chunk = 256;
-  parallel_for((coefficients_.size() + chunk - 1) / chunk, thread_count(threads), [&](std::size_t c, int) {
-    const auto f = make();
-    std::vector<double> q(axes_.size());
-    for (std::size_t i = c * chunk; i < std::min(coefficients_.size(), (c + 1) * chunk); ++i) {
-      for (std::size_t a = 0; a < axes_.size(); ++a) q[a] = node(axes_[a], int(i / strides[a]) % terms(axes_[a]));
-      coefficients_[i] = f(q);
-    }
-  });
-  for (const double value : coefficients_) defined_ = defined_ && std::isfinite(value);
-  std::vector<double> next(coefficients_.size());
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const int n = terms(axes_[a]);
-    Eigen::MatrixXd V(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k < n; ++k) V(i, k) = basis(axes_[a].turns, k, node(axes_[a], i));
-    Matrix inverse = Matrix::Zero();
-    inverse.topLeftCorner(n, n) = V.inverse();
-    apply(coefficients_, next, inverse, n, strides[a]);
-    coefficients_.swap(next);
+/// One thread's.
+class HarmonicJudge : public BoxJudge {
+ public:
+  explicit HarmonicJudge(const HarmonicSensitivity& function)
+      : function_(function), tensor_(function.form_.axes(), function.degrees_), evaluator_(function.form_.evaluator()) {
+    for (const HarmonicSensitivity::Distance& d : function.distances_)
+      distances_.emplace_back(function.form_.axes(), d.square.degrees());
   }
+
+  void judge(SearchBox& box, double enough, LargestFound& found) override {
+    ranges_.clear();
+    for (std::size_t i = 0; i < distances_.size(); ++i) {
+      const HarmonicSensitivity::Distance& d = function_.distances_[i];
+      distances_[i].coefficients() = d.square.coefficients();
+      distances_[i].put(box, largest_size(d.square.coefficients()));
+      ranges_.push_back({std::max(distances_[i].smallest() - d.error, d.least), distances_[i].largest() + d.error});
+      if (ranges_.back().first > 0) continue;
+      // The instrument may stand in this box, for all that is known.
+      box.bound = std::numeric_limits<double>::infinity();
+      box.longest = distances_[i].most_varied();
+      return;
+    }
+    loose_ = -1;
+    tensor_.put(box, combine());
+    box.bound = tensor_.largest();
+    if (!(box.bound > enough)) return;
+    box.longest = loose_ < 0 ? tensor_.most_varied() : distances_[std::size_t(loose_)].most_varied();
+    double top;
+    const std::size_t corner = tensor_.highest_corner(top);
+    if (top > found.value) look_at(corner, box, found);
+  }
+
+ private:
+  /// All terms with the bounds of their factors. @return sum of the sizes of what was added
+  double combine() {
+    std::vector<double>& sum = tensor_.coefficients();
+    sum.assign(function_.size(), 0.0);
+    double most = 0;
+    for (const HarmonicSensitivity::Term& term : function_.terms_) {
+      const FactorBound factor = factor_of(term);
+      add(sum, factor.constant, term.plain);
+      most += std::abs(factor.constant) * term.most_plain;
+      if (factor.slope == 0) continue;
+      add(sum, factor.slope, term.times_distance);
+      most += std::abs(factor.slope) * term.most_times;
+    }
+    return most;
+  }
+
+  /// One for all distances of a term: those of targets on one tip are alike.
+  FactorBound factor_of(const HarmonicSensitivity::Term& term) {
+    if (term.distances.empty()) return {term.part.plus.weight, 0.0};
+    double lower = std::numeric_limits<double>::infinity(), upper = 0, error = 0;
+    for (const int d : term.distances) {
+      lower = std::min(lower, ranges_[std::size_t(d)].first);
+      upper = std::max(upper, ranges_[std::size_t(d)].second);
+      error = std::max(error, function_.distances_[std::size_t(d)].error);
+    }
+    FactorBound factor = factor_bound(term.part, lower, upper, !term.times_distance.empty());
+    factor.constant += std::abs(factor.slope) * error;
+    const double middle = 0.5 * (lower + upper), value = term.part.factor(middle);
+    const double gap = factor.constant + factor.slope * middle - value;
+    if (gap > loose_factor * value) loose_ = term.distances.front();
+    return factor;
+  }
+
+  static void add(std::vector<double>& sum, double factor, const std::vector<double>& values) {
+    Eigen::Map<Eigen::VectorXd>(sum.data(), Eigen::Index(sum.size())) +=
+        factor * Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+  }
+
+  void look_at(std::size_t corner, const SearchBox& box, LargestFound& found) {
+    const auto& axes = function_.form_.axes();
+    values_.clear();
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      values_.push_back((corner >> a & 1) != 0 ? upper_of(axes, box, a) : lower_of(axes, box, a));
+    const double value = sensitivity_of(function_.form_, *evaluator_, function_.T_, values_);
+    if (!(value > found.value)) return;
+    found.value = value;
+    found.where = values_;
+    found.function = box.function;
+  }
+
+  const HarmonicSensitivity& function_;
+  BoxTensor tensor_;
+  std::vector<BoxTensor> distances_;
+  std::vector<std::pair<double, double>> ranges_;
+  int loose_ = -1;  ///< distance that varies too much for a line to bound a factor well
+  std::unique_ptr<HarmonicForm::Evaluator> evaluator_;
+  std::vector<double> values_;
+};
+
+namespace {
+
+/// A plain function, without parts.
+class FunctionJudge : public BoxJudge {
+ public:
+  explicit FunctionJudge(const HarmonicFunction& function)
+      : function_(function),
+        tensor_(function.axes(), function.degrees()),
+        most_(largest_size(function.coefficients())) {}
+
+  void judge(SearchBox& box, double enough, LargestFound& found) override {
+    tensor_.coefficients() = function_.coefficients();
+    tensor_.put(box, most_);
+    box.bound = tensor_.largest();
+    if (!(box.bound > enough)) return;
+    box.longest = tensor_.most_varied();
+    double top;
+    const std::size_t corner = tensor_.highest_corner(top);
+    if (!(top > found.value)) return;
+    found.value = top;
+    found.where.clear();
+    for (std::size_t a = 0; a < function_.axes().size(); ++a)
+      found.where.push_back((corner >> a & 1) != 0 ? box.upper[a] : box.lower[a]);
+  }
+
+ private:
+  const HarmonicFunction& function_;
+  BoxTensor tensor_;
+  double most_;
+};
+
+/// Judges each box by its own function.
+class JudgeOfSeveral : public BoxJudge {
+ public:
+  explicit JudgeOfSeveral(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
+    for (const auto& f : functions) judges_.push_back(f->judge());
+  }
+  void judge(SearchBox& box, double enough, LargestFound& found) override {
+    judges_[std::size_t(box.function)]->judge(box, enough, found);
+  }
+
+ private:
+  std::vector<std::unique_ptr<BoxJudge>> judges_;
+};
+
+}  // namespace
+
+FactorBound factor_bound(const HarmonicPart& part, double lower, double upper, bool affine) {
+  const double high = part.plus.value(lower), low = part.plus.value(upper);
+  if (!affine || !(upper > lower * (1 + 1e-12))) return {high - part.minus.value(upper), 0.0};
+  const double middle = 0.5 * (lower + upper), fall = part.minus.derivative(middle);
+  const double slope = (low - high) / (upper - lower) - fall;
+  return {high - (low - high) / (upper - lower) * lower - part.minus.value(middle) + fall * middle, slope};
 }
 
-double HarmonicFunction::value(std::span<const double> q) const {
-  std::vector<double> sum = coefficients_;
-  std::size_t size = sum.size();
-  for (std::size_t a = axes_.size(); a-- > 0;) {
-    const int n = terms(axes_[a]);
-    size /= std::size_t(n);
-    for (std::size_t i = 0; i < size; ++i) {
-      double total = 0;
-      for (int k = 0; k < n; ++k) total += basis(axes_[a].turns, k, q[a]) * sum[i * std::size_t(n) + std::size_t(k)];
-      sum[i] = total;
-    }
-  }
-  return sum[0];
+double HarmonicSensitivity::cost(const HarmonicForm& form) {
+  return double(harmonic_size(form.axes(), common_degrees(form))) * double(2 * form.parts().size());
 }
 
-HarmonicBound largest_value(const HarmonicFunction& function, const HarmonicBoundOptions& options,
-                            const Monitor& monitor) {
-  HarmonicBound result;
-  result.largest = -std::numeric_limits<double>::infinity();
-  std::priority_queue<Box> open;
-  std::vector<Box> round = first_boxes(function.axes());
-  const int threads = thread_count(options.threads);
-  std::vector<BoxBound> bounds;
-  bounds.reserve(std::size_t(threads));
-  for (int i = 0; i < threads; ++i) bounds.emplace_back(function);
-  while (true) {
-    std::vector<double> largest(round.size(), result.largest);
-    std::vector<std::vector<double>> where(round.size());
-    parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
-      // Boxes that are not judged keep an infinite bound.
-      if (monitor.should_stop()) return;
-      bounds[std::size_t(thread)].judge(round[i], largest[i], where[i]);
-    });
-    result.boxes += long(round.size());
-    for (std::size_t i = 0; i < round.size(); ++i)
-      if (largest[i] > result.largest) {
-        result.largest = largest[i];
-        result.where = where[i];
+HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed,
+                                         int threads, const Monitor& monitor)
+    : form_(form), T_(T), degrees_(common_degrees(form)) {
+  const auto& axes = form.axes();
+  const std::size_t parts = form.parts().size();
+  Random random(seed, compared_stream);
+  PartSquares squares(form, T);
+  std::vector<std::vector<double>> places;
+  for (int i = 0; i < places_compared; ++i) places.push_back(random_values(axes, random));
+
+  for (std::size_t d = 0; d < form.distance_degrees().size(); ++d) {
+    const auto of = [&form, d](HarmonicForm::Evaluator& evaluator, std::span<const double> values) {
+      std::vector<double> all(form.distance_degrees().size());
+      evaluator.distances(values, all);
+      return all[d];
+    };
+    HarmonicFunction square(
+        axes, form.distance_degrees()[d],
+        [&] {
+          return [evaluator = std::shared_ptr<HarmonicForm::Evaluator>(form.evaluator()),
+                  of](std::span<const double> values) { return of(*evaluator, values); };
+        },
+        1);
+    double difference = 0, size = 0;
+    for (const auto& place : places) {
+      const double r = of(squares.evaluator(), place);
+      difference = std::max(difference, std::abs(square.value(place) - r));
+      size = std::max(size, r);
+    }
+    defined_ = defined_ && square.defined() && difference <= same_function * size;
+    const double error = difference_factor * difference + own_rounding * size;
+    const double least = smallest_value(square, threads) - error;
+    distances_.push_back({std::move(square), error, least});
+  }
+
+  // Parts of the same degrees are sampled together.
+  std::map<std::vector<int>, std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < parts; ++k) groups[squared(form, k)].push_back(k);
+  std::vector<std::vector<double>> direct(places.size(), std::vector<double>(parts));
+  for (std::size_t i = 0; i < places.size(); ++i) squares(places[i], direct[i]);
+  for (const auto& [degrees, members] : groups) {
+    const std::vector<HarmonicFunction> functions = HarmonicFunction::of_several(
+        axes, degrees, members.size(),
+        [&] {
+          return [own = std::make_shared<PartSquares>(form, T), all = std::vector<double>(parts), parts, &members,
+                  &monitor](std::span<const double> values, std::span<double> out) mutable {
+            if (monitor.should_stop()) all.assign(parts, std::numeric_limits<double>::quiet_NaN());
+            else (*own)(values, all);
+            for (std::size_t i = 0; i < members.size(); ++i) out[i] = all[members[i]];
+          };
+        },
+        threads);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const std::size_t k = members[i];
+      double difference = 0, size = 0;
+      for (std::size_t p = 0; p < places.size(); ++p) {
+        difference = std::max(difference, std::abs(functions[i].value(places[p]) - direct[p][k]));
+        size = std::max(size, direct[p][k]);
       }
-    for (Box& box : round) open.push(std::move(box));
-    round.clear();
-    const double enough =
-        std::max(result.largest + options.tolerance * std::abs(result.largest), options.enough - options.slack);
-    result.complete = open.top().bound <= enough;
-    if (result.complete || monitor.should_stop() || result.boxes >= options.most_boxes) break;
-    for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough; ++i) {
-      const Box box = open.top();
-      open.pop();
-      const auto a = std::size_t(box.longest);
-      const double middle = 0.5 * (box.lower[a] + box.upper[a]);
-      round.push_back(box);
-      round.back().upper[a] = middle;
-      round.push_back(box);
-      round.back().lower[a] = middle;
+      defined_ = defined_ && functions[i].defined() && difference <= same_function * size;
+      // The constant more makes it a bound of the part.
+      const HarmonicFunction upper = functions[i].raised(difference_factor * difference + own_rounding * size);
+      const HarmonicPart& part = form.parts()[k];
+      const bool affine = part.distance >= 0 && fits(with_distance(form, k), degrees_);
+      Term& term = term_of(part, affine);
+      add_to(term.plain, upper.lifted(degrees_).coefficients());
+      if (affine)
+        add_to(
+            term.times_distance,
+            HarmonicFunction::product(upper, distances_[std::size_t(part.distance)].square, degrees_).coefficients());
     }
   }
-  result.bound = open.top().bound + options.slack;
-  return result;
+  for (Term& term : terms_) {
+    term.most_plain = largest_size(term.plain);
+    term.most_times = largest_size(term.times_distance);
+  }
+}
+
+/// Parts of one factor are one term.
+HarmonicSensitivity::Term& HarmonicSensitivity::term_of(const HarmonicPart& part, bool affine) {
+  const auto same = [&](const Term& t) {
+    return t.part.plus == part.plus && t.part.minus == part.minus && t.distances.empty() == (part.distance < 0) &&
+           t.times_distance.empty() != affine;
+  };
+  auto at = std::find_if(terms_.begin(), terms_.end(), same);
+  if (at == terms_.end()) {
+    terms_.push_back({part, {}, std::vector<double>(size(), 0.0), std::vector<double>(affine ? size() : 0, 0.0)});
+    at = terms_.end() - 1;
+  }
+  if (part.distance >= 0) at->distances.push_back(part.distance);
+  return *at;
+}
+
+double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
+                      std::vector<double>& values) {
+  evaluator.complete(values);
+  static thread_local BlockArray::RowMatrix B;
+  if (!evaluator.rows(values, B)) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> distances(form.distance_degrees().size());
+  evaluator.distances(values, distances);
+  double sum = 0;
+  Eigen::Index first = 0;
+  for (const HarmonicPart& part : form.parts()) {
+    const double r = part.distance < 0 ? 0.0 : distances[std::size_t(part.distance)];
+    sum += part.factor(r) * (B.middleRows(first, part.rows) * T).squaredNorm();
+    first += part.rows;
+  }
+  return sum;
+}
+
+std::vector<SearchBox> HarmonicSensitivity::first_boxes() const { return parts_of_everything(form_.axes()); }
+
+std::unique_ptr<BoxJudge> HarmonicSensitivity::judge() const { return std::make_unique<HarmonicJudge>(*this); }
+
+BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
+                              const Monitor& monitor) {
+  return largest_value(
+      parts_of_everything(function.axes()), [&] { return std::make_unique<FunctionJudge>(function); }, options,
+      monitor);
+}
+
+BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
+                              const BoxSearchOptions& options, const Monitor& monitor) {
+  std::vector<SearchBox> first;
+  for (std::size_t f = 0; f < functions.size(); ++f)
+    for (SearchBox& box : functions[f]->first_boxes()) {
+      box.function = int(f);
+      first.push_back(std::move(box));
+    }
+  return largest_value(
+      std::move(first), [&] { return std::make_unique<JudgeOfSeveral>(functions); }, options, monitor);
 }
 
 }  // namespace posewright

@@ -1,7 +1,6 @@
 #include "posewright/planning/workspace_bound.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,7 +8,7 @@
 #include <utility>
 
 #include "posewright/planning/ascent.hpp"
-#include "posewright/planning/harmonic_bound.hpp"
+#include "posewright/planning/taylor_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -17,8 +16,7 @@
 namespace posewright {
 namespace {
 
-// With fewer candidates a plan is a quick look: it gets so many rounds and no more.
-constexpr std::size_t few_candidates = 1000;
+// A quick look gets so many rounds and no more.
 constexpr int few_rounds = 8;
 // Candidates that the weights are solved over at first, for each column: optimal weights sit on some two for each;
 // those that turn out to be missing come in later.
@@ -28,16 +26,8 @@ constexpr double nearly = 1.02;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
 
-// Angles of a tensor of so many axes are sampled in a second.
-constexpr std::size_t most_axes = 7, axes_for_nothing = 3;
-// d and its polynomial may differ by this share of h, at so many random places.
-constexpr double same_function = 1e-7, rounding_factor = 100.0;
-constexpr int places_compared = 100;
-constexpr std::uint64_t proof_stream = 0x9f00f;
-// Coefficients of all boxes: some ten seconds of one core, whatever the number of joints. Counted and not timed, so
-// that a plan is the same on every machine.
-constexpr double proof_work = 3e8;
-constexpr long fewest_boxes = 3000;
+// Boxes that are looked into for what searches miss: some seconds.
+constexpr long boxes_of_a_look = 1500;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
@@ -137,6 +127,77 @@ std::vector<std::vector<double>> candidates_above(double limit, const BlockArray
   return result;
 }
 
+/// The mean of the pool's candidates, if it is feasible; else one of them.
+std::vector<double> inner_place(const Pool& pool, ConfigurationSpace::Probe& probe) {
+  std::vector<double> mean(pool.configurations.front().size(), 0.0);
+  for (std::size_t i = 0; i < pool.candidates; ++i)
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += pool.configurations[i][k] / double(pool.candidates);
+  return probe.feasible(mean) ? mean : pool.configurations.front();
+}
+
+/// Moves q to the last feasible place on the way to it from a feasible one.
+bool towards(const std::vector<double>& inside, ConfigurationSpace::Probe& probe, std::vector<double>& q) {
+  if (probe.feasible(q)) return true;
+  const std::vector<double> end = q;
+  double feasible = 0, beyond = 1;
+  for (int step = 0; step < 30; ++step) {
+    const double t = 0.5 * (feasible + beyond);
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] = inside[k] + t * (end[k] - inside[k]);
+    (probe.feasible(q) ? feasible : beyond) = t;
+  }
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] = inside[k] + feasible * (end[k] - inside[k]);
+  return probe.feasible(q);
+}
+
+/// What local searches from candidates do not find: where actuators cut the workspace, few candidates are near its
+/// corners. Starts of new searches are the middles of boxes that a proof of d ≤ limit would have to cut; none if there
+/// is no such proof. Raises `largest` to the largest d found.
+std::vector<std::vector<double>> missed_by_searches(double limit, const Pool& pool, const Eigen::MatrixXd& T,
+                                                    const ConfigurationSpace& space,
+                                                    const WorkspaceBoundOptions& options, const Monitor& monitor,
+                                                    double& largest) {
+  SeenAbove seen;
+  seen.limit = limit;
+  BoxSearchOptions boxes;
+  boxes.tolerance = options.tolerance;
+  boxes.enough = limit;
+  boxes.most_boxes = boxes_of_a_look;
+  boxes.threads = options.threads;
+  largest_enclosed(space, T, boxes, monitor, &seen);
+  std::sort(seen.middles.begin(), seen.middles.end());
+  const auto probe = space.probe();
+  ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
+  Sensitivity sensitivity(T);
+  const std::vector<double> inside = inner_place(pool, *probe);
+  std::vector<std::pair<double, std::vector<double>>> reached;
+  for (std::vector<double>& q : seen.middles)
+    if (towards(inside, *probe, q) && block.at(*probe, q)) reached.emplace_back(sensitivity.value(block.map()), q);
+  std::sort(reached.begin(), reached.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  std::vector<std::vector<double>> starts;
+  for (const auto& [value, q] : reached) {
+    if (int(starts.size()) == options.starts) break;
+    if (std::none_of(starts.begin(), starts.end(),
+                     [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
+      starts.push_back(q);
+  }
+  std::vector<AscentResult> ends(starts.size());
+  parallel_for(starts.size(), thread_count(options.threads), [&](std::size_t i, int) {
+    const auto own = space.probe();
+    Sensitivity d(T);
+    ends[i] = ascend(space, *own, d, pool.blocks.rows(), pool.blocks.columns(), starts[i], options.evaluations);
+  });
+  std::vector<std::vector<double>> found;
+  for (const AscentResult& end : ends) {
+    largest = std::max(largest, end.value);
+    if (end.value > limit && std::none_of(found.begin(), found.end(), [&](const auto& q) {
+          return is_same_place(space.axes(), q, end.q, end_distance);
+        }))
+      found.push_back(end.q);
+  }
+  return found;
+}
+
 Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
                 std::size_t room) {
   std::vector<int> order(blocks.count());
@@ -153,53 +214,6 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   Pool pool{blocks.subset(order), {}, order.size(), order};
   for (const int i : order) pool.configurations.emplace_back(space.candidate(i).begin(), space.candidate(i).end());
   return pool;
-}
-
-/// d(q) = ‖J(q) T‖² of the axes that move, all others where they are.
-class MovingSensitivity {
- public:
-  MovingSensitivity(const ConfigurationSpace& space, const Eigen::MatrixXd& T, int rows, int columns)
-      : space_(space), T_(T), rows_(rows), columns_(columns) {
-    for (std::size_t a = 0; a < space.axes().size(); ++a) {
-      const ConfigurationSpace::Axis& axis = space.axes()[a];
-      q_.push_back(axis.lower);
-      if (!axis.continuous || !(axis.upper > axis.lower)) continue;
-      moving_.push_back(a);
-      axes_.push_back({axis.lower, axis.upper, axis.turns});
-    }
-  }
-  const std::vector<HarmonicAxis>& axes() const { return axes_; }
-
-  std::function<double(std::span<const double>)> for_one_thread() const {
-    auto probe = std::shared_ptr<ConfigurationSpace::Probe>(space_.probe());
-    auto block = std::make_shared<BlockArray>(1, rows_, columns_);
-    return [this, probe, block, sensitivity = std::make_shared<Sensitivity>(T_), q = q_](auto values) mutable {
-      for (std::size_t i = 0; i < moving_.size(); ++i) q[moving_[i]] = values[i];
-      if (!probe->block(q, block->row(0, 0), block->stride())) return std::numeric_limits<double>::quiet_NaN();
-      return sensitivity->value(std::as_const(*block).block(0));
-    };
-  }
-
- private:
-  const ConfigurationSpace& space_;
-  const Eigen::MatrixXd& T_;
-  int rows_, columns_;
-  std::vector<double> q_;
-  std::vector<std::size_t> moving_;
-  std::vector<HarmonicAxis> axes_;
-};
-
-/// Largest difference between the polynomial and d itself at random places; NaN if d has none at one.
-double largest_difference(const HarmonicFunction& polynomial, const std::function<double(std::span<const double>)>& d,
-                          Random& random) {
-  double largest = 0;
-  std::vector<double> q(polynomial.axes().size());
-  for (int i = 0; i < places_compared; ++i) {
-    for (std::size_t a = 0; a < q.size(); ++a)
-      q[a] = random.uniform(polynomial.axes()[a].lower, polynomial.axes()[a].upper);
-    largest = std::max(largest, std::abs(polynomial.value(q) - d(q)));
-  }
-  return largest;
 }
 
 }  // namespace
@@ -226,6 +240,8 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     weights.start.push_back(
         int(std::lower_bound(pool.original.begin(), pool.original.end(), i) - pool.original.begin()));
   const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
+  const bool look_into_boxes = blocks.count() >= few_candidates && options.proof.seconds != 0.0 && !space.is_box() &&
+                               space.enclosure(Eigen::MatrixXd::Identity(blocks.columns(), 1)) != nullptr;
   for (int round = 0; round < rounds; ++round) {
     design = solve_approximate_design(pool.blocks, function, weights, monitor);
     const std::vector<AscentResult> ends = search_from(starts_of(design, pool, space.axes(), options.starts, random),
@@ -246,13 +262,17 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
                          [&](const auto& q) { return is_same_place(space.axes(), q, end.q, end_distance); }))
           found.push_back(end.q);
     }
+    const bool thorough = evaluations == options.evaluations;
+    if (thorough && look_into_boxes && (most <= limit || found.empty()) && !monitor.should_stop()) {
+      const auto missed = missed_by_searches(limit, pool, design.factor, space, options, monitor, most);
+      found.insert(found.end(), missed.begin(), missed.end());
+    }
     result.value = design.value;
     result.max_ratio = std::max(1.0, (most + extra) / design.degree);
     result.bound = design.value + design.degree * std::log(result.max_ratio);
     result.stopped = monitor.should_stop();
     monitor.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result.max_ratio});
     if (result.stopped) break;
-    const bool thorough = evaluations == options.evaluations;
     if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     weights.start = design.weighted();
@@ -271,62 +291,6 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
       }
     }
   return result;
-}
-
-void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
-                     int columns, const WorkspaceBoundOptions& options, const Monitor& monitor) {
-  WorkspaceProof& proof = result.proof;
-  proof.why_not = result.stopped || monitor.should_stop() ? "stopped" : space.not_harmonic();
-  if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
-  if (!proof.why_not.empty()) return;
-  const MovingSensitivity d(space, result.factor, rows, columns);
-  if (d.axes().empty() || d.axes().size() > most_axes) {
-    proof.why_not = "more than 7 joints";
-    return;
-  }
-  if (candidates < few_candidates && d.axes().size() > axes_for_nothing) {
-    proof.why_not = "a quick look at fewer than 1,000 candidates";
-    return;
-  }
-  const HarmonicFunction polynomial(
-      d.axes(), [&] { return d.for_one_thread(); }, options.threads);
-  Random random(options.seed, proof_stream);
-  const double difference = polynomial.defined() ? largest_difference(polynomial, d.for_one_thread(), random)
-                                                 : std::numeric_limits<double>::quiet_NaN();
-  if (!(difference <= same_function * result.degree)) {
-    proof.why_not = "the sensitivity is no polynomial of the joints' cosines and sines";
-    return;
-  }
-  HarmonicBoundOptions limits;
-  // Values were interpolated as they are computed: what rounding makes of them there is far below this.
-  limits.slack = rounding_factor * difference + same_function * 1e-3 * result.degree;
-  limits.tolerance = options.tolerance;
-  limits.most_boxes = std::max(fewest_boxes, long(proof_work / double(polynomial.coefficients().size())));
-  limits.threads = options.threads;
-  const double extra =
-      options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
-  if (options.proof.gap) {
-    limits.enough = result.degree * (1 + *options.proof.gap) - extra;
-    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
-  }
-  Monitor own;
-  own.interrupted = monitor.interrupted;
-  own.deadline = monitor.deadline;
-  if (options.proof.seconds) {
-    const auto end = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
-                                                 std::chrono::duration<double>(*options.proof.seconds));
-    own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
-    limits.most_boxes = std::numeric_limits<long>::max();
-  }
-  const HarmonicBound most = largest_value(polynomial, limits, own);
-  proof.boxes = most.boxes;
-  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
-  if (!std::isfinite(most.bound)) {
-    proof.why_not = "stopped";
-    return;
-  }
-  proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
-  proof.bound = result.value + result.degree * std::log(proof.max_ratio);
 }
 
 }  // namespace posewright

@@ -134,7 +134,7 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
   const Section section(value);
   section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates",
                  "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve",
-                 "measured", "test_poses"});
+                 "measured", "fixed", "test_poses"});
   DesignSpec design;
   design.line = value.line();
   read_aim(section, variants, folder, design);
@@ -150,6 +150,7 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
   if (const Value* distance = section.find("minimum_distance"))
     design.minimum_distance = read_minimum_distance(*distance);
   if (const Value* measured = section.find("measured")) design.measured = folder / measured->text("a file is expected");
+  if (const Value* fixed = section.find("fixed")) design.fixed = folder / fixed->text("a file is expected");
   return design;
 }
 

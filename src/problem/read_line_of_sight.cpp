@@ -110,7 +110,7 @@ StationChoiceSpec read_station_choice(const Value& value) {
 
 MotionSpec read_motion(const Value& value) {
   const Section section(value);
-  section.allow({"velocity", "acceleration", "home", "speed", "settle", "station_change", "load_change",
+  section.allow({"velocity", "acceleration", "home", "speed", "settle", "reading", "station_change", "load_change",
                  "temperature_change", "reachable"});
   MotionSpec motion;
   motion.line = value.line();
@@ -130,6 +130,7 @@ MotionSpec read_motion(const Value& value) {
     if (const Value* found = section.find(key)) into = found->number(Quantity::time, Sign::not_negative);
   };
   seconds("settle", motion.settle);
+  seconds("reading", motion.reading);
   seconds("station_change", motion.station_change);
   seconds("load_change", motion.load_change);
   seconds("temperature_change", motion.temperature_change);

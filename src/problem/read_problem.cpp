@@ -23,15 +23,15 @@ void require_known_version(const yaml::Section& root) {
 
 }  // namespace
 
-Problem read_problem(const fs::path& file) {
+Problem read_problem(const fs::path& file, const Packages& packages) {
   std::error_code code;
   // A device may never end.
   if (fs::is_character_file(file, code) || fs::is_block_file(file, code))
     throw InputError({file.string(), 0}, "is a device", "a file is needed");
-  return parse_problem(read_file(file, size_limit), file);
+  return parse_problem(read_file(file, size_limit), file, packages);
 }
 
-Problem parse_problem(const std::string& text, const fs::path& file) {
+Problem parse_problem(const std::string& text, const fs::path& file, const Packages& packages) {
   const std::string file_name = file.string();
   if (text.size() > size_limit)
     throw InputError({file_name, 0}, fmt::format("has {} bytes", text.size()),
@@ -46,7 +46,8 @@ Problem parse_problem(const std::string& text, const fs::path& file) {
   problem.file = file;
   problem.sha256 = sha256_hex(text);
   const yaml::Value& robot = root.at("robot");
-  problem.robot = read_robot(robot, file.parent_path());
+  problem.packages = packages;
+  problem.robot = read_robot(robot, file, packages);
   problem.robot_line = robot.line();
   problem.measurement = read_measurement(root.at("measurement"));
   problem.variants = read_variants(root.at("variants"));

@@ -80,12 +80,14 @@ void read_xacro(const Section& robot, const Value& urdf, SerialArmSpec& arm) {
   arm.expanded = std::make_shared<const std::string>(expanded_xacro(arm, urdf));
 }
 
-SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& folder) {
+SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& file, const Packages& packages) {
   robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "placement", "encoder_noise", "parameter_names",
                "elastostatic", "joint_effects", "temperature"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
-  arm.urdf = folder / urdf.text("a file name is expected");
+  const std::filesystem::path folder = file.parent_path();
+  const std::string name = urdf.text("a file name is expected");
+  arm.urdf = names_package(name) ? file_of_uri(name, packages, file, {file.string(), urdf.line()}) : folder / name;
   arm.line = urdf.line();
   read_xacro(robot, urdf, arm);
   if (const Value* srdf = robot.find("srdf")) arm.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
@@ -142,7 +144,7 @@ Placement read_placement(const Section& section) {
   return placement;
 }
 
-RobotSpec read_robot(const Value& value, const std::filesystem::path& folder) {
+RobotSpec read_robot(const Value& value, const std::filesystem::path& file, const Packages& packages) {
   const Section robot(value);
   const Value* model = robot.find("model");
   if (model != nullptr && robot.has("urdf")) model->fail("stands beside robot.urdf", "one of urdf, model is allowed");
@@ -151,7 +153,7 @@ RobotSpec read_robot(const Value& value, const std::filesystem::path& folder) {
     robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model"});
     value.fail("has neither urdf nor model", "one of both is required");
   }
-  return read_serial_arm(robot, folder);
+  return read_serial_arm(robot, file, packages);
 }
 
 }  // namespace posewright

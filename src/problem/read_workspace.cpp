@@ -30,18 +30,20 @@ CoupledLimits read_coupled(const Value& value) {
   return coupled;
 }
 
+/// Known ones without ranges would not help.
+[[noreturn]] void refuse_controller(const Value& controller, const std::string& name, std::vector<std::string> known) {
+  std::erase_if(known, [](const std::string& each) { return controller_settings(each).range_deg.empty(); });
+  controller.fail("is " + in_quotes(name) + ", neither a file nor a known controller",
+                  fmt::format("known: {}", fmt::join(known, ", ")));
+}
+
 void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::filesystem::path& folder) {
   joints.allow({"margin", "margin_length", "limits", "coupled", "controller"});
   if (const Value* controller = joints.find("controller")) {
     const std::string name = controller->text("a file name or a known controller is expected");
     const std::vector<std::string> known = known_controllers();
-    std::vector<std::string> ranged = known;
-    std::erase_if(ranged, [](const std::string& each) { return controller_settings(each).range_deg.empty(); });
-    std::error_code ignored;
-    const bool file = std::filesystem::exists(folder / name, ignored) && !std::filesystem::is_directory(folder / name);
-    if (!file && std::find(known.begin(), known.end(), name) == known.end())
-      controller->fail("is " + in_quotes(name) + ", neither a file nor a known controller",
-                       fmt::format("known: {}", fmt::join(ranged, ", ")));
+    if (!is_controller_file(name, folder) && std::find(known.begin(), known.end(), name) == known.end())
+      refuse_controller(*controller, name, known);
     workspace.controller = controller_settings(name, folder);
     if (workspace.controller->range_deg.empty())
       throw InputError({workspace.controller->file, 0}, "has no range_deg", "the ranges that poses are to keep");

@@ -12,8 +12,8 @@
 /// One reader for each section of the problem file.
 namespace posewright {
 
-/// `folder` is what the path of the URDF file is relative to.
-RobotSpec read_robot(const yaml::Value& value, const std::filesystem::path& folder);
+/// The path of the URDF file is relative to the folder of `file`, or of a package.
+RobotSpec read_robot(const yaml::Value& value, const std::filesystem::path& file, const Packages& packages);
 
 bool is_xacro(const std::filesystem::path& file);
 /// What the program `xacro` makes of the arm's file. Throws at `urdf` where arguments without default are missing,

@@ -41,6 +41,10 @@ std::string stations_text(const std::vector<StationRank>& ranks) {
                rank.main_rejection});
   }
   std::string text = table.text();
+  text +=
+      "feasible: share of the configurations drawn; where the instrument sees its targets from few of them, views of "
+      "the "
+      "targets are drawn instead.\n";
   for (const StationRank& rank : ranks)
     if (!rank.why_not.empty()) text += fmt::format("{}: no plan: {}\n", names_of(rank), rank.why_not);
   text += "\nFor measurement: device:\n  stations:\n";

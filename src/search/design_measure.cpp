@@ -27,13 +27,33 @@ double DesignMeasure::phi(const std::vector<SearchPart>& parts) const {
   return parts.size() == 1 ? phi(parts.front().blocks) : phi(side_by_side(parts));
 }
 
-double DesignMeasure::phi(const BlockArray& blocks) const {
+std::vector<double> DesignMeasure::phi_without(const std::vector<SearchPart>& poses,
+                                               const std::vector<SearchPart>& known) const {
+  const Eigen::MatrixXd whole = information(side_by_side(poses));
+  const BlockArray each = side_by_side(known);
+  const BlockArray::RowMatrix J = whitened(each);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < each.count(); ++i) {
+    const auto rows = J.middleRows(Eigen::Index(i) * each.rows(), each.rows());
+    result.push_back(criterion_->function().value(whole - rows.transpose() * rows) + offset_);
+  }
+  return result;
+}
+
+BlockArray::RowMatrix DesignMeasure::whitened(const BlockArray& blocks) const {
   // R is as ill-conditioned as the raw columns: it is solved for, one row after the other, and never inverted.
-  const Eigen::MatrixXd J =
-      R_.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(blocks.all().transpose()));
-  Eigen::MatrixXd information = J * J.transpose();
-  if (prior_.size() > 0) information += prior_;
-  return criterion_->function().value(information) + offset_;
+  return R_.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(blocks.all().transpose())).transpose();
+}
+
+Eigen::MatrixXd DesignMeasure::information(const BlockArray& blocks) const {
+  const BlockArray::RowMatrix J = whitened(blocks);
+  Eigen::MatrixXd result = J.transpose() * J;
+  if (prior_.size() > 0) result += prior_;
+  return result;
+}
+
+double DesignMeasure::phi(const BlockArray& blocks) const {
+  return criterion_->function().value(information(blocks)) + offset_;
 }
 
 }  // namespace posewright

@@ -10,7 +10,9 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/reserve.hpp"
 #include "posewright/planning/extended_bound.hpp"
+#include "posewright/planning/spectral_bound.hpp"
 #include "posewright/planning/whiten.hpp"
+#include "posewright/planning/workspace_proof.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
@@ -18,6 +20,9 @@
 
 namespace posewright {
 namespace {
+
+// Efficiencies of o2 and o4 are ratios of squares, as those of o3 and o5 are.
+constexpr double spectral_degree = 0.5;
 
 /// All parts as one problem: whitened blocks, columns side by side, rows below each other.
 struct Joined {
@@ -145,6 +150,33 @@ void fill(Certificate& certificate, const ApproximateDesign& approximate, const 
   certificate.repeats = repeats_text(request.repeats);
 }
 
+/// o2 and o4 have a bound of their own; that of o3 is tighter than what its weights alone say.
+std::optional<SpectralBound> spectral_bound_of(const BlockArray& blocks, const Joined& joined,
+                                               const InformationFunction& function, const SearchRequest& request,
+                                               const Monitor& monitor) {
+  SpectralBoundOptions options;
+  options.poses = request.poses;
+  options.repeats = std::min(request.repeats.most, request.poses);
+  options.prior = joined.prior;
+  options.threads = request.planner.threads;
+  return spectral_bound(blocks, function, options, monitor);
+}
+
+/// Takes the bound where it is the lower one, or the only one.
+void tighten(Certificate& certificate, const std::optional<SpectralBound>& spectral, bool only) {
+  if (!spectral || (!only && certificate.bound <= spectral->bound)) return;
+  certificate.bound = spectral->bound;
+  certificate.max_sensitivity_ratio = std::exp(2 * spectral->gap);
+}
+
+/// All blocks of both.
+BlockArray joined_blocks(const BlockArray& first, const BlockArray& second) {
+  BlockArray both(first.count() + second.count(), first.rows(), first.columns());
+  for (std::size_t i = 0; i < both.count(); ++i)
+    both.block(i) = i < first.count() ? first.block(i) : second.block(i - first.count());
+  return both;
+}
+
 /// Φ of determinant criteria is that of raw coordinates, as people know it.
 double offset_of(const Joined& joined, const CriterionEntry& entry) {
   return entry.determinant ? joined.offsets.front() : 0.0;
@@ -181,11 +213,19 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   result.measure = measure(joined, entry, criterion);
   result.degree = criterion->function().degree();
   result.references = joined.references;
-  result.certificate.proved = result.degree > 0;
+  const auto spectral = spectral_bound_of(joined.blocks, joined, criterion->function(), request, monitor);
+  result.certificate.proved = result.degree > 0 || spectral;
   if (!result.certificate.proved) return result;
+  if (result.degree == 0) {
+    result.degree = spectral_degree;
+    fill(result.certificate, {}, joined, request, 0.0);
+    tighten(result.certificate, spectral, true);
+    return result;
+  }
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
   fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
+  tighten(result.certificate, spectral, false);
   result.sensitivity = approximate.sensitivity;
   result.price = approximate.price;
   return result;
@@ -193,24 +233,36 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
 
 namespace {
 
+// A proof that allows plans better by more than this share counts as a search with a loose proof beside it.
+constexpr double loose_proof = 0.05;
+
 /// Over the whole workspace: proved where the largest d is, else as far as searches tell.
 Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, double offset, bool smooth) {
   const WorkspaceProof& proof = found.proof;
-  if (proof.why_not.empty())
+  const double proved = proof.bound + found.degree * std::log(double(poses)) + offset;
+  const bool loose = proof.why_not.empty() && proof.bound - found.bound > loose_proof * found.degree;
+  if (proof.why_not.empty() && !loose)
     return {0.0,
-            proof.bound + found.degree * std::log(double(poses)) + offset,
+            proved,
             proof.max_ratio,
             fmt::format("largest d(q) over the limits by Bernstein coefficients of {} boxes{}{}", proof.boxes,
                         proof.ended.empty() ? "" : ", ", proof.ended),
             true,
-            ""};
-  return {
+            "",
+            proof.boxes};
+  Certificate::Workspace searched{
       0.0,
       found.bound_for(poses) + offset,
       found.max_ratio,
       fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, smooth ? "SLSQP" : "SBPLX"),
       false,
       proof.why_not};
+  if (loose) {
+    searched.why_not = proof.ended.empty() ? "the bound of the noise is loose" : "the proof was " + proof.ended;
+    searched.boxes = proof.boxes;
+    searched.loose_bound = proved;
+  }
+  return searched;
 }
 
 }  // namespace
@@ -230,6 +282,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   ApproximateDesign approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
                                                            bound_options(request, joined.prior), monitor);
   if (degree == 0) approximate.sensitivity.clear();
+  auto spectral = spectral_bound_of(joined.blocks, joined, function, request, monitor);
+  const double share = degree > 0 ? degree : spectral ? spectral_degree : 0.0;
   const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
   std::optional<WorkspaceBound> workspace;
   WorkspaceBoundOptions options;
@@ -250,12 +304,13 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   task.poses = request.poses;
   task.approximate = &approximate;
   if (degree > 0) task.bound = approximate.bound_for(request.poses);
+  if (spectral) task.bound = std::min(spectral->bound, task.bound.value_or(spectral->bound));
   task.space = space.get();
   task.workspace = workspace ? &*workspace : nullptr;
 
   SearchResult result;
   result.measure = measure(joined, entry, criterion);
-  result.degree = degree;
+  result.degree = share;
   Monitor shifted;
   shifted.interrupted = monitor.interrupted;
   shifted.deadline = monitor.deadline;
@@ -275,25 +330,30 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.stopped = approximate.stopped || result.design.stopped;
   // Last, so that whoever stops it has his plan.
   if (workspace && request.prove)
-    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), joined.blocks.columns(), options,
-                    monitor);
+    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), options, monitor);
   result.references = joined.references;
-  result.certificate.proved = degree > 0;
+  result.certificate.proved = share > 0;
   BlockArray added;
   if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
   if (degree > 0) fill(result.certificate, approximate, joined, request, offset);
-  if (degree > 0 && !result.design.added.empty()) {
+  else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
+  if (share > 0 && !result.design.added.empty()) {
     // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
     // that optimal weights over the workspace use.
     std::vector<std::vector<double>> found = result.design.added;
     if (workspace) found.insert(found.end(), workspace->support.begin(), workspace->support.end());
     const BlockArray more = blocks_at(found, *space, joined);
-    const ApproximateDesign extended =
-        extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
-    fill(result.certificate, extended, joined, request, offset);
+    if (degree > 0) {
+      const ApproximateDesign extended =
+          extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
+      fill(result.certificate, extended, joined, request, offset);
+    }
+    if (spectral) spectral = spectral_bound_of(joined_blocks(joined.blocks, more), joined, function, request, monitor);
+    if (degree == 0 && !spectral) result.certificate.proved = false;
     result.certificate.count += more.count();
     result.certificate.found = more.count();
   }
+  tighten(result.certificate, spectral, degree == 0);
   // A planner that proves something knows more than the weights alone.
   if (result.design.bound && !request.reserve)
     result.certificate.bound = std::min(result.certificate.bound, *result.design.bound + offset);
@@ -305,8 +365,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
     space_wide->bound = std::max(space_wide->bound, result.certificate.bound);
   for (const SearchStage& stage : result.design.stages)
     result.stages.push_back({stage.name, stage.value + offset,
-                             degree > 0
-                                 ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / degree))
+                             result.certificate.proved
+                                 ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / share))
                                  : std::nullopt,
                              stage.seconds});
   result.without = without_each(joined, result.design, added, function, request.planner.threads);
@@ -321,6 +381,8 @@ void certify(Certificate& certificate, double phi, double degree) {
   certificate.efficiency = short_of < 1e-9 ? 1.0 : std::exp(-short_of / degree);
   if (certificate.workspace)
     certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
+  if (certificate.workspace && certificate.workspace->loose_bound)
+    certificate.workspace->loose_efficiency = std::exp((phi - *certificate.workspace->loose_bound) / degree);
 }
 
 }  // namespace posewright

@@ -43,10 +43,11 @@ Effects checked_effects(const Problem& problem, const Study& study, const Settin
   return effects;
 }
 
-/// Information of the measured poses over all columns of the effects; empty: none.
+/// Information of measured and fixed poses over all columns of the effects; empty: none.
 Eigen::MatrixXd measured_before(const Study& study, const Effects& effects, int threads) {
-  if (study.measured.count() == 0) return {};
-  const BlockArray blocks = build_blocks(*study.first().model, effects.columns.selected, study.measured, threads);
+  const Configurations known = known_before(study);
+  if (known.count() == 0) return {};
+  const BlockArray blocks = build_blocks(*study.first().model, effects.columns.selected, known, threads);
   return blocks.all().transpose() * blocks.all();
 }
 

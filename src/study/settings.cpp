@@ -73,6 +73,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.planner.restarts_stated = options.restarts || design.restarts.line > 0;
   s.planner.seed = options.seed;
+  s.candidates_alone = options.candidates_alone;
   s.proof = options.proof;
   s.planner.threads = options.threads;
   return s;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harmonic_space.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 
@@ -162,15 +163,36 @@ class StudyProbe : public ConfigurationSpace::Probe {
   std::vector<double> of_part_;
 };
 
+class StudyEnclosure : public ConfigurationSpace::Enclosure {
+ public:
+  StudyEnclosure(const SpacePart& part, Eigen::MatrixXd T) : part_(part), T_(std::move(T)) {}
+
+  bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) override {
+    if (!part_.model->enclose(q, part_.selected, nullptr, out_)) return false;
+    limits = std::move(out_.allowed);
+    return true;
+  }
+  bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) override {
+    if (!part_.model->enclose(q, part_.selected, &T_, out_)) return false;
+    d = std::move(out_.sensitivity);
+    return true;
+  }
+
+ private:
+  const SpacePart& part_;
+  Eigen::MatrixXd T_;  // of raw columns
+  IdentificationModel::Enclosure out_;
+};
+
 class StudySpace : public ConfigurationSpace {
  public:
-  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, const Configurations& measured,
+  StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, Configurations measured,
              const Spacing& spacing, Eigen::MatrixXd R)
-      : parts_(std::move(parts)), candidates_(candidates), measured_(measured), spacing_(spacing), R_(std::move(R)) {
+      : parts_(std::move(parts)), candidates_(candidates), measured_(std::move(measured)), spacing_(spacing), R_(std::move(R)) {
     for (const Coordinate& c : parts_.front().workspace->proposed())
       axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad", c.values});
     // Poses that are there already are holes in the box.
-    box_ = measured.count() == 0 || spacing.unit.size() == 0;
+    box_ = measured_.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
   }
 
@@ -186,16 +208,22 @@ class StudySpace : public ConfigurationSpace {
     }
     return count;
   }
-  std::string not_harmonic() const override {
-    if (parts_.size() > 1) return "several variants or effects";
+  HarmonicForms harmonic_forms(const WeightedConfigurations& where) const override {
+    return harmonic_forms_of(parts_, axes_, R_, where);
+  }
+  std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd& T) const override {
     const SpacePart& part = parts_.front();
-    if (part.features != nullptr) return "an unmodelled effect";
-    if (part.mix.size() > 0) return "effects of another variant";
-    for (const Coordinate& c : parts_.front().workspace->proposed())
-      if (c.discrete() && c.values.size() > 1) return "a choice of " + c.name;
-    return part.model->multilinear(part.selected)
-               ? ""
-               : "readings, noise or columns that are not linear in cosines and sines of the joints";
+    if (parts_.size() > 1 || part.features != nullptr || part.mix.size() > 0) return nullptr;
+    std::vector<TaylorModel> middle;
+    for (const Coordinate& c : part.workspace->proposed()) {
+      if (c.discrete() && c.values.size() > 1) return nullptr;
+      middle.emplace_back(0.5 * (c.lower + c.upper));
+    }
+    // Blocks of the task are J R⁻¹.
+    auto result = std::make_unique<StudyEnclosure>(part, R_.triangularView<Eigen::Upper>().solve(T));
+    std::vector<TaylorModel> limits;
+    if (!result->allowed(middle, limits)) return nullptr;
+    return result;
   }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
@@ -206,7 +234,7 @@ class StudySpace : public ConfigurationSpace {
  private:
   std::vector<SpacePart> parts_;
   const Configurations& candidates_;
-  const Configurations& measured_;
+  Configurations measured_;
   Spacing spacing_;
   Eigen::MatrixXd R_;
   std::vector<Axis> axes_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fixed_poses.hpp"
 #include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/read_poses.hpp"
@@ -84,22 +85,23 @@ Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configura
 
 /// What is known before of the columns of a search: tolerances, poses measured already, the size of an effect.
 void fill_prior(const Study& study, Variant& variant, const Settings& settings) {
-  if (!settings.prior && study.measured.count() == 0 && variant.features == nullptr) return;
+  const Configurations known = known_before(study);
+  if (!settings.prior && known.count() == 0 && variant.features == nullptr) return;
   const auto features = variant.features == nullptr ? 0 : Eigen::Index(variant.features->columns());
   const auto m = Eigen::Index(variant.columns.selected.size());
-  variant.known_before = settings.prior || study.measured.count() > 0;
+  variant.known_before = settings.prior || known.count() > 0;
   variant.prior = Eigen::MatrixXd::Zero(features + m, features + m);
   variant.prior.diagonal().head(features).setOnes();
   if (settings.prior) variant.prior.diagonal().tail(m) = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
-  if (study.measured.count() == 0) return;
-  const BlockArray blocks = search_blocks(variant, study.measured, settings.planner.threads);
+  if (known.count() == 0) return;
+  const BlockArray blocks = search_blocks(variant, known, settings.planner.threads);
   variant.prior += blocks.all().transpose() * blocks.all();
 }
 
 void resolve(Study& study, Variant& variant, const Problem& problem, const Settings& settings) {
-  const bool known_before = settings.prior || study.measured.count() > 0;
-  ResolvedColumns resolved = resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known_before,
-                                             settings.planner.threads);
+  const bool known = settings.prior || study.measured.count() + study.fixed.count() > 0;
+  ResolvedColumns resolved =
+      resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known, settings.planner.threads);
   variant.columns = std::move(resolved.columns);
   variant.dropped = std::move(resolved.dropped);
   variant.reasons = std::move(resolved.reasons);
@@ -108,7 +110,7 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
   variant.test_points =
       test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed, &variant.test_places);
   allow_for_unmodelled(problem, study.configurations, settings.planner.threads, variant);
-  if (!known_before && settings.poses > 0)
+  if (!known && settings.poses > 0)
     require_enough_poses(*variant.model, study.configurations, columns, settings.poses, settings.planner.threads);
   fill_prior(study, variant, settings);
 }
@@ -118,6 +120,8 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
 void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
 }
+
+Configurations known_before(const Study& study) { return with_measured(study, study.fixed); }
 
 Configurations with_measured(const Study& study, const Configurations& poses) {
   Configurations all = study.measured;
@@ -146,6 +150,8 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   study.measured.dimension = int(coordinates.size());
   if (const auto measured = given_or_read(settings.measured, settings.measured_file, coordinates))
     for (const auto& q : measured->configurations) append(study.measured, q);
+  study.fixed.dimension = study.measured.dimension;
+  if (settings.fixed) fix_poses(study, *settings.fixed, settings.repeats);
   if (const auto list = given_or_read(settings.candidates_from, settings.candidates_file, without_limits(coordinates)))
     take_listed_candidates(study, problem, *list);
   else study.configurations = common(study.variants, drawn(study, settings, monitor));
@@ -173,16 +179,16 @@ void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& 
   study.usual_distance = false;
   // Whoever lists candidates chose how near they are to each other.
   if (stated || settings.repeats.most > 1 || !study.list.empty()) return;
-  Spacing usual = usual_spacing(coordinates, study.configurations, study.measured, settings.poses);
+  Spacing usual = usual_spacing(coordinates, study.configurations, known_before(study), settings.poses);
   study.has_minimum_distance = study.usual_distance = usual.unit.size() > 0;
   if (study.usual_distance) study.spacing = std::move(usual);
 }
 
 void keep_away_from_measured(Study& study, Repeats repeats) {
-  const Configurations all = study.configurations;
+  const Configurations all = study.configurations, known = known_before(study);
   const auto taken = [&](std::span<const double> q) {
-    for (std::size_t i = 0; i < study.measured.count(); ++i) {
-      const auto other = study.measured[i];
+    for (std::size_t i = 0; i < known.count(); ++i) {
+      const auto other = known[i];
       const bool same = std::equal(q.begin(), q.end(), other.begin());
       if (study.has_minimum_distance ? study.spacing.too_near(other, q) : repeats.most == 1 && same) return true;
     }
@@ -193,7 +199,8 @@ void keep_away_from_measured(Study& study, Repeats repeats) {
   for (std::size_t i = 0; i < all.count(); ++i)
     if (!taken(all[i])) append(study.configurations, all, i);
   if (const long lost = long(all.count() - study.configurations.count()); lost > 0)
-    study.configurations.rejected.emplace_back("measured already", lost);
+    study.configurations.rejected.emplace_back(
+        study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
   if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a pose that is there already");
   if (!study.has_minimum_distance) return;
   study.minimum_distance = study.spacing;
@@ -230,7 +237,7 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
       parts.front().mix = study.discrepancy->mix;
       parts.front().features = nullptr;
     }
-    return make_configuration_space(std::move(parts), study.configurations, study.measured, study.spacing, R);
+    return make_configuration_space(std::move(parts), study.configurations, known_before(study), study.spacing, R);
   };
 }
 

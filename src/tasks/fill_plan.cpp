@@ -91,7 +91,7 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station) 
 
 std::optional<BodyDistance> body_distance(const std::optional<Separation>& found) {
   if (!found) return std::nullopt;
-  return BodyDistance{found->distance, found->first, found->second};
+  return BodyDistance{found->distance, found->first, found->second, found->points};
 }
 
 std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q) {
@@ -167,17 +167,18 @@ void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, co
   const IdentificationModel& model = *study.first().model;
   const Workspace& workspace = *study.first().workspace;
   const Eigen::VectorXd& contribution = judgement.evaluations.front().contribution;
-  const std::size_t before = study.measured.count();
+  const Configurations known = known_before(study);
+  const std::size_t before = known.count();
   for (std::size_t i = 0; i < before + chosen.count(); ++i) {
-    const bool measured = i < before;
-    PlannedPose pose = pose_of(model, measured ? study.measured[i] : chosen[i - before]);
+    const std::span<const double> q = i < before ? known[i] : chosen[i - before];
+    PlannedPose pose = pose_of(model, q);
     pose.id = int(i) + 1;
-    pose.measured = measured;
-    if (study.cell->sight != nullptr)
-      pose.sights = sights_of(*study.cell->sight, measured ? study.measured[i] : chosen[i - before]);
-    pose.nearest = nearest_at(*study.cell, measured ? study.measured[i] : chosen[i - before]);
+    pose.measured = i < study.measured.count();
+    pose.fixed = i < before && !pose.measured;
+    if (study.cell->sight != nullptr) pose.sights = sights_of(*study.cell->sight, q);
+    pose.nearest = nearest_at(*study.cell, q);
     pose.contribution = contribution[Eigen::Index(i)];
-    if (!measured) {
+    if (i >= before) {
       const int member = found.design.members[i - before];
       if (std::size_t(member) < study.configurations.count()) {
         pose.candidate = member;

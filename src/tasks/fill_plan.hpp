@@ -16,7 +16,7 @@ void fill_candidates(PlanStatistics& statistics, const Study& study);
 /// Efficiency of every variant; nothing if the plan serves one.
 void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, const std::vector<double>& references);
 
-/// Poses that are measured already, then the new ones, and how they lie in the workspace.
+/// Poses that are measured already, fixed ones, then those that the search chose, and how they lie in the workspace.
 void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const SearchResult& found,
                 const Judgement& judgement);
 

@@ -1,6 +1,7 @@
 #include "posewright/tasks/place_stations.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,6 +11,7 @@
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
 #include "posewright/workspace/candidates.hpp"
 #include "without_roadmap.hpp"
 
@@ -101,6 +103,7 @@ class Ranking {
     std::vector<StationRank> ranks = quick(choose);
     sort(ranks);
     PlanOptions full = options_.plan;
+    full.proof.seconds = 0.0;  // places are held against each other, not against what is possible
     for (std::size_t i = 0; i < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))); ++i) {
       if (!ranks[i].why_not.empty() || monitor_.should_stop()) break;
       monitor_.report({"full plans", double(i), double(options_.full), {}, {}, {}});
@@ -165,14 +168,20 @@ class Ranking {
     quick.candidates = std::min(quick_candidates, quick.candidates.value_or(problem_.design.candidates.value));
     quick.restarts = quick_restarts;
     quick.method = "exchange";
-    std::vector<StationRank> ranks;
-    for (const Set& set : sets) {
-      if (monitor_.should_stop()) throw CannotDo("stopped before every place was looked at");
-      monitor_.report({"places", double(ranks.size()), double(sets.size()), {}, {}, {}});
+    quick.candidates_alone = true;
+    // Places side by side keep threads busier than the parts of one plan do.
+    const int threads = thread_count(options_.plan.threads), at_once = std::min(threads, int(sets.size()));
+    quick.threads = std::max(1, threads / std::max(1, at_once));
+    std::vector<StationRank> ranks(sets.size());
+    std::atomic<int> done = 0;
+    parallel_for(sets.size(), at_once, [&](std::size_t s, int) {
+      if (monitor_.should_stop()) return;
       std::vector<StationSpec> stations;
-      for (const std::size_t i : set) stations.push_back(places_[i]);
-      ranks.push_back(judge(unconnected_, stations, quick));
-    }
+      for (const std::size_t i : sets[s]) stations.push_back(places_[i]);
+      ranks[s] = judge(unconnected_, stations, quick);
+      monitor_.report({"places", double(++done), double(sets.size()), {}, {}, {}});
+    });
+    if (monitor_.should_stop()) throw CannotDo("stopped before every place was looked at");
     return ranks;
   }
 

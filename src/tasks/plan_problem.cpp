@@ -30,14 +30,18 @@ class PlanSearch {
   PlanSearch(const Problem& problem, const PlanOptions& options, const Monitor& monitor)
       : problem_(problem),
         settings_(settings_of(problem, options)),
+        list_notes_(take_fixed(problem, options, settings_)),
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
+    study_.notes.insert(study_.notes.end(), list_notes_.begin(), list_notes_.end());
     study_.first().everything_counts = options.everything_counts;
+    if (study_.has_minimum_distance)
+      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.spacing);
     if (study_.usual_distance)
       study_.notes.push_back(
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
-                      distance_text(study_.first().workspace->coordinates(), study_.spacing)));
+                      minimum_distance_));
     if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
       study_.notes.push_back(std::move(note));
   }
@@ -45,8 +49,8 @@ class PlanSearch {
   const Settings& settings() const { return settings_; }
 
   Plan plan(int poses) {
-    SearchRequest request = spaced_request(study_, settings_, poses);
-    request.make_space = space_maker(study_, settings_.criterion);
+    SearchRequest request = spaced_request(study_, settings_, poses - fixed());
+    if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
     request.prove = settings_.poses > 0;
     request.proof = settings_.proof;
     const SearchResult found = search(
@@ -58,7 +62,7 @@ class PlanSearch {
   Plan smallest() {
     std::vector<CurvePoint> curve;
     settings_.planner.use_all_time = false;
-    int enough = 0, too_few = fewest() - 1, unfit = limit() + 1;
+    int enough = 0, too_few = std::max(fewest(), fixed() + 1) - 1, unfit = limit() + 1;
     Plan best;
     for (int poses = std::min(too_few + 1, limit()); enough == 0;) {
       std::optional<Plan> trial = try_plan(poses, curve.empty() && poses == too_few + 1);
@@ -97,9 +101,12 @@ class PlanSearch {
   }
 
  private:
+  /// Of the poses of any plan.
+  int fixed() const { return int(study_.fixed.count()); }
+
   int limit() const {
     if (settings_.repeats.most > 1) return most_poses;
-    return std::min<int>(most_poses, int(study_.configurations.count()));
+    return std::min<int>(most_poses, int(study_.configurations.count()) + fixed());
   }
 
   int fewest() const {
@@ -168,17 +175,17 @@ class PlanSearch {
     for (const int i : found.design.members)
       append(chosen, std::size_t(i) < n ? study_.configurations[std::size_t(i)]
                                         : std::span<const double>(found.design.added[std::size_t(i) - n]));
-    const Judgement judgement = judge(study_, chosen, settings_);
+    const Configurations poses = with_fixed(chosen);
+    const Judgement judgement = judge(study_, poses, settings_);
     Plan plan;
     plan.seed = settings_.planner.seed;
     plan.problem_file = problem_.file.string();
     plan.problem_sha256 = problem_.sha256;
     plan.parameters_file = parameters_of(problem_);
     plan.method = settings_.method;
-    if (study_.has_minimum_distance)
-      plan.minimum_distance = distance_text(study_.first().workspace->coordinates(), study_.spacing);
+    plan.minimum_distance = minimum_distance_;
     fill_judgement(plan, judgement, study_, settings_);
-    plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, chosen),
+    plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, poses),
                                 judgement.evaluations.front(), settings_.planner.threads);
     const double phi = phi_of(*found.measure, settings_.criterion, study_, chosen, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
@@ -187,6 +194,7 @@ class PlanSearch {
     // References of everything are none of the parameters'.
     if (!study_.first().everything_counts) fill_variants(plan, judgement, study_, found.references);
     fill_poses(plan, study_, chosen, found, judgement);
+    fill_without_fixed(plan, chosen, found, phi);
     fill_candidates(plan.statistics, study_);
     plan.statistics.cell = cell_notes(*study_.cell);
     plan.statistics.limit_margins = limit_margins(*study_.first().workspace, problem_);
@@ -199,10 +207,31 @@ class PlanSearch {
     return plan;
   }
 
+  /// Fixed poses, then what the search chose.
+  Configurations with_fixed(const Configurations& chosen) const {
+    Configurations all = study_.fixed;
+    all.values.insert(all.values.end(), chosen.values.begin(), chosen.values.end());
+    return all;
+  }
+
+  /// What is left without each fixed pose, which no search has looked at.
+  void fill_without_fixed(Plan& plan, const Configurations& chosen, const SearchResult& found, double phi) const {
+    if (fixed() == 0) return;
+    const int threads = settings_.planner.threads;
+    const std::vector<double> left =
+        found.measure->phi_without(search_parts(study_, settings_.criterion, chosen, threads),
+                                   search_parts(study_, settings_.criterion, study_.fixed, threads));
+    for (std::size_t i = 0; i < left.size(); ++i)
+      plan.poses[study_.measured.count() + i].without =
+          std::min(1.0, std::exp((left[i] - phi) / (found.degree > 0 ? found.degree : 1.0)));
+  }
+
   const Problem& problem_;
   Settings settings_;
+  std::vector<std::string> list_notes_;
   const Monitor& monitor_;
   Study study_;
+  std::string minimum_distance_;  // for people; empty: none
 };
 
 }  // namespace
@@ -224,6 +253,7 @@ Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& pl
   options.poses = poses;
   options.smallest = options.reserve = false;
   options.measured = poses_of(plan, pose_coordinates(problem, options.variant));
+  options.fixed = PoseList{};
   return plan_problem(problem, options, monitor);
 }
 

@@ -17,6 +17,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
+#include "report_neighbours.hpp"
 #include "report_scene.hpp"
 
 namespace posewright {
@@ -82,10 +83,13 @@ class ReportBuilder {
     std::vector<std::pair<int, std::vector<double>>> poses;
     for (std::size_t i = 0; i < list_.ids.size(); ++i) poses.emplace_back(list_.ids[i], list_.configurations[i]);
     const auto& coordinates = study_.first().workspace->coordinates();
-    fill_scene(report_, problem_, *study_.cell, poses, coordinates, options_.route);
+    const Drawing drawing(problem_, *study_.cell);
+    fill_scene(report_, drawing, poses, coordinates, options_.route);
+    fill_pictures();
     for (const Coordinate& c : study_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
     fill_prefix();
     fill_position_errors(judgement);
+    fill_moves(drawing, poses);
     if (options_.candidates) fill_candidates();
     if (options_.sizes) fill_curve();
     return std::move(report_);
@@ -168,6 +172,29 @@ class ReportBuilder {
       append(list, all_[i]);
       report_.prefix.push_back(point_of(list, int(list.count())));
     }
+  }
+
+  /// Where the camera will see the board's points.
+  void fill_pictures() {
+    if (!report_.camera) return;
+    Eigen::VectorXd pixels;
+    for (std::size_t i = 0; i < list_.ids.size(); ++i) {
+      if (!study_.first().model->predict(list_.configurations[i], {}, pixels)) continue;
+      std::vector<Eigen::Vector2d> points;
+      for (Eigen::Index k = 0; k + 1 < pixels.size(); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
+      report_.camera->pictures.emplace_back(list_.ids[i], std::move(points));
+    }
+  }
+
+  void fill_moves(const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses) {
+    if (!options_.moves) {
+      report_.why_no_neighbours = "--brief left it out";
+      return;
+    }
+    std::vector<std::pair<int, std::vector<double>>> open;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (!list_.measured[i]) open.push_back(poses[i]);
+    fill_neighbours(report_, study_, drawing, open, options_.threads, whole_);
   }
 
   /// Made once for all searches.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/cell/drawing.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 
@@ -52,9 +51,10 @@ class MotionRecorder {
       : report_(report), drawing_(drawing), coordinates_(coordinates) {}
 
   void show(std::optional<int> pose, std::span<const double> q) {
-    DrawnPose drawn = drawing_.at(q);
-    report_.keyframes.push_back(
-        {pose, seconds_, std::move(drawn.frames), std::move(drawn.lines), drawn.tip, std::move(drawn.targets)});
+    ReportKeyframe keyframe = keyframe_at(drawing_, q);
+    keyframe.pose = pose;
+    keyframe.seconds = seconds_;
+    report_.keyframes.push_back(std::move(keyframe));
   }
 
   void play(const Json& route, const std::vector<std::pair<int, std::vector<double>>>& poses) {
@@ -149,12 +149,32 @@ class MotionRecorder {
   double seconds_ = 0.0, coarse_ = 1.0;
 };
 
+/// Coordinates as they are written of a pose: without choices.
+void fill_chain(Report& report, const DrawnChain& chain, const std::vector<Coordinate>& coordinates) {
+  ReportChain written{chain.X_MeasureBase, {}, chain.X_LastTip, chain.targets};
+  for (const DrawnChain::Joint& joint : chain.joints) {
+    const auto before = coordinates.begin() + joint.coordinate;
+    const auto choices = std::count_if(coordinates.begin(), before, [](const Coordinate& c) { return c.choice(); });
+    written.joints.push_back({joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset,
+                              joint.coordinate - int(choices)});
+  }
+  report.chain = std::move(written);
+}
+
+void fill_camera(Report& report, const DrawnCamera& camera) {
+  report.camera = ReportCamera{camera.on_tip,       camera.X_CarrierCamera, camera.X_CarrierBoard, camera.image.width,
+                               camera.image.height, camera.image.corners,   camera.points,         {}};
+}
+
 }  // namespace
 
-void fill_scene(Report& report, const Problem& problem, const Cell& cell,
-                const std::vector<std::pair<int, std::vector<double>>>& poses,
+ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q) {
+  DrawnPose drawn = drawing.at(q);
+  return {std::nullopt, 0.0, std::move(drawn.frames), std::move(drawn.lines), drawn.tip, std::move(drawn.targets)};
+}
+
+void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file) {
-  const Drawing drawing(problem, cell);
   if (!drawing.warning().empty()) report.notes.push_back(drawing.warning());
   if (!drawing.robot().empty()) report.title = drawing.robot();
   report.frames = drawing.frames();
@@ -165,6 +185,8 @@ void fill_scene(Report& report, const Problem& problem, const Cell& cell,
     std::visit(Fill{body, drawn.mesh}, drawn.shape);
     report.bodies.push_back(std::move(body));
   }
+  if (drawing.chain()) fill_chain(report, *drawing.chain(), coordinates);
+  if (drawing.camera()) fill_camera(report, *drawing.camera());
   MotionRecorder film(report, drawing, coordinates);
   if (report.route_json.empty()) {
     for (const auto& [id, q] : poses) film.show(id, q);

@@ -4,9 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "posewright/cell/cell.hpp"
+#include "posewright/cell/drawing.hpp"
 #include "posewright/outputs/report.hpp"
-#include "posewright/problem/problem.hpp"
 
 namespace posewright {
 
@@ -15,8 +14,10 @@ namespace posewright {
 /// @param poses  configuration of each pose of the plan by its id
 /// @param route  its file's text; empty: none
 /// Throws InputError for a route that names poses or coordinates that are not there.
-void fill_scene(Report& report, const Problem& problem, const Cell& cell,
-                const std::vector<std::pair<int, std::vector<double>>>& poses,
+void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file);
+
+/// What is drawn of one configuration.
+ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q);
 
 }  // namespace posewright

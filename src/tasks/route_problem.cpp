@@ -27,6 +27,12 @@ struct Stop {
   PlannedPose pose;
 };
 
+/// A tracker follows one target after the other; what else there is reads all at once.
+bool reads_in_turn(const MeasurementSpec& measurement) {
+  const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument);
+  return points != nullptr && std::holds_alternative<TrackerNoise>(points->noise);
+}
+
 std::string temperature_of(const PlannedPose& pose) {
   for (const auto& [name, choice] : pose.conditions)
     if (name == "temperature") return choice;
@@ -50,7 +56,8 @@ class Router {
     route_.seed = options.seed;
     route_.closed = options.closed;
     route_.from_home = options.from_home;
-    route_.settle = problem.workspace.motion.settle;
+    route_.settle = options.settle.value_or(problem.workspace.motion.settle);
+    one_reading_ = options.reading.value_or(problem.workspace.motion.reading) * problem.measurement.repeats;
     for (const Coordinate& c : space_.coordinates()) {
       route_.names.push_back(c.name);
       route_.units.push_back(c.unit);
@@ -286,8 +293,19 @@ class Router {
       route_.poses.push_back(stops_[std::size_t(i)].pose);
       const std::size_t done = route_.poses.size();
       // Before anything else, after every so many poses, and at the end, so that drift is bracketed.
-      if (every > 0 && (done == 1 || done % std::size_t(every) == 0 || i == order.back())) add_references(i);
+      const bool with_references = every > 0 && (done == 1 || done % std::size_t(every) == 0 || i == order.back());
+      if (with_references) add_references(i);
+      if (one_reading_ > 0)
+        route_.reading.push_back(readings_of(route_.poses.back().sights) +
+                                 (with_references ? readings_of(route_.references.back().sights) : 0.0));
     }
+  }
+
+  /// Seconds of reading these targets, those that are seen: of a pose or of references.
+  double readings_of(const std::vector<TargetSight>& sights) const {
+    if (!reads_in_turn(problem_.measurement) || sights.empty()) return one_reading_;
+    const auto seen = std::count_if(sights.begin(), sights.end(), [](const auto& s) { return s.hidden_by.empty(); });
+    return one_reading_ * double(seen);
   }
 
   /// What comes nearest to each other on the way.
@@ -317,8 +335,9 @@ class Router {
   Variant variant_;
   MotionSpace space_;
   Route route_;
-  std::vector<Stop> stops_;  // the first is home
-  std::vector<int> open_;    // stops that can be reached, home too where the route begins there
+  double one_reading_ = 0.0;  // s, of one target where they are read in turn
+  std::vector<Stop> stops_;   // the first is home
+  std::vector<int> open_;     // stops that can be reached, home too where the route begins there
   std::unique_ptr<Motions> motions_;
 };
 

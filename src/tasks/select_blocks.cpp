@@ -120,6 +120,7 @@ void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation
     const bool chosen = i >= given.size();
     pose.candidate = chosen ? start.free[std::size_t(found.design.members[i - given.size()])] : given[i];
     pose.measured = !chosen && i >= options.fixed.size();
+    pose.fixed = !chosen && !pose.measured;
     pose.contribution = evaluation.contribution[Eigen::Index(i)];
     pose.without = chosen ? found.without[i - given.size()] : without[i];
     plan.poses.push_back(std::move(pose));

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "posewright/cell/cell.hpp"
@@ -24,27 +26,38 @@ bool collides(const Scene& scene, const std::vector<double>& q, double beside) {
   return false;
 }
 
-void expect_the_definition(const Problem& problem, int draws) {
+/// @param steps  states looked at after each draw, nearer and nearer to each other as those of a search are
+void expect_the_definition(const Problem& problem, int draws, int steps = 0) {
   const auto cell = make_cell(problem);
   const Collision& collision = *cell->collision;
   Random random(7, 0);
   int free = 0, hit = 0;
-  for (int i = 0; i < draws; ++i) {
-    std::vector<double> q;
-    for (const Coordinate& c : cell->model->coordinates())
-      q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+  std::vector<double> q;
+  for (int i = 0; i < draws * (1 + steps); ++i) {
+    const bool fresh = i % (1 + steps) == 0;
+    const double step = std::pow(0.5, i % (1 + steps));
+    if (fresh) q.clear();
+    for (std::size_t k = 0; k < cell->model->coordinates().size(); ++k) {
+      const Coordinate& c = cell->model->coordinates()[k];
+      if (fresh) q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+      else if (!c.discrete()) q[k] = std::clamp(q[k] + random.uniform(-step, step), c.lower, c.upper);
+    }
     const bool found = collision.violation(q) >= 0;
     // Where the distance is within the accuracy of its iteration from the clearance, either answer holds.
     if (found) EXPECT_TRUE(collides(collision.scene(), q, 1e-5)) << i;
     else EXPECT_FALSE(collides(collision.scene(), q, -1e-5)) << i;
     (found ? hit : free) += 1;
   }
-  EXPECT_GT(free, draws / 20);
-  EXPECT_GT(hit, draws / 20);
+  EXPECT_GT(free, draws * (1 + steps) / 20);
+  EXPECT_GT(hit, draws * (1 + steps) / 20);
 }
 
 TEST(Collision, OfTheExampleCellIsThatOfAllItsPairs) {
   expect_the_definition(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 4000);
+}
+
+TEST(Collision, OfAWalkThatSlowsDownIsThatOfAllPairsAtEveryStep) {
+  expect_the_definition(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 300, 14);
 }
 
 TEST(Collision, OfAVendorsMeshesIsThatOfAllTheirPairs) {
@@ -64,7 +77,7 @@ TEST(Collision, OfAVendorsMeshesIsThatOfAllTheirPairs) {
   };
   expect_the_definition(
       problem("kuka_kr300_r2700_2/kuka_quantec_support/urdf/kr300_r2700_2.urdf", "[0.3, 0.3, 0.03], at: [0, 0, 0.03]"),
-      150);
+      30, 9);
   expect_the_definition(problem("ur10/example-robot-data/robots/ur_description/urdf/ur10_robot.urdf",
                                 "[0.1, 0.05, 0.04], at: [0, 0.06, 0]"),
                         150);

@@ -253,5 +253,29 @@ TEST(Packages, AreFoundByTheNameInTheirOwnFileBesideTheUrdfsPackage) {
   EXPECT_THROW(find_mesh("package://grinders/meshes/g.stl", problem, {}), InputError);
 }
 
+TEST(Packages, HoldTheRobotsUrdfToo) {
+  const TemporaryFolder folder;
+  const std::filesystem::path src = folder.path() / "src";
+  std::filesystem::create_directories(src / "robot_support" / "urdf");
+  std::filesystem::create_directories(src / "calibration");
+  const auto urdf = folder.write("src/robot_support/urdf/arm.urdf", one_link_arm);
+  const auto named = [&](const std::string& package) {
+    return folder.write("src/calibration/p.yaml",
+                        "posewright: 1\nrobot: {urdf: \"package://" + package +
+                            "/urdf/arm.urdf\"}\nmeasurement: {type: position, target: [0, 0, 0], device: {type: "
+                            "isotropic, noise: 1 mm}}\nvariants: {all: {parameters: auto}}\n");
+  };
+  const auto urdf_of = [](const Problem& problem) { return std::get<SerialArmSpec>(problem.robot).urdf; };
+  // By the folder's name above the problem file, and where the user says.
+  EXPECT_EQ(urdf_of(read_problem(named("robot_support"))), urdf);
+  EXPECT_EQ(urdf_of(read_problem(named("elsewhere"), {{"elsewhere", src / "robot_support"}})), urdf);
+  try {
+    read_problem(named("elsewhere"));
+    FAIL() << "found";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("p.yaml:2: package 'elsewhere' is not found"));
+  }
+}
+
 }  // namespace
 }  // namespace posewright

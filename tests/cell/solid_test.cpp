@@ -100,6 +100,31 @@ TEST(Distance, IsTheSameFromBothSidesAndCappedAndAboveItsLowerBound) {
       }
 }
 
+TEST(NearestPoints, LieOnEitherSolidAndAreAsFarApartAsTheSolids) {
+  Random random(5, 0);
+  std::vector<SolidPointer> solids = one_of_each();
+  solids.push_back(plane({0, 0, 1}));
+  const SolidPointer speck = sphere(1e-6);
+  int apart = 0, stated = 0;
+  for (const SolidPointer& a : solids)
+    for (const SolidPointer& b : solids)
+      for (int i = 0; i < 40; ++i) {
+        if (a == solids.back() && b == solids.back()) continue;
+        const Isometry3d X = random_pose(random, 0.8), Y = random_pose(random, 0.8);
+        const double d = distance(*a, X, *b, Y, 9);
+        const auto points = nearest_points(*a, X, *b, Y);
+        if (d == 0) EXPECT_FALSE(points.has_value());
+        apart += d > 0;
+        if (!points) continue;
+        ++stated;
+        const Vector3d &p = (*points)[0], &q = (*points)[1];
+        EXPECT_NEAR((p - q).norm(), d, 1e-5);
+        EXPECT_LT(distance(*a, X, *speck, at(p.x(), p.y(), p.z()), 1), 1.1e-5);
+        EXPECT_LT(distance(*b, Y, *speck, at(q.x(), q.y(), q.z()), 1), 1.1e-5);
+      }
+  EXPECT_GT(stated, 0.85 * apart) << apart << ", of a tenth FCL has no points that its distance is between";
+}
+
 TEST(Distance, IsZeroWhereOneSolidIsInAnother) {
   const SolidPointer room = mesh(box_mesh({4, 4, 4}));
   EXPECT_EQ(distance(*room, at(0, 0, 0), *sphere(0.1), at(0.5, 0.5, 0.5), 1), 0.0);

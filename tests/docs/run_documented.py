@@ -39,6 +39,8 @@ BEFORE = {
     "docs/calibrate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + READINGS.format("later.csv --seed 2"),
     "docs/commands.md": OWN + BLOCKS.format("blocks.npy") + KR270 + " --poses 40\n" + READINGS.format("measured.csv")
     + READINGS.format("more.csv --seed 2") + f"posewright plan examples/kr270/problem.yaml {QUICK} --poses 20 -o - --poses-csv data.csv\n",
+    "docs/compensate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + "posewright route plan.json -o route.json\n"
+    + "posewright export route.json --to kuka-krl --controller kuka-kr-c4 -o WELD.src\n",
     "docs/compare.md": TELESCOPE + "\n" + TELESCOPE + " --seed 2 -o - --poses-csv mine.csv\n",
     "docs/export.md": OWN + KR270 + "\nposewright route plan.json -o route.json\n",
     "docs/parameters-file.md": OWN + KR270 + "\n" + READINGS.format("measured.csv")
@@ -53,6 +55,9 @@ FIRST = {"posewright stations examples/cell": "sed -i 's/reachable: true/reachab
 # What a page's reader has only by then: in front of the command that begins so.
 BETWEEN = {
     ("README.md", "posewright calibrate"): READINGS.format("measured.csv"),
+    ("README.md", "posewright compensate"): "posewright export plan.json --to kuka-krl -o program.src\n",
+    ("docs/commands.md", "posewright compensate"): "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n"
+    + "posewright export plan.json --to kuka-krl -o program.src\n",
     ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
     ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
     ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "posewright/model/command_solver.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/model/whitening.hpp"
@@ -44,6 +45,22 @@ long allocations_of_blocks(const std::string& example) {
   return allocations - before;
 }
 
+long allocations_of_commands() {
+  const Problem problem = read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/kr270/problem.yaml");
+  const VariantSpec& variant = problem.variants.front();
+  auto arm = make_tip(problem, variant);
+  std::vector<double> correction(arm->parameters().size(), 1e-4), q, command(6), change(6);
+  const std::vector<Coordinate> limits = arm->coordinates();
+  for (const Coordinate& c : limits) q.push_back(0.45 * c.lower + 0.55 * c.upper);
+  const CommandSolver solver(make_tip(problem, variant), std::move(arm), correction, limits, {});
+  const auto reached = [&] { return solver.solve(q, command, change).outcome == CommandSolver::Outcome::reached; };
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(reached());
+  EXPECT_NE(command, q);
+  const long before = allocations;
+  for (int i = 0; i < 100; ++i) reached();
+  return allocations - before;
+}
+
 TEST(Allocation, TheCounterCounts) {
   const long before = allocations;
   std::free(std::malloc(100));
@@ -54,6 +71,8 @@ TEST(Allocation, BlocksOfAnArmAreBuiltWithoutTheHeap) { EXPECT_EQ(allocations_of
 TEST(Allocation, BlocksOfAParallelRobotAreBuiltWithoutTheHeap) {
   EXPECT_EQ(allocations_of_blocks("telescope/problem.yaml"), 0);
 }
+
+TEST(Allocation, CommandsOfAnArmAreFoundWithoutTheHeap) { EXPECT_EQ(allocations_of_commands(), 0); }
 
 }  // namespace
 }  // namespace posewright

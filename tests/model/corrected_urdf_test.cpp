@@ -247,5 +247,85 @@ TEST(CorrectedUrdf, HasNoDenavitHartenbergParametersWithMimicJoints) {
   EXPECT_THROW(corrected_urdf(arm, {}, Convention::dh, {{"a.theta", "rad", 0, 0.1}}), CannotDo);
 }
 
+/// A xacro file and what xacro makes of it.
+const char* const macro_text = R"(<?xml version="1.0"?>
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+  <!-- lengths of the data sheet -->
+  <xacro:property name="reach" value="0.4"/>
+  <xacro:macro name="arm" params="prefix">
+    <link name="${prefix}base"/><link name="${prefix}l1"/><link name="${prefix}l2"/><link name="${prefix}tip"/>
+    <joint name="${prefix}a" type="revolute"> <origin xyz="0 0 0.3"/> <!-- pan -->
+      <parent link="${prefix}base"/><child link="${prefix}l1"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+    <joint name="${prefix}b" type="revolute"><parent link="${prefix}l1"/><child link="${prefix}l2"/>
+      <origin rpy="0 0 0" xyz="${reach} 0 0"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+    <joint name="${prefix}end" type="fixed"><origin xyz="0.1 0 ${reach / 2}"/><parent link="${prefix}l2"/><child link="${prefix}tip"/></joint>
+    <transmission name="t"><joint name="${prefix}a"/></transmission>
+  </xacro:macro>
+  <xacro:arm prefix="left_"/>
+</robot>
+)";
+
+std::string expanded(std::string text, const std::string& prefix) {
+  const auto replace = [&](const std::string& what, const std::string& with) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what))
+      text.replace(at, what.size(), with);
+  };
+  replace("<xacro:arm prefix=\"left_\"/>", "");
+  replace("<xacro:property name=\"reach\" value=\"0.4\"/>", "");
+  replace("<xacro:macro name=\"arm\" params=\"prefix\">", "");
+  replace("</xacro:macro>", "");
+  replace("${prefix}", prefix);
+  replace("${reach / 2}", "0.2");
+  replace("${reach}", "0.4");
+  return text;
+}
+
+TEST(CorrectedXacro, ExpandsToTheCorrectedUrdfAndKeepsCommentsAndMacros) {
+  const TemporaryFolder folder;
+  SerialArmSpec arm = arm_of(folder.write("arm.xacro", macro_text));
+  arm.expanded = std::make_shared<const std::string>(expanded(macro_text, "left_"));
+  const SerialChain model(read_urdf_chain(arm, {}));
+  const std::vector<CalibratedValue> values = random_values(model, 0.01, "base\\..*|.*\\.gear", 4);
+  const CorrectedUrdf urdf = corrected_urdf(arm, {}, Convention::frames, values),
+                      macro = corrected_xacro(arm, {}, Convention::frames, values);
+  EXPECT_EQ(expanded(macro.text, "left_"), urdf.text);
+  EXPECT_EQ(macro.left_out, urdf.left_out);
+  EXPECT_NE(macro.text.find("<!-- lengths of the data sheet -->"), std::string::npos);
+  EXPECT_NE(macro.text.find("<xacro:arm prefix=\"left_\"/>"), std::string::npos);
+  EXPECT_NE(macro.text.find("<joint name=\"${prefix}b\""), std::string::npos);
+  // Where nothing was found, not one byte moves.
+  std::vector<CalibratedValue> nothing = values;
+  for (CalibratedValue& v : nothing) v.value = v.nominal;
+  EXPECT_EQ(corrected_xacro(arm, {}, Convention::frames, nothing).text, macro_text);
+}
+
+TEST(CorrectedXacro, IsRefusedWhereLinesMakeTwoJointsOrAnotherFileHasThem) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text, const std::string& urdf) -> std::string {
+    SerialArmSpec arm = arm_of(folder.write("arm.xacro", text), "left_tip");
+    arm.base = {"left_base", 0};
+    arm.expanded = std::make_shared<const std::string>(urdf);
+    const SerialChain model(read_urdf_chain(arm, {}));
+    try {
+      corrected_xacro(arm, {}, Convention::frames, random_values(model, 0.01, "base\\..*|.*\\.gear", 4));
+    } catch (const CannotDo& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string left = expanded(macro_text, "left_"), right = expanded(macro_text, "right_");
+  EXPECT_NE(refusal("<robot><xacro:include filename=\"x\"/></robot>", left).find("joint 'left_a' is not in this file"),
+            std::string::npos);
+  const std::string links = right.substr(right.find("<link"), right.find("<transmission") - right.find("<link"));
+  std::string both = left;
+  both.insert(
+      both.find("<transmission"),
+      links + "<joint name=\"between\" type=\"fixed\"><parent link=\"left_l2\"/><child link=\"right_base\"/></joint>");
+  EXPECT_NE(refusal(macro_text, both).find("joint 'left_a' is made by the same lines as 'right_a'"), std::string::npos);
+  std::string block = macro_text;
+  block.replace(block.find("<origin xyz=\"0 0 0.3\"/>"), 24, "<xacro:insert_block name=\"origin\"/>");
+  EXPECT_NE(refusal(block, left).find("has its origin from a macro"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace posewright

@@ -128,6 +128,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
       {{plan, "--to", "kuka-krl", "--controller", settings}, 2, "r.yaml:1: unknown key 'colour'"},
       {{plan, "--to", "moveit", "--speed", "5"}, 2, "--speed is not read for moveit; it has no options"},
       {{plan, "--to", "srdf", "--tool", "5"}, 2, "--tool is not read for srdf; allowed: --name, --group"},
+      {{plan, "--to", "kuka-krl", "--payload", "3"}, 2, "--payload is not read for kuka-krl"},
       {{plan, "--to", "urscript", "--speed", "0"}, 2, "--speed 0; a whole number from 1 to 100"},
       {{plan, "--to", "urscript", "--settle", "-1"}, 2, "--settle -1; a number from 0 to 3600"},
       {{plan, "--to", "urscript", "--wait", "nan"}, 2, "--wait nan"},

@@ -217,6 +217,8 @@ Program read_tp(const std::string& listing) {
     else if (match(line, R"(  WAIT DI\[[0-9]+\]=OFF)", m)) handshake.wait_low();
     else if (match(line, R"(  MESSAGE\[(.{1,24})\])", m)) program.messages.push_back(m[1].str());
     else if (line == "  PAUSE") handshake.stop();
+    else if (program.moves.empty() && match(line, R"(  PAYLOAD\[([0-9]+)\])", m))
+      program.load = {double(std::stoi(m[1].str()))};
     else if (!match(line, "  U(FRAME|TOOL)_NUM=[0-9]+", m)) bad(line);
   }
   handshake.idle();
@@ -242,6 +244,8 @@ Program read_urscript(const std::string& script) {
     if (line.starts_with("  # ")) program.comments.push_back(line.substr(4));
     else if (match(line, R"(  movej\(\[(.*)\], a=[0-9.]+, v=[0-9.]+\))", m)) handshake.move(numbers_in(m[1].str()));
     else if (match(line, R"(  sleep\()" + number + R"(\))", m)) handshake.timer();
+    else if (program.moves.empty() && match(line, R"(  set_payload\((.*), \[(.*)\]\))", m))
+      program.load = numbers_in(m[1].str() + ", " + m[2].str());
     else if (match(line, R"(  set_standard_digital_out\([0-7], True\))", m)) handshake.up();
     else if (match(line, R"(  set_standard_digital_out\([0-7], False\))", m)) handshake.down();
     else if (loop("False")) handshake.wait_high();

@@ -15,6 +15,8 @@ struct Program {
   std::vector<std::size_t> stops;          ///< moves after which a person is waited for (0: before the first)
   std::vector<std::string> comments, messages;
   std::set<std::string> tools;  ///< named by moves, where the language names them
+  /// What it says the robot carries before its first move: number of a payload schedule; kg, m, m, m.
+  std::vector<double> load;
 };
 
 Program read_krl(const std::string& source, const std::string& data, const std::string& name);

@@ -247,6 +247,26 @@ TEST(RobotPrograms, MoveWithTheToolThatIsNamed) {
   EXPECT_THAT(notes(), HasSubstr("tooldata tReflectors must exist"));
 }
 
+TEST(RobotPrograms, SayWhatTheRobotCarriesBeforeItMoves) {
+  ExportOptions options;
+  options.coupling = 1;
+  const auto tp = [&] {
+    return readers::read_tp(find_pose_format("fanuc-tp").write(random_sequence(6, 3, 1), options).files[0].bytes).load;
+  };
+  EXPECT_THAT(tp(), testing::IsEmpty());
+  options.payload = "3";
+  EXPECT_THAT(tp(), testing::ElementsAre(3));
+  options.coupling = {};
+  const auto urscript = [&](const std::string& payload) {
+    options.payload = payload;
+    return readers::read_urscript(find_pose_format("urscript").write(random_sequence(6, 3, 1), options).files[0].bytes)
+        .load;
+  };
+  EXPECT_THAT(urscript(""), testing::IsEmpty());
+  EXPECT_THAT(urscript("2.5,0.01,-0.02,0.05"), testing::ElementsAre(2.5, 0.01, -0.02, 0.05));
+  EXPECT_THAT(urscript("4"), testing::ElementsAre(4, 0, 0, 0));
+}
+
 TEST(RobotPrograms, TakeSignsAndZerosFromTheSettings) {
   const PoseSequence sequence = random_sequence(6, 5, 6);
   ExportOptions options;
@@ -306,6 +326,12 @@ TEST(RobotPrograms, RefuseWhatWouldBeWrong) {
             "--tool 'tCal'; a whole number from 0 to 255"},
            {"abb-rapid", "", [](PoseSequence&, ExportOptions&o) { o.tool = "5", o.coupling = 0; },
             "--tool '5'; the name of a tool"},
+           {"fanuc-tp", "", [](PoseSequence&, ExportOptions&o) { o.payload = "11", o.coupling = 0; },
+            "--payload '11'; a whole number from 1 to 10"},
+           {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.payload = "2.5,0.1"; },
+            "--payload '2.5,0.1'; KG or KG,X,Y,Z is expected"},
+           {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.payload = "2,0,0,50"; }, "--payload '2,0,0,50'"},
+           {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.payload = "2 kg"; }, "--payload '2 kg'"},
            {"kuka-krl", "", [](PoseSequence&, ExportOptions&o) { o.wait = 1, o.digital_input = "2"; },
             "--wait stands beside --digital-input"},
            {"kuka-krl", "",

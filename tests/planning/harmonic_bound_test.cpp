@@ -47,7 +47,7 @@ struct RandomSensitivity {
 
 HarmonicFunction interpolated(const std::vector<HarmonicAxis>& axes, const Function& f) {
   return HarmonicFunction(
-      axes, [&] { return f; }, 1);
+      axes, std::vector<int>(axes.size(), 2), [&] { return f; }, 1);
 }
 
 std::vector<HarmonicAxis> random_axes(int count, Random& random) {
@@ -72,16 +72,77 @@ TEST(HarmonicFunction, IsTheFunctionItself) {
   }
 }
 
+TEST(HarmonicFunction, OfAnyDegreeIsTheFunctionItselfAndSoAreProducts) {
+  Random random(4, 1);
+  for (int trial = 0; trial < 10; ++trial) {
+    const std::vector<HarmonicAxis> axes = random_axes(2, random);
+    std::vector<int> degrees;
+    for (std::size_t a = 0; a < axes.size(); ++a) degrees.push_back(random.index(5));
+    // cos and sin of multiples, or powers, up to the degree.
+    std::vector<double> weights(64);
+    for (double& w : weights) w = random.normal();
+    const auto f = [&, axes, degrees](std::span<const double> q) {
+      double sum = 0;
+      for (int i = 0; i <= degrees[0]; ++i)
+        for (int j = 0; j <= degrees[1]; ++j) {
+          const auto along = [&](std::size_t a, int n, double w) {
+            return axes[a].turns ? std::cos(n * q[a]) + w * std::sin(n * q[a]) : std::pow(q[a], n);
+          };
+          const double w = weights[std::size_t(8 * i + j)];
+          sum += w * along(0, i, w) * along(1, j, 1 - w);
+        }
+      return sum;
+    };
+    const HarmonicFunction own(
+        axes, degrees, [&] { return f; }, 1);
+    const std::vector<int> twice{2 * degrees[0], 2 * degrees[1]}, more{2 * degrees[0] + 1, 2 * degrees[1]};
+    const HarmonicFunction square = HarmonicFunction::product(own, own, more);
+    for (int i = 0; i < 20; ++i) {
+      std::vector<double> q;
+      for (const HarmonicAxis& axis : axes) q.push_back(random.uniform(axis.lower, axis.upper));
+      const double value = f(q), size = 1e-9 * (1 + value * value) * std::pow(8.0, degrees[0] + degrees[1]);
+      EXPECT_NEAR(own.value(q), value, size);
+      EXPECT_NEAR(own.lifted(twice).value(q), value, size);
+      EXPECT_NEAR(square.value(q), value * value, size);
+    }
+  }
+}
+
+TEST(FactorBound, IsAboveTheFactorAndConvergesWithTheSquareOfTheRange) {
+  Random random(9, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double along = random.uniform(0.1, 1), across = along + random.uniform(0, 3);
+    HarmonicPart part;
+    part.distance = 0;
+    part.plus = squared(along, random.uniform(0, 0.2), 1);
+    part.minus = squared(across, random.uniform(0.2, 2), 1);
+    part.plus.over_square = part.minus.over_square = trial % 2 == 0;
+    const double lower = random.uniform(0.5, 4), width = random.uniform(0.01, 0.5) * lower;
+    double gaps[2] = {0, 0};
+    for (const int half : {0, 1}) {
+      const double upper = lower + width / (half == 0 ? 1 : 2);
+      const FactorBound line = factor_bound(part, lower, upper, true), flat = factor_bound(part, lower, upper, false);
+      for (int i = 0; i <= 50; ++i) {
+        const double r = lower + (upper - lower) * i / 50, value = part.factor(r);
+        EXPECT_GE(line.constant + line.slope * r, value * (1 - 1e-9));
+        EXPECT_GE(flat.constant, value * (1 - 1e-9));
+        gaps[half] = std::max(gaps[half], line.constant + line.slope * r - value);
+      }
+    }
+    EXPECT_LT(gaps[1], 0.5 * gaps[0] + 1e-9);
+  }
+}
+
 TEST(LargestValue, IsNeverExceededAndIsReached) {
   Random random(11, 1);
   for (int trial = 0; trial < 300; ++trial) {
     // Scales of columns are as bad as units make them.
     const double scale = trial % 3 == 0 ? 1.0 : trial % 3 == 1 ? 1e-6 : 1e6;
     const RandomSensitivity d(random_axes(1 + trial % 3, random), scale, random);
-    HarmonicBoundOptions options;
+    BoxSearchOptions options;
     options.tolerance = 1e-3;
     options.threads = 1;
-    const HarmonicBound most = largest_value(interpolated(d.axes, d), options, Monitor{});
+    const BoxSearchResult most = largest_value(interpolated(d.axes, d), options, Monitor{});
     ASSERT_TRUE(most.complete);
     double found = 0;
     std::vector<double> q(d.axes.size()), best(d.axes.size());
@@ -107,7 +168,7 @@ TEST(LargestValue, IsNeverExceededAndIsReached) {
           q[a] = std::clamp(best[a] + step * random.normal(), d.axes[a].lower, d.axes[a].upper);
         look_at();
       }
-    EXPECT_NEAR(d(most.where) / most.largest, 1, 1e-6);
+    EXPECT_NEAR(d(most.found.where) / most.largest, 1, 1e-6);
     EXPECT_LE(most.bound, std::max(found, most.largest) * (1 + 2e-3)) << "trial " << trial;
   }
 }
@@ -116,17 +177,17 @@ TEST(LargestValue, OfAKnownFunctionIsItsOwn) {
   // (2 + cos q)² (1 + x)² over a turn and [0, 2]: 9 · 9 at q = 0, x = 2.
   const Function f = [](std::span<const double> q) { return std::pow(2 + std::cos(q[0]), 2) * std::pow(1 + q[1], 2); };
   const std::vector<HarmonicAxis> axes{{-std::numbers::pi, std::numbers::pi, true}, {0, 2, false}};
-  HarmonicBoundOptions options;
+  BoxSearchOptions options;
   options.tolerance = 1e-9;
-  const HarmonicBound most = largest_value(interpolated(axes, f), options, Monitor{});
+  const BoxSearchResult most = largest_value(interpolated(axes, f), options, Monitor{});
   EXPECT_NEAR(most.bound, 81, 1e-6);
   EXPECT_GE(most.bound, 81);
 }
 
 TEST(LargestValue, OfSeveralTurnsIsThatOfOne) {
   const Function f = [](std::span<const double> q) { return 1 + std::sin(q[0]); };
-  HarmonicBoundOptions options;
-  const HarmonicBound most = largest_value(interpolated({{-7, 12, true}}, f), options, Monitor{});
+  BoxSearchOptions options;
+  const BoxSearchResult most = largest_value(interpolated({{-7, 12, true}}, f), options, Monitor{});
   EXPECT_GE(most.bound, 2);
   EXPECT_LE(most.bound, 2.003);
 }
@@ -134,10 +195,10 @@ TEST(LargestValue, OfSeveralTurnsIsThatOfOne) {
 TEST(LargestValue, WithoutTheTimeItNeedsIsABoundAllTheSame) {
   Random random(5, 2);
   const RandomSensitivity d({{-3, 3, true}, {-3, 3, true}, {-3, 3, true}}, 1.0, random);
-  HarmonicBoundOptions few, many;
+  BoxSearchOptions few, many;
   few.most_boxes = 1;
   const HarmonicFunction f = interpolated(d.axes, d);
-  const HarmonicBound rough = largest_value(f, few, Monitor{}), fine = largest_value(f, many, Monitor{});
+  const BoxSearchResult rough = largest_value(f, few, Monitor{}), fine = largest_value(f, many, Monitor{});
   EXPECT_FALSE(rough.complete);
   EXPECT_TRUE(fine.complete);
   EXPECT_GE(rough.bound, fine.bound);
@@ -148,13 +209,13 @@ TEST(LargestValue, DoesNotDependOnThreads) {
   Random random(6, 2);
   const RandomSensitivity d({{-3, 3, true}, {-2, 3, true}, {-1, 3, true}}, 1.0, random);
   const HarmonicFunction f = interpolated(d.axes, d);
-  HarmonicBoundOptions one, three;
+  BoxSearchOptions one, three;
   one.threads = 1;
   three.threads = 3;
-  const HarmonicBound a = largest_value(f, one, Monitor{}), b = largest_value(f, three, Monitor{});
+  const BoxSearchResult a = largest_value(f, one, Monitor{}), b = largest_value(f, three, Monitor{});
   EXPECT_EQ(a.bound, b.bound);
   EXPECT_EQ(a.boxes, b.boxes);
-  EXPECT_EQ(a.where, b.where);
+  EXPECT_EQ(a.found.where, b.found.where);
 }
 
 }  // namespace

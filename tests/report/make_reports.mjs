@@ -22,6 +22,7 @@ const cases = [
   { name: 'telescope', problem: () => 'examples/telescope/problem.yaml', poses: 16 },
   { name: 'kr270', problem: () => 'examples/kr270/problem.yaml', poses: 12 },
   { name: 'test_poses', problem: withTestPoses, poses: 8 },
+  { name: 'camera', problem: () => 'examples/instruments/camera_on_hand.yaml', poses: 10 },
   { name: 'cell', problem: () => 'examples/cell/problem.yaml', poses: 8, candidates: 80, route: true },
 ];
 

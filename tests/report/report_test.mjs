@@ -7,6 +7,7 @@ import { launch, missing, open, skipped } from './browser.mjs';
 import { about, check, verdict } from './checks.mjs';
 import { checkAltered } from './altered_checks.mjs';
 import { makeReports } from './make_reports.mjs';
+import { checkCamera, checkMoves } from './moves_checks.mjs';
 import { checkNumbers } from './numbers_checks.mjs';
 import { checkList, checkOverview, checkPlots, checkViewer } from './page_checks.mjs';
 import { checkReading, checkRepeat, overflow } from './reading_checks.mjs';
@@ -41,6 +42,8 @@ async function checkCase(browser, c) {
   await checkOverview(page, c);
   await checkPlots(page, c);
   await checkList(page, c, values.program);
+  await checkMoves(page, c, values.program);
+  if (c.data.camera) await checkCamera(page, c);
   await checkReading(page, c);
   if (!c.route) await checkRepeat(page, c, values.program);
   check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
@@ -85,7 +88,7 @@ async function checkFallback(browser, c) {
 /** @param {any} browser @param {string} folder */
 async function takeScreenshots(browser, folder) {
   mkdirSync(folder, { recursive: true });
-  for (const c of makeReports(values.program, join(values.out, 'screenshots'), ['telescope', 'kr270', 'cell'], true)) {
+  for (const c of makeReports(values.program, join(values.out, 'screenshots'), ['telescope', 'kr270', 'cell', 'camera'], true)) {
     for (const [suffix, width, height] of [['', 1400, 1420], ['-narrow', 420, 1420]]) {
       if (suffix && c.name !== 'cell') continue;
       const { page } = await open(browser, c.page, { viewport: { width, height } });

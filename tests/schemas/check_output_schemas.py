@@ -118,6 +118,25 @@ class Outputs(unittest.TestCase):
             self.assertAlmostEqual(calibration["parameters"][0]["value"], 0.1849, 3)
             self.check("calibration", calibration)
 
+    def test_compensation(self):
+        problem = EXAMPLES / "kr270/problem.yaml"
+        values = "{joint_a2.x: {value: 0.3502}, joint_a4.offset: {value: 0.001}}"
+        (self.folder / "cal.yaml").write_text(f"posewright_parameters: 1\nvariant: geometric\nparameters: {values}\n")
+        self.run_program("plan", problem, "--candidates", 60, *QUICK, "--json")
+        words = ["compensate", "cal.yaml", "--problem", problem]
+        self.check("compensation", self.run_program(*words, "plan.json", "-o", "commanded.json", "--dh", "distal", "--json"))
+        self.check("plan", json.loads((self.folder / "commanded.json").read_text()))
+        (self.folder / "poses.csv").write_text("\n".join(["joint_a1,joint_a2,joint_a3,joint_a4,joint_a5,joint_a6", "0,-1,1,0.1,0.5,0", "0,-1,1,6.1086,0.5,0"]))
+        run = subprocess.run([program, *map(str, words), "poses.csv", "--json"], cwd=self.folder, capture_output=True, text=True)
+        self.assertLessEqual(run.returncode, 1, run.stderr)
+        self.check("compensation", json.loads(run.stdout))
+        gough = EXAMPLES / "gough/problem.yaml"
+        (self.folder / "cal.yaml").write_text("posewright_parameters: 1\nvariant: geometry\nparameters: {leg_1.l: {value: 0.4501}}\n")
+        (self.folder / "poses.csv").write_text("x,y,z,rx,ry,rz\n0.01,0.02,0.01,0.05,0,0.1\n")
+        result = self.run_program("compensate", "cal.yaml", "poses.csv", "--problem", gough, "--json")
+        self.assertIn("leg_1.rho", result["lists"][0]["poses"][0]["actuators"])
+        self.check("compensation", result)
+
     def test_calibrations(self):
         text = (EXAMPLES / "kr270/elastostatic.yaml").read_text().replace("urdf: kr270", f"urdf: {EXAMPLES}/kr270/kr270")
         small = "tolerance: {\"*.compliance*\": 0.03 urad/Nm}"

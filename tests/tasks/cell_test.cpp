@@ -151,6 +151,31 @@ TEST(ExampleCell, PlanAndRouteAreTheSameOnAnyNumberOfThreadsAndShorterThanThePla
   }
 }
 
+TEST(ExampleCell, ReadingTakesItsTimeForEveryTargetThatATrackerSees) {
+  Problem problem = example_cell();
+  problem.workspace.motion.reachable = false;
+  problem.measurement.repeats = 3;
+  const TemporaryFolder folder;
+  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_cell(0), Monitor{})));
+  RouteOptions options;
+  const Route quick = route_problem(problem, poses_in(problem, file), options, Monitor{});
+  options.reading = 2;
+  options.settle = 7;
+  const Route slow = route_problem(problem, poses_in(problem, file), options, Monitor{});
+  const nlohmann::json json = nlohmann::json::parse(route_json(slow));
+  // From what is written: three readings of two seconds of whatever is seen.
+  double seen = 0;
+  for (const auto* list : {&json["poses"], &json["references"]})
+    for (const auto& stop : *list)
+      for (const auto& target : stop["targets"]) seen += target["visible"].get<bool>();
+  EXPECT_GT(seen, double(slow.poses.size()));
+  EXPECT_NEAR(json["seconds"]["reading"].get<double>(), 3 * 2 * seen, 1e-9);
+  EXPECT_NEAR(json["seconds"]["settle"].get<double>(), 7 * double(slow.poses.size()), 1e-9);
+  EXPECT_EQ(quick.reading_seconds(), 0);
+  EXPECT_EQ(quick.travel_seconds(), slow.travel_seconds());
+  EXPECT_THAT(route_summary(slow), HasSubstr("of readings"));
+}
+
 TEST(ExampleCell, HomeInCollisionIsSaidWithWhatCollides) {
   Problem problem = example_cell();
   problem.workspace.motion.reachable = false;

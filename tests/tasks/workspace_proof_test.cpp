@@ -1,6 +1,8 @@
 // The certificate over the whole workspace, where it is proved. Second roads: grids of candidates finer than any plan
 // needs, and sensitivities at random configurations by the model alone.
 
+#include "posewright/planning/workspace_proof.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +14,6 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/write_plan.hpp"
-#include "posewright/planning/workspace_bound.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/space.hpp"
 #include "posewright/support/random.hpp"
@@ -61,6 +62,27 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
   EXPECT_THAT(plan_summary(plan), HasSubstr("Proved over the joint limits"));
 }
 
+/// What is there to be bounded beside an arm seen by points: word of the problem file, and whether the bound is d
+/// itself up to the width of boxes.
+struct Kind {
+  std::string name, robot, measurement, columns;
+  bool tight;
+};
+
+std::vector<Kind> kinds() {
+  const std::string isotropic = "device: {type: isotropic, noise: 0.1 mm}";
+  const std::string tracker =
+      "device: {type: laser_tracker, noise: {range: 3 um, range_per_m: 1 um, angle: 6 urad}, stations: {A: [3, 1, 0.5]";
+  return {{"points", "", isotropic, "", true},
+          {"tracker", "", tracker + "}}", "", true},
+          {"tracker with a displacement of each visit", "", tracker + "}}\n  repeatability: 100 um", "", false},
+          {"two stations", "", tracker + ", B: [-2, -3, 1]}}", "station.B.x, ", true},
+          {"noise of the joints", ", encoder_noise: 0.0003", isotropic, "", false},
+          {"gear", "", isotropic, "j0.gear, ", false},
+          {"eccentricity and gear teeth", ", joint_effects: {j0: {eccentricity: yes, gear_ratio: 31}}", isotropic,
+           "j0.cos1, j0.sin1, j0.cos2, j0.sin2, j0.cos_g, j0.sin_g, ", false}};
+}
+
 /// A chain of one to four random joints with small ranges, seen by points; what a test of its sensitivity needs.
 struct RandomArm {
   std::unique_ptr<IdentificationModel> model;
@@ -69,7 +91,7 @@ struct RandomArm {
   std::vector<int> selected;
   Eigen::MatrixXd scale, factor;  // R of the columns, T of d(q) = ‖J(q) R⁻¹ T‖²
 
-  RandomArm(const TemporaryFolder& folder, Random& random) {
+  RandomArm(const TemporaryFolder& folder, const Kind& kind, Random& random) {
     const auto triple = [&](double size) {
       return fmt::format("{} {} {}", random.uniform(-size, size), random.uniform(-size, size),
                          random.uniform(-size, size));
@@ -78,7 +100,8 @@ struct RandomArm {
     const int count = 1 + random.index(4);
     for (int k = 0; k < count; ++k) {
       const std::string child = fmt::format("l{}", k);
-      const bool turns = random.uniform() < 0.7;
+      // Effects of joints are of the first, and of one that turns.
+      const bool turns = random.uniform() < 0.7 || (k == 0 && !kind.robot.empty());
       const double middle = random.uniform(-2, 2), half = random.uniform(0.05, turns ? 0.5 : 0.2);
       text += fmt::format(
           "<link name=\"{0}\"/><joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/><origin "
@@ -91,10 +114,11 @@ struct RandomArm {
     }
     folder.write("arm.urdf", text + "</robot>");
     problem = read_problem(folder.write(
-        "p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement:\n  type: points\n  targets: {A: [" +
+        "p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot +
+                      "}\nmeasurement:\n  type: points\n  targets: {A: [" +
                       fmt::format("{}, {}, 0.1], B: [{}, 0.05, {}", random.uniform(-0.3, 0.3),
                                   random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)) +
-                      "]}\n  device: {type: isotropic, noise: 0.1 mm}\nvariants: {v: {parameters: [" + joints +
+                      "]}\n  " + kind.measurement + "\nvariants: {v: {parameters: [" + joints + kind.columns +
                       "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}}\n"));
     model = make_model(problem);
     workspace = std::make_unique<Workspace>(*model, problem, nullptr);
@@ -117,11 +141,14 @@ struct RandomArm {
 
 TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
   const char* wanted = std::getenv("POSEWRIGHT_RANDOM_ARMS");
-  const int arms = wanted != nullptr ? std::atoi(wanted) : 150;
-  int wide = 0;
+  const int arms = wanted != nullptr ? std::atoi(wanted) : 140;
+  int wide = 0, refused = 0;
+  const std::vector<Kind> all = kinds();
   for (int i = 0; i < arms; ++i) {
     Random random(23, std::uint64_t(i));
-    const RandomArm arm(folder_, random);
+    const Kind& kind = all[std::size_t(i) % all.size()];
+    SCOPED_TRACE(kind.name);
+    const RandomArm arm(folder_, kind, random);
     const auto space =
         make_configuration_space({{arm.model.get(), arm.workspace.get(), arm.selected, {}}}, {}, {}, {}, arm.scale);
     const int m = int(arm.selected.size()), rows = arm.model->block_rows(arm.selected);
@@ -136,6 +163,10 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
       q.clear();
       for (std::size_t k = 0; k < axes.size(); ++k) {
         const double width = axes[k].upper - axes[k].lower;
+        if (axes[k].discrete()) {
+          q.push_back(axes[k].values[std::size_t(random.index(int(axes[k].values.size())))]);
+          continue;
+        }
         const double at = sample < 600 ? random.uniform(axes[k].lower - 0.1 * width, axes[k].upper + 0.1 * width)
                                        : best[k] + reach * width * random.normal();
         q.push_back(std::clamp(at, axes[k].lower, axes[k].upper));
@@ -147,13 +178,25 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     result.factor = arm.factor;
     // Far below the largest value, so that the proof has to find it.
     result.degree = 1e-2 * largest;
-    prove_workspace(result, *space, 1000, rows, m, {}, Monitor{});
+    // What can be chosen is tuned to where d is large.
+    result.support = {best};
+    result.weights = {1.0};
+    // Numbers that follow a joint are bounded to the first order only: what takes long is stopped, and is a bound too.
+    WorkspaceBoundOptions options;
+    options.proof.seconds = 0.25;
+    prove_workspace(result, *space, 1000, rows, options, Monitor{});
+    if (!kind.tight && result.proof.why_not.find("too high") != std::string::npos) {
+      ++refused;
+      continue;
+    }
     ASSERT_EQ(result.proof.why_not, "") << "arm " << i;
     EXPECT_GE(result.proof.max_ratio * result.degree, largest * (1 - 1e-12)) << "arm " << i;
-    wide += int(result.proof.max_ratio * result.degree > 1.005 * largest);
+    wide += int(kind.tight && result.proof.max_ratio * result.degree > 1.005 * largest);
+    EXPECT_LT(result.proof.max_ratio * result.degree, 20 * largest);
   }
   // A bound that is nowhere near would hold as well; random steps do not always find the largest value.
   EXPECT_LT(wide, arms / 20);
+  EXPECT_LT(refused, arms / 7);
 }
 
 TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
@@ -165,10 +208,9 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
     EXPECT_THAT(plan_summary(plan), HasSubstr("no proof: "));
     return plan.certificate.workspace->why_not;
   };
-  // A gear's column grows with the angle itself; a turn of each visit moves the tip by what it points at.
-  EXPECT_THAT(why(arm("", "q1.offset, q2.offset, q1.gear")), HasSubstr("not linear in cosines and sines"));
-  EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("not linear"));
-  EXPECT_THAT(why(example("instruments/tracker_two_stations.yaml")), HasSubstr("a choice of station"));
+  // A turn of each visit moves the tip by what it points at; a camera divides by the distance.
+  EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("turns of each visit"));
+  EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
 }
 
 TEST_F(WorkspaceProofs, PlanIsTheSameOnAnyNumberOfThreads) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +25,9 @@ struct ReducedClearance {
 struct Separation {
   double distance = 0.0;  ///< m; 0: they touch
   std::string first, second;
+  /// Where they are nearest, a point of the first and one of the second, measurement frame, m; none where they touch or
+  /// no pair of points is as far apart as they are.
+  std::optional<std::array<Eigen::Vector3d, 2>> points{};
 };
 
 /// Robot, tool and obstacles: what collides with what. Const and callable from several threads.

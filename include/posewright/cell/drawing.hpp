@@ -9,11 +9,13 @@
 
 #include "posewright/cell/cell.hpp"
 #include "posewright/cell/solid.hpp"
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/model/tip_model.hpp"
 
 namespace posewright {
 
 class BodyFrames;
+struct ChainDescription;
 
 /// One shape of a link, the tool or an obstacle as it is drawn.
 struct DrawnBody {
@@ -23,7 +25,7 @@ struct DrawnBody {
   Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
   ShapeSpec shape;
   std::optional<std::array<double, 3>> colour{};  ///< of the link in the URDF: red, green, blue, 0 to 1
-  TriangleMesh mesh;                              ///< of a MeshShape, thinned to a few thousand triangles, m
+  TriangleMesh mesh;                              ///< of a MeshShape, thinned, m
 };
 
 /// Robot, targets and instrument at one configuration, measurement frame.
@@ -34,7 +36,33 @@ struct DrawnPose {
   std::vector<std::optional<Eigen::Vector3d>> targets;
 };
 
-/// What a picture of the cell needs, for robots with and without link shapes. Nothing here judges anything: missing
+/// A serial arm as a page needs it to follow a joint: what BodyFrames::poses does.
+struct DrawnChain {
+  struct Joint {
+    Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint's frame
+    bool prismatic = false;
+    double multiplier = 1.0, offset = 0.0;  ///< value = multiplier · coordinate + offset
+    int coordinate = 0;                     ///< index in a configuration
+  };
+  Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();
+  std::vector<Joint> joints;
+  Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
+  std::vector<Eigen::Vector3d> targets;  ///< tip frame, m
+};
+
+/// A camera and the points that it looks at; one of the two rides on the tip, the other is in the measurement frame.
+struct DrawnCamera {
+  bool on_tip = false;  ///< the camera does, else the board
+  Eigen::Isometry3d X_CarrierCamera = Eigen::Isometry3d::Identity();
+  InstrumentView::Image image;
+  Eigen::Isometry3d X_CarrierBoard = Eigen::Isometry3d::Identity();
+  std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
+};
+
+/// What a picture of the cell needs, for robots with and without link shapes. Links look as the URDF's <visual> shapes
+/// where they can be read, else as those that are checked for collision. Meshes are thinned to 3,000 triangles each and
+/// 30,000 together. Nothing here judges anything: missing
 /// meshes leave a skeleton and a warning.
 class Drawing {
  public:
@@ -48,6 +76,10 @@ class Drawing {
   const std::vector<std::string>& targets() const { return target_names_; }
   /// Instruments that stand still.
   const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
+  /// Of a serial arm measured at one configuration at a time; none of others.
+  const std::optional<DrawnChain>& chain() const { return chain_; }
+  /// Of an instrument that takes pictures; none of others.
+  const std::optional<DrawnCamera>& camera() const { return camera_; }
   /// As its URDF calls it; empty: it has none.
   const std::string& robot() const { return robot_; }
   /// Why there are no bodies, where some were expected; empty: nothing is missing.
@@ -58,6 +90,8 @@ class Drawing {
 
  private:
   void add_bodies(const Problem& problem);
+  void keep_to_budget();
+  void add_chain(const ChainDescription& chain);
   void add_instrument(const Problem& problem, const Cell& cell);
 
   std::shared_ptr<const IdentificationModel> model_;
@@ -68,6 +102,8 @@ class Drawing {
   std::vector<Eigen::Vector3d> targets_;  // tip frame
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;
   std::vector<DrawnBody> bodies_;
+  std::optional<DrawnChain> chain_;
+  std::optional<DrawnCamera> camera_;
   std::string robot_, warning_;
 };
 

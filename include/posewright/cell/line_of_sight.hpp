@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -71,6 +72,7 @@ class LineOfSight : public Visibility {
 
  private:
   struct Bundle;
+  struct Looked;
   struct Target {
     std::string name;
     Eigen::Vector3d position;
@@ -81,8 +83,10 @@ class LineOfSight : public Visibility {
   void add_station(const InstrumentView::Place& place);
   void add_points(const InstrumentView& view);
   void add_normals(const Problem& problem);
-  bool seen_from(std::span<const double> q, const Eigen::Isometry3d& X_Tip, int station, std::span<char> seen,
-                 int* reason, bool past_bodies) const;
+  bool seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
+                 bool past_bodies) const;
+  /// What this thread knows of q: a block and the checks ask for the same q one after the other.
+  Looked& looked_at(std::span<const double> q) const;
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
               bool on_tip, bool past_bodies) const;
   int hidden_by(const Sight& sight) const;
@@ -103,6 +107,7 @@ class LineOfSight : public Visibility {
   bool judges_ = false;
   bool station_on_tip_ = false, targets_on_tip_ = true, all_stations_ = false;
   int station_coordinate_ = -1;
+  std::uint64_t number_ = 0;  // among all that the program made
 };
 
 }  // namespace posewright

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,11 @@ std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMe
 
 /// Distance between two solids in m, at most `cap`; 0 where they touch or one is in the other.
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b, double cap);
+
+/// A point of either solid (m, the frame that the placements are in) where the two are nearest to each other; none
+/// where they touch, or where the library's points are not as far apart as its distance.
+std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, const Eigen::Isometry3d& X_a,
+                                                             const Solid& b, const Eigen::Isometry3d& X_b);
 
 /// Lower bound of the distance, by boxes and spheres around both; may be negative if they overlap.
 double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b);

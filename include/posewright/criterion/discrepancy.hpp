@@ -24,10 +24,13 @@ class DiscriminateFunction : public InformationFunction {
   bool concave() const override { return true; }
   double degree() const override { return 1.0; }
   std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override;
+  int fitted() const { return fitted_; }
+  /// Upper triangular, half halfᵀ = mix mixᵀ.
+  const Eigen::MatrixXd& half() const { return half_; }
 
  private:
   int fitted_;
-  Eigen::MatrixXd half_;  // upper triangular, half_ half_ᵀ = mix mixᵀ
+  Eigen::MatrixXd half_;
 };
 
 /// Φ = −ln φ, φ = tr(L M_aa⁻¹ Lᵀ) + ‖L M_aa⁻¹ M_af Z − b‖²: mean squared error by noise and by effects that are not

@@ -22,6 +22,8 @@ class LeaveOneOut {
   void exchange(int leave, int enter);
   /// ln det S(M) now; −∞ where singular.
   double value() const { return value_; }
+  /// The same; where M is singular, of M plus a ridge: what gains count from.
+  double reference() const { return reference_; }
   /// d of the interest information for every candidate, from a fresh factor of M.
   void sensitivities(std::vector<double>& d) const;
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <memory>
+
+#include "posewright/criterion/criterion.hpp"
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/criterion/information_function.hpp"
 
@@ -12,6 +16,50 @@ namespace posewright {
 /// bounded (squared, both are matrix means of degree 1: Pukelsheim 2006, Optimal Design of Experiments, 6.7); o2 and o4
 /// are not.
 enum class SpectralIndex { o2, o3, o4, o5 };
+
+/// Φ of the eigenvalues λ = σ², ascending, of the scaled information with nuisance eliminated.
+class SpectralFunction : public InformationFunction {
+ public:
+  SpectralFunction(SpectralIndex index, const CriterionData& data)
+      : index_(index), nuisance_(data.nuisance), C_(data.to_scaled()) {}
+
+  double value(const Eigen::MatrixXd& information) const override;
+  /// ∂Φ/∂M = C W (Σ_i ∂Φ/∂λ_i v_i v_iᵀ) Wᵀ Cᵀ: the Schur complement is Wᵀ M_s W with W = [−M_nn⁻¹ M_ni; I], and W's own
+  /// change does not count, because it minimises.
+  Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;
+  bool concave() const override { return has_bound(); }
+  double degree() const override { return has_bound() ? 0.5 : 0.0; }
+  std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override;
+
+  struct Spectrum {
+    Eigen::VectorXd lambda;
+    Eigen::MatrixXd vectors, W;
+    bool eliminated = false;  ///< whether the nuisance columns are determined
+    bool regular = false;
+  };
+  Spectrum spectrum(const Eigen::MatrixXd& information, bool with_vectors) const;
+  /// C W V: a block times this are its rows in the eigenvectors' directions.
+  Eigen::MatrixXd directions(const Spectrum& s) const { return C_ * s.W * s.vectors; }
+  /// C_n L⁻ᵀ, M_nn = L Lᵀ of the nuisance columns: (J times this) squared is J_n M_nn⁻¹ J_nᵀ. No columns if there are
+  /// none; false if M_nn is singular.
+  bool inside(const Eigen::MatrixXd& information, Eigen::MatrixXd& result) const;
+  /// ln of o2 … o5; −∞ where singular.
+  double of(const Eigen::VectorXd& lambda) const;
+  SpectralIndex index() const { return index_; }
+  /// Blocks times this are in units of the scale.
+  const Eigen::MatrixXd& to_scaled() const { return C_; }
+  int nuisance() const { return nuisance_; }
+
+ private:
+  bool has_bound() const { return index_ == SpectralIndex::o3 || index_ == SpectralIndex::o5; }
+  /// ∂Φ/∂λ_i.
+  Eigen::VectorXd by_eigenvalue(const Eigen::VectorXd& lambda) const;
+
+  SpectralIndex index_;
+  int nuisance_;
+  Eigen::MatrixXd C_;
+};
+
 std::unique_ptr<Criterion> make_spectral_criterion(SpectralIndex index, const CriterionData& data);
 
 }  // namespace posewright

@@ -18,6 +18,7 @@ struct PoseList {
   std::vector<int> ids{};              ///< of a plan or route; else 1, 2, …
   std::vector<int> lines{};            ///< of the file, 0: not known; empty for configurations in memory
   std::vector<int> own_ids{};          ///< of a column `id` or `pose`, 0: it is not a number; empty: there is none
+  std::vector<std::string> marks{};    ///< cells of a column `fixed`; empty: there is none
   std::vector<std::string> columns{};  ///< names of all columns of the list
   std::vector<std::string> notes{};    ///< what the user must know of how the list was read
   std::string name{};                  ///< of the list, for messages: its file

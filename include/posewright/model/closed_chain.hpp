@@ -2,8 +2,10 @@
 
 #include <optional>
 
+#include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/tip_model.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -22,7 +24,7 @@ class ClosedChain : public TipModel {
  public:
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const final;
-  /// By theory.md eq. (49) where the robot gives the derivative of its loops, else TipModel's differences.
+  /// By theory.md eq. (50) where the robot gives the derivative of its loops, else TipModel's differences.
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const final;
   bool actuator_values(const Point& at, std::span<double> values) const final;
@@ -34,6 +36,8 @@ class ClosedChain : public TipModel {
 
   bool sensor_values(const Point& at, Eigen::VectorXd& values) const final;
   bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const final;
+  bool enclose_residual(std::span<const TaylorModel> q, std::span<const double> correction,
+                        std::span<const int> selected, EnclosedResidual& out) const final;
 
   /// Forward kinematics: the platform coordinates at given actuators, by Newton's method from `start`. Empty if it
   /// does not converge in 50 steps or meets a singularity.
@@ -42,13 +46,26 @@ class ClosedChain : public TipModel {
   /// Pose of the platform in the base frame, nominal.
   Eigen::Isometry3d platform(std::span<const double> q) const;
 
-  /// Derivatives of the d loop equations at one configuration, in the base frame.
-  struct Loops {
-    Eigen::VectorXd value;      ///< f, d
-    Eigen::MatrixXd parameter;  ///< d × selected: ∂f/∂ξ
-    Eigen::MatrixXd platform;   ///< d × 6: along spatial twists of the platform
-    Eigen::MatrixXd actuator;   ///< d × actuators: ∂f/∂ρ
+  /// Derivatives of the d loop equations at one configuration, in the base frame; of scalars S = TaylorModel, at all of
+  /// a box.
+  template <class S>
+  struct LoopsOf {
+    template <int columns>
+    using Matrix = Eigen::Matrix<S, Eigen::Dynamic, columns>;
+    Matrix<1> value;                   ///< f, d
+    Matrix<Eigen::Dynamic> parameter;  ///< d × selected: ∂f/∂ξ
+    Matrix<Eigen::Dynamic> platform;   ///< d × 6: along spatial twists of the platform
+    Matrix<Eigen::Dynamic> actuator;   ///< d × actuators: ∂f/∂ρ
   };
+  using Loops = LoopsOf<double>;
+  /// All configurations of a box at once.
+  struct Enclosed {
+    Frame<TaylorModel> X_BasePlatform;
+    std::vector<TaylorModel> actuators;
+    LoopsOf<TaylorModel> loops;        ///< without `value`
+    std::vector<TaylorModel> allowed;  ///< none is negative at a configuration within reach and the actuators' travel
+  };
+
   /// @param own       corrections of the robot's own parameters, or empty for zero
   /// @param selected  indices into the robot's own parameters; others (< 0 or beyond) give zero columns
   void loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
@@ -84,6 +101,10 @@ class ClosedChain : public TipModel {
   /// What the redundant sensors read and the same derivatives of it, for robots that have some.
   virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                           std::span<const int> selected, Loops& out) const;
+  /// Fills `out`, whose loops have the right sizes and are zero, for all configurations of a box. False if there is no
+  /// enclosure.
+  virtual bool do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
+                          Enclosed& out) const;
 
   void read_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                     std::span<const int> selected, Loops& out) const;

@@ -22,4 +22,11 @@ struct CorrectedUrdf {
 CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
                              const std::vector<CalibratedValue>& values);
 
+/// The same for the xacro file that the URDF was made of: comments, macros and everything else stay, an origin that was
+/// an expression becomes numbers. Lengths and angles that other lines compute from the same properties stay as they
+/// are. Throws as corrected_urdf(); CannotDo for a joint that this file has not exactly once (an included file has it,
+/// a macro makes several of it) or whose origin comes from a macro; InputError for a robot that is no xacro file.
+CorrectedUrdf corrected_xacro(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
+                              const std::vector<CalibratedValue>& values);
+
 }  // namespace posewright

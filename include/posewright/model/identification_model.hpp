@@ -9,6 +9,7 @@
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -88,6 +89,8 @@ struct Linearisation {
   }
 };
 
+class HarmonicRows;
+
 /// Which of an instrument's targets can be seen. Const and callable from several threads.
 class Visibility {
  public:
@@ -120,10 +123,23 @@ class IdentificationModel {
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
 
   /// Takes `value` as the nominal one of parameter `index`: from now on all that follows is linearised there.
-  /// Whether whitened blocks of these columns are W times a matrix whose entries are linear in each of 1, cos q, sin q
-  /// of every angle and in each length, W the same at every configuration: then ‖J(q) T‖² is of degree 2 in each.
-  bool multilinear(std::span<const int> selected) const {
-    return visibility_ == nullptr && do_multilinear(selected, shift_);
+  /// What bounds the sensitivity of these columns over boxes of the coordinates, the choices as they are in q; every
+  /// target counts as seen, which only tells more. Null: nothing does, `why_not` says why.
+  std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
+                                              std::string& why_not) const;
+
+  /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and what is not negative where q is within
+  /// reach and its actuators within their travel.
+  struct Enclosure {
+    TaylorModel sensitivity;
+    std::vector<TaylorModel> allowed;
+  };
+  /// @param q  every coordinate over the box
+  /// @param T  selected × any number; null: only what is allowed
+  /// @return false if this model has no enclosure
+  bool enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
+               Enclosure& out) const {
+    return visibility_ == nullptr && do_enclose(q, selected, T, shift_, out);
   }
 
   void set_nominal(int index, double value);
@@ -144,7 +160,7 @@ class IdentificationModel {
 
   /// How a number f of what linearise() gives changes with every continuous coordinate, from its derivatives by G and
   /// by the covariance (symmetric), nominal parameters: ∂f/∂q_k = ⟨∂f/∂G, ∂G/∂q_k⟩ + ⟨∂f/∂Σ, ∂Σ/∂q_k⟩ (theory.md eq.
-  /// (47)).
+  /// (48)).
   /// @param gradient  size coordinates(); what it says of choices means nothing
   /// @return false if this model does not know its derivatives, or has none at q
   bool pull_back(std::span<const double> q, std::span<const int> selected, const Eigen::MatrixXd& by_G,
@@ -242,10 +258,13 @@ class IdentificationModel {
   virtual bool do_measurable(const Point& at) const;
   virtual std::optional<int> do_measurable_margins() const;
   virtual bool do_measurable_margins_at(const Point& at, std::span<double> out) const;
-  virtual bool do_multilinear(std::span<const int> selected, std::span<const double> correction) const;
+  virtual std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
+                                                         std::string& why_not) const;
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
   virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+  virtual bool do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
+                          std::span<const double> correction, Enclosure& out) const;
   void hide(std::span<const double> q, Linearisation& out) const;
   bool settle(Point& at, std::vector<double>& scratch) const;
 

@@ -37,7 +37,14 @@ struct InstrumentView {
   std::string points_parameters;                    ///< prefix of those that move that frame ("board"); empty: none
   bool points_on_tip = true;                        ///< the points ride on the tip
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of its field of view, frame of the place
-  std::optional<double> half_angle;                 ///< rad, of the cone about `axis` that is in the picture everywhere
+  /// The picture that it takes; none: it takes none.
+  struct Image {
+    double width = 0, height = 0;  ///< px
+    std::vector<Eigen::Vector3d>
+        corners;  ///< lines of sight of its corners, frame of the place, z = 1: 0 0, w 0, w h, 0 h
+  };
+  std::optional<Image> image;
+  std::optional<double> half_angle;  ///< rad, of the cone about `axis` that is in the picture everywhere
 };
 
 /// The view of a problem file's instrument.

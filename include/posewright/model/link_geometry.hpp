@@ -30,6 +30,9 @@ struct LinkGeometry {
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 
+/// All links with a <visual> shape, as read_urdf_links; `shapes` are what they look like.
+std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place);
+
 /// The same of a file that is no robot but what stands around one, all joints at zero position, in the frame of its
 /// root.
 std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file);

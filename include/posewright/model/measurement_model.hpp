@@ -13,6 +13,26 @@ namespace posewright {
 /// Prior 1σ of a target's coordinates if nothing else is said, m.
 inline constexpr double default_target_tolerance = 1e-3;
 
+class MeasurementModel;
+
+/// Noise of an instrument whose rows and own columns are linear in the tip's pose and in twists, or would be without a
+/// direction: what bounds over boxes are made of (theory.md eq. (39)).
+struct HarmonicNoise {
+  enum class Kind {
+    unknown,
+    constant,   ///< the same covariance at every pose
+    beams,      ///< of each target's three rows, `along` the line to the station and `across` it
+    distances,  ///< rows are distances from fixed places, with variance `along`; times the distance they are linear
+  };
+  Kind kind = Kind::unknown;
+  /// Variances at a distance R: constant + linear R + square R² (weight 1).
+  InverseVariance along{}, across{};
+  std::vector<int> excluded{};  ///< own parameters for whose columns that does not hold
+  /// Another instrument, without parameters of its own, that tells as much: its rows count; null: none.
+  const MeasurementModel* instead = nullptr;
+  double repeats = 1.0;  ///< of its readings
+};
+
 /// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
 /// stations, lens). Members are const and may run in several threads at once.
 class MeasurementModel {
@@ -65,8 +85,8 @@ class MeasurementModel {
   /// instrument that does not say gets central differences in the tip's six motions.
   virtual Twist pull_back(const Sighting& sighting, const Adjoint& f) const;
 
-  /// Whether the noise is the same at every pose, and rows and own columns linear in the tip's pose and in twists.
-  virtual bool linear_with_constant_noise() const { return false; }
+  /// How rows and noise depend on the tip's pose. Default: in no way that a bound over boxes could use.
+  virtual HarmonicNoise harmonic_noise() const { return {}; }
 
   /// Own parameters that act like a motion of the tip (a station moves one way, the tip seems to move the other):
   /// true, and the twist where `twist` is not null.
@@ -84,6 +104,10 @@ class MeasurementModel {
   /// IdentificationModel::measurable_margins() of what it sees alone.
   virtual std::optional<int> margins() const;
   virtual void margins_at(const Sighting& sighting, std::span<double> out) const;
+
+  /// Covariance (6 × 6) of the tip's pose by the linear fit to one measurement, as twists about its origin in its own
+  /// axes (m, rad), where that is the same at every pose. Empty: it is not, or the readings do not fix the pose.
+  virtual std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const { return std::nullopt; }
 
  protected:
   std::vector<Parameter> parameters_;

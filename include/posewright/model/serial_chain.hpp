@@ -24,8 +24,11 @@ class SerialChain : public TipModel {
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const override;
 
-  /// Arms whose joints follow one coordinate each, at its own speed, without gear errors.
-  bool multilinear(std::span<const int> selected, std::span<const double> correction) const override;
+  /// Degree 1 in each joint; in one that others follow, the sum of their whole ratios. A gear's column is that of the
+  /// offset times the joint's own reading.
+  HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
+
+  int offset_of(int coordinate) const override { return layout_.offset[std::size_t(coordinate)]; }
 
   /// The same with every joint turned further than it reads by `deflection` (rad or m per coordinate; empty: zero).
   void linearise_deflected(std::span<const double> q, std::span<const double> deflection,

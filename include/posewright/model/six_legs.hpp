@@ -32,7 +32,16 @@ class SixLegs : public ClosedChain {
   bool do_loops_change(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                        std::span<const int> selected, const Loops& slope, Twist& by_platform,
                        Eigen::VectorXd& by_actuators) const override;
+  bool do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
+                  Enclosed& out) const override;
 
+  template <class S>
+  void loops_at(const Frame<S>& platform, std::span<const S> rho, std::span<const double> own,
+                std::span<const int> selected, LoopsOf<S>& out) const;
+  std::vector<TaylorModel> enclosed_actuators(const Frame<TaylorModel>& platform, std::span<const double> own,
+                                              std::span<const TaylorModel> lifts,
+                                              std::vector<TaylorModel>& allowed) const;
+  bool enclose_lifted(const Frame<TaylorModel>& platform, std::span<const double> own, Enclosed& out) const;
   Eigen::Isometry3d platform_pose(std::span<const double> q) const;
 
   SixLegsSpec spec_;

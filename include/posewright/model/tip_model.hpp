@@ -2,9 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "posewright/blocks/harmonic_parts.hpp"
 #include "posewright/model/identification_model.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -18,6 +21,14 @@ struct TipAdjoint {
   Twists twists;              ///< 6 × selected: ∂f/∂(each entry of a parameter's twist)
   Twists reading_twists;      ///< 6 × readings, or without columns: the same of the joints' or actuators' readings
   Twist tip = Twist::Zero();  ///< f changes by tip · ξ where the tip moves along the spatial twist ξ
+};
+
+/// Columns as polynomials of the joints' cosines and sines (and lengths), times factors that are none.
+struct HarmonicColumns {
+  std::string why_not;        ///< for people; empty: the rest holds
+  std::vector<int> selected;  ///< columns that are polynomials, in place of those that were selected
+  std::vector<int> degrees;   ///< of pose and columns in each coordinate; 0 for a choice
+  std::vector<ColumnFactor> factors;
 };
 
 /// A robot that carries one tip frame: where the tip is and how each parameter moves it.
@@ -47,14 +58,17 @@ class TipModel {
                          Twists& twists, Twists* reading_twists) const = 0;
 
   /// Adds to `gradient` (size coordinates()) how f changes with every continuous coordinate, where the tip's pose and
-  /// twists are those of linearise() (theory.md eqs. (48) and (49)). A robot that does not say gets central differences
+  /// twists are those of linearise() (theory.md eqs. (49) and (50)). A robot that does not say gets central differences
   /// of linearise(). False if q or what is near it is unreachable or singular.
   virtual bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                          std::span<double> gradient) const;
 
-  /// Whether the tip's pose and these columns are linear in each of 1, cos q, sin q of every angle and in each length,
-  /// at these corrections (all parameters, or empty): theory.md eq. (37). Twists of zero columns are.
-  virtual bool multilinear(std::span<const int> selected, std::span<const double> correction) const;
+  /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty;
+  /// theory.md eq. (37)). Twists of zero columns are polynomials.
+  virtual HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const;
+
+  /// Index of the parameter that moves the tip as the reading of this coordinate does; −1: there is none.
+  virtual int offset_of(int coordinate) const;
 
   /// From now on loads bend the robot as they do with these corrections (all parameters, maybe without tool.*).
   virtual void take_loads_at(std::span<const double> correction);
@@ -77,6 +91,20 @@ class TipModel {
   /// Where the robot stands when its actuators have these values, near `start`; without actuators it stays there. False
   /// if a closed chain does not close.
   virtual bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const;
+
+  /// A closed chain's residual f over a box of configurations: f(X + δ, ρ + δρ, ξ + δξ) changes by the sum of the
+  /// three.
+  struct EnclosedResidual {
+    using Matrix = Eigen::Matrix<TaylorModel, Eigen::Dynamic, Eigen::Dynamic>;
+    Matrix platform;                   ///< 6 × 6, along twists of the tip about its origin in its own axes
+    Matrix actuator;                   ///< 6 × readings
+    Matrix parameter;                  ///< 6 × selected: all that moves the tip
+    std::vector<TaylorModel> allowed;  ///< none is negative at a feasible configuration
+  };
+  /// @param q  each a variable over the box
+  /// @return false if the robot has none
+  virtual bool enclose_residual(std::span<const TaylorModel> q, std::span<const double> correction,
+                                std::span<const int> selected, EnclosedResidual& out) const;
 
  protected:
   std::vector<Parameter> parameters_;

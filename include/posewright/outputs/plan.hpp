@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,6 +42,8 @@ struct TargetSight {
 struct BodyDistance {
   double distance = 0.0;  ///< m
   std::string first, second;
+  /// Where they are nearest: a point of the first and one of the second, measurement frame, m; none: not known.
+  std::optional<std::array<Eigen::Vector3d, 2>> points{};
 };
 
 struct PlannedPose {
@@ -53,6 +56,7 @@ struct PlannedPose {
   };
   std::optional<Listed> listed{};
   bool measured = false;                  ///< was there before: not to be measured again
+  bool fixed = false;                     ///< was in the plan before the search, still to be measured
   std::vector<NamedValue> configuration;  ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;      ///< of a parallel robot
   std::string load_case, station;         ///< empty if the problem has none
@@ -87,6 +91,10 @@ struct Certificate {
     std::string method;   ///< how the largest sensitivity was sought
     bool proved = false;  ///< no plan within the limits exceeds the bound; else a search says so
     std::string why_not;  ///< why it is not proved
+    long boxes = 0;       ///< that a proof took
+    /// A proof far below what the search says: it holds all the same.
+    std::optional<double> loose_bound{};
+    double loose_efficiency = 0.0;
   };
   std::optional<Workspace> workspace;
 };

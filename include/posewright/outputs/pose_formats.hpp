@@ -21,6 +21,7 @@ struct ExportOptions {
   std::optional<double> coupling;  ///< as in ControllerSettings, which it overrules
   std::string digital_output, digital_input, name, group;
   std::string tool;     ///< number, or name of the tooldata for abb-rapid
+  std::string payload;  ///< number of a payload schedule for fanuc-tp; "KG" or "KG,X,Y,Z" (kg, m) for urscript
   std::string station;  ///< whose targets are listed; empty: of the only one, or of all
   std::optional<int> base;
   ControllerSettings controller;

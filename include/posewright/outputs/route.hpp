@@ -37,10 +37,11 @@ struct Route {
   bool problem_changed = false;  ///< the problem file is not the one the plan was made for
   std::uint64_t seed = 0;
   bool closed = false, from_home = false;
-  double settle = 0.0;                    ///< s, at each pose
+  double settle = 0.0;                    ///< s, at each pose before it is read
   std::vector<std::string> names, units;  ///< of what moves
   std::vector<double> home;
   std::vector<PlannedPose> poses;    ///< in measuring order, with the ids of the plan
+  std::vector<double> reading;       ///< s, of all readings at each of them, reference targets included; empty: 0
   std::vector<RouteMotion> motions;  ///< in order: from home (if asked), between the poses, back (if closed)
   std::vector<ReferenceCheck> references;
   std::vector<SkippedPose> unreachable;
@@ -51,6 +52,8 @@ struct Route {
 
   double travel_seconds() const;
   double change_seconds() const;
+  double settle_seconds() const { return settle * double(poses.size()); }
+  double reading_seconds() const;
 };
 
 /// Schema posewright/route/1 (docs/route-file.md).

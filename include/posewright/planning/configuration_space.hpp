@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <span>
@@ -8,8 +9,15 @@
 
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/criterion/spacing.hpp"
+#include "posewright/planning/harmonic_form.hpp"
+#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
+
+struct WeightedConfigurations {
+  std::vector<std::vector<double>> configurations;
+  std::vector<double> weights;
+};
 
 /// Where candidates come from: the feasible set and the block of any configuration in it. Planners that look beyond the
 /// candidates see this and nothing of robots.
@@ -41,6 +49,18 @@ class ConfigurationSpace {
     virtual bool gradient(std::span<const double>, const BlockArray::RowMatrix&, std::span<double>) { return false; }
   };
 
+  /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.
+  class Enclosure {
+   public:
+    virtual ~Enclosure() = default;
+    /// What is not negative wherever a configuration is feasible; more than that may be feasible.
+    /// @param q  one a coordinate, over the box
+    /// @return false if the box has no enclosure
+    virtual bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) = 0;
+    /// Of all that is allowed; elsewhere the model may say anything.
+    virtual bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) = 0;
+  };
+
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
@@ -48,15 +68,21 @@ class ConfigurationSpace {
   /// How many smooth functions of q bound the feasible set within the axes' limits, so that a search may follow them
   /// with a gradient. None: what else bounds it is known as yes or no alone.
   virtual std::optional<int> margins() const { return is_box() ? std::optional(0) : std::nullopt; }
-  /// Whether ‖J(q) T‖² is of degree 2 in cosine and sine of every angle and in every length, for any T: then its
-  /// largest value can be proved. Empty: it is; else why not, for people.
-  virtual std::string not_harmonic() const { return "this space does not say how blocks depend on its axes"; }
+  /// What bounds ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
+  /// @param where  configurations at which bounds that can be chosen ought to be good
+  virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;
   /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
   /// Configuration of a candidate of the task.
   virtual std::span<const double> candidate(int index) const = 0;
   virtual std::unique_ptr<Probe> probe() const = 0;
+  /// Null if the space has none.
+  virtual std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd&) const { return nullptr; }
 };
+
+inline HarmonicForms ConfigurationSpace::harmonic_forms(const WeightedConfigurations&) const {
+  return {"this space does not say how blocks depend on its axes", {}};
+}
 
 }  // namespace posewright

@@ -1,64 +1,77 @@
 #pragma once
 
-#include <functional>
-#include <limits>
-#include <span>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "posewright/support/monitor.hpp"
+#include "posewright/planning/box_search.hpp"
+#include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
 
-/// One variable of a harmonic function: an angle, degree 2 in its cosine and sine, or a length, degree 2.
-struct HarmonicAxis {
-  double lower = 0.0, upper = 0.0;
-  bool turns = true;
-};
+/// Largest value of one function over its axes' limits (theory.md eq. (37)). Stops as largest_value() of boxes.
+BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
+                              const Monitor& monitor);
 
-/// A function that is a trigonometric polynomial of degree 2 in every angle and a polynomial of degree 2 in every
-/// length, exactly: Σ T_k Π φ_k, φ = (1, cos, sin, cos 2, sin 2) or (1, x, x²).
-class HarmonicFunction {
+/// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39)).
+class HarmonicSensitivity {
  public:
-  /// Interpolates the function at 5 angles and 3 lengths of every axis, 5^R 3^P values.
-  /// @param make  a copy of the function for one thread; NaN where it is not defined
-  HarmonicFunction(std::vector<HarmonicAxis> axes,
-                   const std::function<std::function<double(std::span<const double>)>()>& make, int threads);
+  /// Interpolates ‖B_k T‖² and the distances.
+  /// @param T  columns × any
+  /// Throws nothing of its own: defined() says whether all is as the form says, and nothing stopped it.
+  HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed, int threads,
+                      const Monitor& monitor);
 
-  const std::vector<HarmonicAxis>& axes() const { return axes_; }
-  const std::vector<double>& coefficients() const { return coefficients_; }
-  double value(std::span<const double> q) const;
-  /// All values were finite.
+  /// Coefficients of a form's tensors together: what memory and a box's time go with.
+  static double cost(const HarmonicForm& form);
+
+  const HarmonicForm& form() const { return form_; }
+  /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.
   bool defined() const { return defined_; }
-  static int terms(const HarmonicAxis& axis) { return axis.turns ? 5 : 3; }
+  std::vector<SearchBox> first_boxes() const;
+  std::unique_ptr<BoxJudge> judge() const;
+  std::size_t size() const { return harmonic_size(form_.axes(), degrees_); }
+  std::size_t terms() const { return terms_.size(); }
 
  private:
-  std::vector<HarmonicAxis> axes_;
-  std::vector<double> coefficients_;
+  friend class HarmonicJudge;
+  /// Σ (a₀ + a₁ r) f over parts of one factor, each with its own distance: Σ f and Σ r f, or Σ f alone where r f has
+  /// too high a degree.
+  struct Term {
+    HarmonicPart part{};
+    std::vector<int> distances;
+    std::vector<double> plain, times_distance;
+    double most_plain = 0.0, most_times = 0.0;  ///< largest coefficients
+  };
+  Term& term_of(const HarmonicPart& part, bool affine);
+  struct Distance {
+    HarmonicFunction square;
+    double error = 0.0;  ///< of the interpolation, m²
+    double least = 0.0;  ///< nowhere is it smaller, m²
+  };
+
+  const HarmonicForm& form_;
+  const Eigen::MatrixXd& T_;
+  std::vector<int> degrees_;  ///< of all tensors
+  std::vector<Term> terms_;
+  std::vector<Distance> distances_;
   bool defined_ = true;
 };
 
-struct HarmonicBoundOptions {
-  double slack = 0.0;       ///< of values of the function itself, added to the bound
-  double tolerance = 1e-3;  ///< stop where the bound is at most (1 + tolerance) times the largest value found
-  double enough = -std::numeric_limits<double>::infinity();  ///< or where the bound is at most this
-  long most_boxes = 20000;                                   ///< stop then, with the bound reached
-  int threads = 0;
-};
+/// Largest value of several, each over its own axes.
+BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
+                              const BoxSearchOptions& options, const Monitor& monitor);
 
-struct HarmonicBound {
-  double bound = 0.0;         ///< no value in the box is larger
-  double largest = 0.0;       ///< found
-  std::vector<double> where;  ///< of it
-  long boxes = 0;
-  bool complete = false;  ///< the tolerance was reached
-};
+/// A form's function Σ_k s_k(r_k) ‖B_k T‖² at values of its axes, those that follow others put in; NaN where it has
+/// none.
+double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
+                      std::vector<double>& values);
 
-/// Largest value over the box of the axes, by branch and bound. On a box of half-width h < π/2 about c, u = tan((q −
-/// c)/2) makes f Π(1 + u²)² and Π(1 + u²)² polynomials of degree 4 in each u; the largest quotient of their Bernstein
-/// coefficients bounds f there (Farouki 2012, Computer Aided Geometric Design 29(6)), quotients at corners are values.
-/// The box of the largest bound is halved along the axis in which its coefficients vary most. Rounding of all sums is
-/// inside the bound. Boxes are taken in rounds of a fixed number, so threads change nothing but the time.
-HarmonicBound largest_value(const HarmonicFunction& function, const HarmonicBoundOptions& options,
-                            const Monitor& monitor);
+/// Upper bound a₀ + a₁ r of a part's factor for r in [lower, upper], lower > 0: the chord of what is convex, the
+/// tangent of what is taken away. Constant where `affine` is false.
+struct FactorBound {
+  double constant = 0.0, slope = 0.0;
+};
+FactorBound factor_bound(const HarmonicPart& part, double lower, double upper, bool affine);
 
 }  // namespace posewright

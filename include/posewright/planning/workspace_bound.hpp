@@ -12,6 +12,9 @@
 
 namespace posewright {
 
+// With fewer candidates a plan is a quick look.
+inline constexpr std::size_t few_candidates = 1000;
+
 /// How far a proof over the workspace goes.
 struct ProofLimits {
   /// It ends where the largest d is proved to be within this share of h, so that no plan over the workspace is better
@@ -36,11 +39,12 @@ struct WorkspaceBoundOptions {
 
 /// Whether the largest d over the limits of the workspace is proved.
 struct WorkspaceProof {
-  std::string why_not;     ///< empty: it is proved
-  double max_ratio = 1.0;  ///< no d within the limits exceeds it times h
-  double bound = 0.0;      ///< Φ(w) + h ln(max_ratio)
-  long boxes = 0;          ///< that it took
-  std::string ended{};     ///< why not more of them; empty: they were enough
+  std::string why_not;               ///< empty: it is proved
+  double max_ratio = 1.0;            ///< no d within the limits exceeds it times h
+  double bound = 0.0;                ///< Φ(w) + h ln(max_ratio)
+  long boxes = 0;                    ///< that it took
+  std::string ended{};               ///< why not more of them; empty: they were enough
+  std::vector<double> largest_at{};  ///< configuration of the largest d found on the way, feasible or not
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.
@@ -69,11 +73,5 @@ struct WorkspaceBound {
 WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign& design,
                                const InformationFunction& function, const ConfigurationSpace& space,
                                const WorkspaceBoundOptions& options, const Monitor& monitor);
-
-/// Proves the largest d of these weights over the limits of the axes, where the space says that d is harmonic and the
-/// candidates are no quick look (fewer than 1,000, unless a proof costs next to nothing): fills `found.proof`.
-/// @param rows, columns  of a block
-void prove_workspace(WorkspaceBound& found, const ConfigurationSpace& space, std::size_t candidates, int rows,
-                     int columns, const WorkspaceBoundOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

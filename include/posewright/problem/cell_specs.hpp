@@ -121,7 +121,8 @@ struct MotionSpec {
   std::vector<std::pair<Located<std::string>, Measured>> velocity, acceleration;  ///< replace the robot's own
   std::vector<std::pair<Located<std::string>, Measured>> home;                    ///< coordinates left out are zero
   double speed = 1.0;                ///< share of the velocities that is used
-  double settle = 0.0;               ///< s, standstill at each pose
+  double settle = 0.0;               ///< s, standstill at each pose before it is read
+  double reading = 0.0;              ///< s, of one target in one reading
   double station_change = 900;       ///< s, from one station to another
   double load_change = 300;          ///< s, from one load case to another
   double temperature_change = 3600;  ///< s, until the robot has another of the temperatures that are asked for

@@ -86,7 +86,8 @@ struct DesignSpec {
   Scaling scaling = Scaling::tolerance;
   bool prior = false;    ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
   bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
-  std::optional<std::filesystem::path> measured;  ///< poses that are measured already or fixed: new ones come to them
+  std::optional<std::filesystem::path> measured;  ///< poses that are measured already: new ones come to them
+  std::optional<std::filesystem::path> fixed;     ///< poses that any plan has among its own
   std::optional<TestPosesSpec> test_poses;
   int line = 0;
 };

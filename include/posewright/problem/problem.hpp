@@ -10,6 +10,7 @@
 #include "posewright/problem/cell_specs.hpp"
 #include "posewright/problem/design_specs.hpp"
 #include "posewright/problem/measurement_specs.hpp"
+#include "posewright/problem/package_search.hpp"
 #include "posewright/problem/robot_specs.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
@@ -87,8 +88,8 @@ struct Problem {
   std::vector<VariantSpec> variants;  ///< at least one
   WorkspaceSpec workspace;
   DesignSpec design;
-  /// Where meshes named package://NAME/… are: folders named so beside those of ROS_PACKAGE_PATH and around the URDF.
-  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  /// Where the URDF and meshes named package://NAME/… are, beside the folders of find_package().
+  Packages packages;
   /// Where calibration found the parameters; put here by apply_parameters (model/apply_parameters.hpp).
   std::optional<CalibratedParameters> parameters;
 

@@ -8,9 +8,10 @@
 namespace posewright {
 
 /// Reads a problem file (YAML, at most 10 MB). Throws InputError with the line of the first thing that is wrong.
-Problem read_problem(const std::filesystem::path& file);
+/// @param packages  folders of packages that the user names: become Problem::packages
+Problem read_problem(const std::filesystem::path& file, const Packages& packages = {});
 
 /// The same for text already in memory; `file` names it in messages, and paths in it are relative to its folder.
-Problem parse_problem(const std::string& text, const std::filesystem::path& file);
+Problem parse_problem(const std::string& text, const std::filesystem::path& file, const Packages& packages = {});
 
 }  // namespace posewright

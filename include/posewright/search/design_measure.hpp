@@ -23,8 +23,13 @@ class DesignMeasure {
   double phi(const BlockArray& blocks) const;
   /// The same for blocks of several parts.
   double phi(const std::vector<SearchPart>& parts) const;
+  /// Φ of the poses without each of the known ones, whose information the prior holds.
+  std::vector<double> phi_without(const std::vector<SearchPart>& poses, const std::vector<SearchPart>& known) const;
 
  private:
+  BlockArray::RowMatrix whitened(const BlockArray& blocks) const;
+  Eigen::MatrixXd information(const BlockArray& blocks) const;
+
   std::shared_ptr<const Criterion> criterion_;
   Eigen::MatrixXd R_, prior_;
   double offset_;

@@ -24,9 +24,14 @@ struct PlanOptions {
   /// least certain.
   bool everything_counts = false;
   std::optional<PoseList> measured{};  ///< poses that are measured already; none: as in the file
+  /// Poses that the plan has whatever its search finds: they are still to be measured and count among `poses`. Where a
+  /// list marks some as fixed, those alone. None: as in the file; empty: none.
+  std::optional<PoseList> fixed{};
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
   /// many to draw.
   std::optional<PoseList> candidates_from{};
+  /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
+  bool candidates_alone = false;
   ProofLimits proof{};  ///< of the certificate over the workspace
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all

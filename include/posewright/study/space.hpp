@@ -22,7 +22,7 @@ struct SpacePart {
 };
 
 /// The problem's workspace as planners see it. Everything referred to must outlive it.
-/// @param measured  poses that are there already: new ones keep the spacing from them
+/// @param measured  poses that are there already or fixed: new ones keep the spacing from them
 /// @param R  whitening of all columns: blocks are J_raw R⁻¹
 std::unique_ptr<ConfigurationSpace> make_configuration_space(std::vector<SpacePart> parts,
                                                              const Configurations& candidates,

@@ -30,11 +30,19 @@ struct Settings {
   std::optional<PoseList> candidates_from;  ///< none: candidates are drawn
   /// The same as files that are still to be read; empty: none.
   std::filesystem::path measured_file, candidates_file;
+  std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
+  bool candidates_alone = false;  ///< as PlanOptions
   ProofLimits proof{};
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.
 Settings settings_of(const Problem& problem, const PlanOptions& options);
+
+/// Takes up the poses that are fixed by the options or the problem, for what plans a whole list; what judges a given
+/// one does without. Of a list that marks poses as fixed, those. Throws InputError with file and line if none is left
+/// to be chosen beside them, and for `reserve`: what is fixed may be lost, too.
+/// @return what to tell of how the list was read
+std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings);
 
 struct Discrepancy;
 struct Study;
@@ -47,6 +55,7 @@ struct Study {
   std::string list;                ///< that the candidates came from; empty: they were drawn
   std::vector<std::string> notes;  ///< of how it was read
   Configurations measured;
+  Configurations fixed;      ///< still to be measured, in any plan: known to the search beside the measured ones
   Spacing spacing;           ///< for configurations that are not candidates
   Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
   bool has_minimum_distance = false;
@@ -87,9 +96,12 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
 /// How far poses stay apart: as stated, else usual_spacing() where it applies.
 void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings);
 
-/// Takes away candidates that repeat a measured pose or are nearer to one than the minimum distance, where the policy
-/// forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
+/// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
+/// policy forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
 void keep_away_from_measured(Study& study, Repeats repeats);
+
+/// What a search finds there: configurations that are measured already, then fixed ones.
+Configurations known_before(const Study& study);
 
 /// The configurations that are measured already, then these.
 Configurations with_measured(const Study& study, const Configurations& poses);

@@ -12,6 +12,7 @@ struct ReportOptions {
   std::filesystem::path route;  ///< route.json of the same plan; empty: poses in the plan's order, no motions
   bool sizes = true;            ///< plan for other numbers of poses too, to show what more or fewer would bring
   bool candidates = true;       ///< draw the plan's candidates again to show what each could tell
+  bool moves = true;            ///< look at what is near to each pose, so that it can be moved on the page
   int threads = 0;              ///< 0 = all
 };
 

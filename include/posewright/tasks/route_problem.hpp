@@ -13,10 +13,11 @@
 namespace posewright {
 
 struct RouteOptions {
-  bool from_home = false;    ///< begins at home
-  bool closed = false;       ///< ends where it began
-  std::optional<int> start;  ///< pose id to begin with
-  int milestones = 200;      ///< of the roadmap, built where a straight motion is not free
+  bool from_home = false;                 ///< begins at home
+  bool closed = false;                    ///< ends where it began
+  std::optional<int> start;               ///< pose id to begin with
+  int milestones = 200;                   ///< of the roadmap, built where a straight motion is not free
+  std::optional<double> settle, reading;  ///< s, in place of the problem's motion.settle and motion.reading
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -43,6 +43,7 @@ const clearance = (nearest) => (nearest ? `${fixed(nearest.distance * 1000, 1)} 
  * goes elsewhere. @param {import('../pose_list.js').PoseList} list @param {number} place */
 function motionTo(list, place) {
   const { ids } = list;
+  if (list.moves.has(ids[place]) || (place > 0 && list.moves.has(ids[place - 1]))) return undefined;
   const before = place > 0 ? [ids[place - 1]] : [0, ids.at(-1)];
   return list.report.route?.motions.find((m) => m.to === ids[place] && before.includes(m.from));
 }

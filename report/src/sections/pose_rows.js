@@ -1,4 +1,4 @@
-import { h } from '../dom.js';
+import { h, svg } from '../dom.js';
 import { conditionTexts } from '../text/sentences.js';
 import { percent } from '../text/units.js';
 
@@ -65,7 +65,21 @@ function row(list, entry, place, preview) {
       },
       text,
     );
+  const locked = list.locked.has(entry.id);
+  const lock = h(
+    'button',
+    {
+      class: 'lock bare',
+      'aria-pressed': String(locked),
+      'aria-label': `Keep pose ${entry.id} in the next plan`,
+      title: locked ? 'Locked: plan --fixed keeps it' : 'Lock: plan --fixed is to keep it',
+      onclick: () => list.lock(entry.id, !locked),
+    },
+    padlock(locked),
+  );
   const notes = [
+    pose.moved && 'moved',
+    list.unknown.includes(entry.id) && 'its figures are not known',
     pose.station && `station ${pose.station}`,
     pose.load_case,
     ...conditionTexts(pose),
@@ -95,11 +109,21 @@ function row(list, entry, place, preview) {
       h('b', {}, `Pose ${entry.id}`),
       notes ? h('span', { class: 'notes' }, notes) : null,
     ),
+    lock,
     h('span', { class: 'loss', title: 'Loss of efficiency if this pose alone is missing' }, loss),
     move('up', -1, '↑', place > 0),
     move('down', 1, '↓', place < list.entries.length - 1),
   );
 }
+
+/** @param {boolean} closed */
+const padlock = (closed) =>
+  svg(
+    'svg',
+    { viewBox: '0 0 16 16', width: 16, height: 16, 'aria-hidden': 'true' },
+    svg('rect', { x: 3, y: 7, width: 10, height: 7, rx: 1.5 }),
+    svg('path', { d: closed ? 'M5 7V5a3 3 0 0 1 6 0v2' : 'M5 7V4a3 3 0 0 1 5.6-1.5' }),
+  );
 
 /** Nearer than this to the end of the list, dragging scrolls it, px. */
 const edge = 20;

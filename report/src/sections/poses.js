@@ -1,10 +1,13 @@
 import { h, table } from '../dom.js';
-import { fixed, number, percent, quantity, shownUnit } from '../text/units.js';
+import { fixed, list as joined, number, percent, quantity, shownUnit } from '../text/units.js';
 import { download, posesCsv } from '../save_csv.js';
 import { measuringTable } from './measuring_table.js';
 import { poseRows } from './pose_rows.js';
 import { poseCard } from '../view/pose_card.js';
+import { poseMover } from '../view/pose_mover.js';
 import { viewer } from '../view/viewer.js';
+import { newPoses } from '../text/sentences.js';
+import { shell, shellFile } from './reproduce.js';
 
 /** The robot in 3-D beside the list of poses, and what the list is worth.
  * @param {import('../pose_list.js').PoseList} list */
@@ -13,17 +16,18 @@ export function posesSection(list) {
   const rows = poseRows(list, show);
   const worth = h('dl', { class: 'worth', 'aria-live': 'polite' });
   const warning = h('p', { class: 'note warn', hidden: true });
+  const keep = h('p', { class: 'note', hidden: true });
   const reset = h('button', { onclick: () => list.reset() }, 'Reset');
   const save = h('button', { class: 'main', onclick: () => saveList(list) }, 'Save as poses.csv');
   const update = () => {
     worth.replaceChildren(...worthOf(list));
     reset.disabled = !list.changed;
     save.disabled = list.ids.length === 0;
-    const moved = Boolean(list.report.route) && list.changed;
-    warning.hidden = !moved;
-    warning.textContent = moved
-      ? 'Your list differs from the route: motions between its poses are not checked. Run posewright route again.'
-      : '';
+    const words = warningsOf(list);
+    warning.hidden = words.length === 0;
+    warning.textContent = words.join(' ');
+    keep.hidden = list.locked.size === 0;
+    keep.replaceChildren(...keepText(list));
   };
   list.addEventListener('list', update);
   update();
@@ -34,7 +38,7 @@ export function posesSection(list) {
     h(
       'p',
       { class: 'lead' },
-      'Every dot is the tip at one pose. Click a dot or a row to see the robot there. Untick a pose that cannot be measured and see at once what that costs.',
+      'Every dot is the tip at one pose. Click a dot or a row to see the robot there. Untick a pose that cannot be measured, or move it, and see at once what that costs.',
     ),
     h(
       'div',
@@ -47,6 +51,7 @@ export function posesSection(list) {
         rows,
         warning,
         h('div', { class: 'buttons' }, save, reset),
+        keep,
         h(
           'p',
           { class: 'note' },
@@ -57,6 +62,31 @@ export function posesSection(list) {
     ),
     ...[measuringTable(list), allValues(list)].filter(Boolean),
   );
+}
+
+/** What the reader must know of a changed list. @param {import('../pose_list.js').PoseList} list */
+function warningsOf(list) {
+  const { unknown } = list;
+  const refused = list.ids.filter((id) => list.moves.has(id) && list.known(id)?.reason);
+  return [
+    unknown.length > 0 && `Figures are those of the list without pose ${joined(unknown.map(String))}: what is told there is not known on this page.`,
+    refused.length > 0 && `Pose ${joined(refused.map(String))}: not feasible where it is now.`,
+    Boolean(list.report.route) &&
+      list.changed &&
+      'Your list differs from the route: motions between its poses are not checked. Run posewright route again.',
+  ].filter(Boolean);
+}
+
+/** How a new plan keeps the locked poses. @param {import('../pose_list.js').PoseList} list */
+function keepText(list) {
+  const locked = list.ids.filter((id) => list.locked.has(id));
+  const { plan } = list.report;
+  const variant = plan.variant && !(plan.variants?.length > 1) ? ` --variant ${shell(plan.variant)}` : '';
+  const command = `posewright plan ${shellFile(plan.problem.file)}${variant} --poses ${newPoses(plan).length} --fixed poses.csv -o new-plan.json --poses-csv new-poses.csv`;
+  return [
+    `Locked: ${joined(locked.map(String)) || 'none that is ticked'}. The saved list marks them; this keeps them and searches the others: `,
+    h('code', {}, command),
+  ];
 }
 
 /** Models without a single tip are not drawn; their poses can be read all the same. @param {import('../pose_list.js').PoseList} list */
@@ -70,7 +100,7 @@ function noPicture(list) {
   list.addEventListener('current', fill);
   fill();
   return {
-    element: h('div', { class: 'viewer' }, h('p', { class: 'note' }, 'This kind of robot is not drawn.'), title, card),
+    element: h('div', { class: 'viewer' }, h('p', { class: 'note' }, 'This kind of robot is not drawn.'), title, card, poseMover(list)),
     show: (id) => list.show(id),
   };
 }
@@ -114,7 +144,7 @@ function allValues(list) {
 /** @param {import('../pose_list.js').PoseList} list */
 function saveList(list) {
   const poses = list.ids.map((id) => list.poses.get(id));
-  download('poses.csv', posesCsv(poses, list.report.actuator_units), 'text/csv');
+  download('poses.csv', posesCsv(poses, list.report.actuator_units, list.locked), 'text/csv');
 }
 
 /** Figures of the list beside the plan's. @param {import('../pose_list.js').PoseList} list */

@@ -1,3 +1,5 @@
+import { cameraLines } from './camera_lines.js';
+
 /** @typedef {{centre: number[], radius: number, low: number[], high: number[], points: number[][]}} Extent points: some that must be in view */
 
 const enoughPoints = 1000;
@@ -58,7 +60,7 @@ export const bodyCorners = (body, frames) =>
   corners(body.shape).map((p) => transformed(frames[body.frame], transformed(body.placement, p)));
 
 /**
- * What there is to see: the robot in all stops, its targets, stations and things around it.
+ * What there is to see: the robot in all stops, its targets, stations, fields of view and things around it.
  * @param {import('../types.js').Report} report @returns {Extent}
  */
 export function sceneExtent(report) {
@@ -66,6 +68,7 @@ export function sceneExtent(report) {
   for (const keyframe of report.keyframes) {
     points.push(keyframe.tip.slice(0, 3), ...keyframe.lines.flat());
     points.push(.../** @type {number[][]} */ (keyframe.targets.filter((t) => t !== null)));
+    if (report.camera && keyframe.pose) points.push(...cameraLines(report.camera, keyframe.tip).view);
   }
   const first = report.keyframes[0];
   if (first) for (const body of report.bodies) points.push(...bodyCorners(body, first.frames));

@@ -1,7 +1,8 @@
 import { h } from '../dom.js';
+import { quantity } from '../text/units.js';
 
-/** Names of stations, and the number of the pose beside the tip. */
-export function placeLabels(labels, picture, list, legend, project) {
+/** Names of stations, the number of the pose beside the tip, the distance where bodies are nearest. */
+export function placeLabels(labels, picture, list, gap, legend, project) {
   const wanted = picture.report.stations.map((s) => ({
     text: `station ${s.name}`,
     at: s.placement.slice(0, 3),
@@ -9,6 +10,7 @@ export function placeLabels(labels, picture, list, legend, project) {
   }));
   const tip = picture.tips.find((t) => t.id === list.current);
   if (tip) wanted.push({ text: `pose ${tip.id}`, at: tip.position, name: 'current' });
+  if (gap) wanted.push({ text: quantity(gap.distance, 'm', 3), at: gap.points[0].map((v, k) => (v + gap.points[1][k]) / 2), name: 'gap' });
   labels.replaceChildren(
     ...wanted.map(({ text, at, name }) => {
       const place = project(at);

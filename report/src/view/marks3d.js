@@ -8,6 +8,7 @@ import {
   Line,
   LineBasicMaterial,
   LineDashedMaterial,
+  LineSegments,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -92,6 +93,74 @@ export function candidateCloud(positions, sensitivity) {
       opacity: 0.7,
     }),
   );
+}
+
+/** The shortest line between the two bodies that are nearest to each other. */
+export class GapMark {
+  /** @param {number} radius m */
+  constructor(radius) {
+    this.material = new MeshBasicMaterial({ depthTest: false, transparent: true });
+    this.lineMaterial = new LineBasicMaterial({ depthTest: false, transparent: true });
+    const ball = new SphereGeometry(radius, 16, 12);
+    this.ends = [new Mesh(ball, this.material), new Mesh(ball, this.material)];
+    this.line = new Line(new BufferGeometry(), this.lineMaterial);
+    this.root = new Group();
+    this.root.add(...this.ends, this.line);
+    this.root.children.forEach((child) => (child.renderOrder = 4));
+    this.line.frustumCulled = false;
+    this.paint();
+  }
+
+  paint() {
+    this.material.color.set(colour('now'));
+    this.lineMaterial.color.set(colour('now'));
+  }
+
+  /** @param {import('./picture.js').Gap|undefined} gap */
+  move(gap) {
+    this.root.visible = Boolean(gap);
+    if (!gap) return;
+    this.ends.forEach((end, k) => end.position.set(...gap.points[k]));
+    this.line.geometry.dispose();
+    this.line.geometry = new BufferGeometry().setFromPoints(gap.points.map((p) => new Vector3(...p)));
+  }
+}
+
+/** A camera's field of view, its board and the points on it. */
+export class CameraMark {
+  constructor() {
+    this.view = new LineBasicMaterial({ transparent: true, opacity: 0.8 });
+    this.board = new LineBasicMaterial();
+    this.points = new PointsMaterial({ size: 5, sizeAttenuation: false });
+    const empty = () => new BufferGeometry();
+    this.parts = {
+      view: new LineSegments(empty(), this.view),
+      board: new LineSegments(empty(), this.board),
+      points: new Points(empty(), this.points),
+    };
+    this.root = new Group();
+    for (const part of Object.values(this.parts)) {
+      part.frustumCulled = false;
+      this.root.add(part);
+    }
+    this.paint();
+  }
+
+  paint() {
+    this.view.color.set(colour('station'));
+    this.board.color.set(colour('target'));
+    this.points.color.set(colour('target'));
+  }
+
+  /** @param {import('./picture.js').CameraLines|undefined} lines @param {boolean} visible */
+  move(lines, visible) {
+    this.root.visible = visible && Boolean(lines);
+    if (!lines) return;
+    for (const [name, part] of Object.entries(this.parts)) {
+      part.geometry.dispose();
+      part.geometry = new BufferGeometry().setFromPoints(lines[name].map((p) => new Vector3(...p)));
+    }
+  }
 }
 
 /** Targets on the robot, stations, and the lines between them. */

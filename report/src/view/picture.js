@@ -9,7 +9,14 @@ import { bodyCorners, extentOf, sceneExtent, tipExtent } from './extent.js';
  * @property {number|null} current pose id
  * @property {Set<number>} on ids of ticked poses
  * @property {string[]} nearest names of the two bodies that come nearest to each other here
+ * @property {Gap|undefined} gap where they do
+ * @property {CameraLines|undefined} camera
  * @property {{bodies: boolean, sights: boolean, candidates: boolean}} layers
+ */
+
+/**
+ * @typedef {{points: [number[], number[]], distance: number}} Gap
+ * @typedef {{view: number[][], board: number[][], points: number[][]}} CameraLines view and board are pairs of points
  */
 
 /** Movements below this share of the scene's size are drawn larger. */
@@ -67,6 +74,12 @@ export class Picture {
   /** @param {import('./interpolate.js').Drawn|undefined} drawn */
   enlargedDrawing(drawn) {
     return drawn && this.rest ? exaggerated(drawn, this.rest, this.factor) : drawn;
+  }
+
+  /** A pose that the reader moved. @param {number} id @param {number[]} tip */
+  moveTip(id, tip) {
+    const shown = this.tips.find((t) => t.id === id);
+    if (shown) shown.position = this.enlarged(tip.slice(0, 3));
   }
 
   /** Flat coordinates of points that move with the tip. @param {number[]} flat */

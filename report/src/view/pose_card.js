@@ -25,11 +25,11 @@ export function poseCard(list) {
     pose.station && `station ${pose.station}`,
     pose.load_case && `load case ${pose.load_case}`,
     ...conditionTexts(pose),
-    `${percent(pose.contribution)} of all information`,
+    pose.contribution !== undefined && `${percent(pose.contribution)} of all information`,
     tipText(pose),
     pose.nearest && nearestText(pose.nearest),
   ].filter(Boolean);
-  parts.push(h('p', { class: 'note' }, `${facts.join(' · ')}.`));
+  if (facts.length > 0) parts.push(h('p', { class: 'note' }, `${facts.join(' · ')}.`));
   const sights = sightText(pose);
   if (sights) parts.push(h('p', { class: 'note' }, sights));
   return parts;

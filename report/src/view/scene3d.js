@@ -16,7 +16,7 @@ import { Bodies } from './bodies3d.js';
 import { Skeleton } from './skeleton3d.js';
 import { directions } from './directions.js';
 import { onClick, orbit } from './scene_controls.js';
-import { Sights, Tips, candidateCloud } from './marks3d.js';
+import { CameraMark, GapMark, Sights, Tips, candidateCloud } from './marks3d.js';
 
 /** The 3-D picture. Drawn only when something has changed. */
 export class Scene3d {
@@ -57,7 +57,10 @@ export class Scene3d {
     this.skeleton = new Skeleton(this.picture.rest?.lines ?? [], unit * (solid ? 0.004 : 0.009));
     this.tips = new Tips(this.picture);
     this.sights = new Sights(report, unit * 0.008);
-    this.scene.add(this.bodies.root, this.skeleton.root, this.tips.root, this.sights.root);
+    this.gap = new GapMark(unit * 0.006);
+    this.cameraMark = new CameraMark();
+    for (const part of [this.bodies, this.skeleton, this.tips, this.sights, this.gap, this.cameraMark])
+      this.scene.add(part.root);
     const step = this.picture.grid;
     this.grid = new GridHelper(step * 20, 20);
     this.grid.rotation.x = Math.PI / 2;
@@ -110,6 +113,8 @@ export class Scene3d {
     }
     this.tips.update(shown.current, shown.on);
     this.bodies.mark(shown.nearest);
+    this.gap.move(shown.layers.bodies ? shown.gap : undefined);
+    this.cameraMark.move(shown.camera, shown.layers.sights);
     this.bodies.root.visible = shown.layers.bodies;
     this.sights.lines.visible = shown.layers.sights;
     if (shown.layers.candidates && this.cloudFactor !== this.picture.factor) {
@@ -127,7 +132,7 @@ export class Scene3d {
 
   paint() {
     this.renderer.setClearColor(colour('scene'));
-    for (const part of [this.bodies, this.skeleton, this.sights]) part.paint();
+    for (const part of [this.bodies, this.skeleton, this.sights, this.gap, this.cameraMark]) part.paint();
     const lines = this.grid.geometry.getAttribute('color');
     this.grid.material.vertexColors = lines === undefined;
     this.grid.material.color.set(colour('grid'));

@@ -133,6 +133,11 @@ export class SvgView {
     if (shown.layers.candidates) parts.push(...this.#candidates());
     if (shown.layers.sights)
       for (const s of shown.sights) parts.push(this.#line([s.from, s.to], s.hidden ? 'sight hidden' : 'sight'));
+    if (shown.gap && shown.layers.bodies) parts.push(this.#line(shown.gap.points, 'gap'));
+    if (shown.camera && shown.layers.sights)
+      for (const name of ['view', 'board'])
+        for (let k = 0; k < shown.camera[name].length; k += 2)
+          parts.push(this.#line(shown.camera[name].slice(k, k + 2), `camera-${name}`));
     for (const station of picture.report.stations) parts.push(this.#dot(station.placement, 'station', 6));
     for (const line of drawn?.lines ?? [])
       parts.push(this.#line(line, 'rod'), ...line.map((p) => this.#dot(p, 'joint', 3.5)));

@@ -3,11 +3,14 @@ import { onTheme } from '../theme.js';
 import { Picture } from './picture.js';
 import { placeLabels } from './labels.js';
 import { Player } from './player.js';
+import { poseMover } from './pose_mover.js';
 import { poseCard } from './pose_card.js';
 import { Scene3d } from './scene3d.js';
 import { sightsOf } from './sights.js';
 import { nearestHere, stopText } from './stop_text.js';
 import { SvgView } from './svg_view.js';
+import { cameraLines } from './camera_lines.js';
+import { cameraPicture } from './camera_picture.js';
 import { enlarger, layerBoxes, lookButtons, playerControls } from './viewer_controls.js';
 
 function hasWebGl() {
@@ -45,7 +48,8 @@ export function viewer(list) {
   const { view, solid } = makeView(holder, picture, pick);
   const labels = h('div', { class: 'labels', 'aria-hidden': 'true' });
   holder.append(labels);
-  view.onDraw = (project) => placeLabels(labels, picture, list, view.legend, project);
+  let gap = /** @type {import('./picture.js').Gap|undefined} */ (undefined);
+  view.onDraw = (project) => placeLabels(labels, picture, list, gap, view.legend, project);
   const controls = playerControls(player);
   const stop = h('output', { class: 'stop', 'aria-live': 'polite' });
   const card = h('div', { class: 'pose-card' });
@@ -54,8 +58,12 @@ export function viewer(list) {
     const drawn = picture.enlargedDrawing(player.drawn);
     const pose = list.poses.get(list.current ?? -1);
     const sights = pose && drawn ? sightsOf(report, pose, drawn.targets) : [];
-    const nearest = nearestHere(player, list)?.between ?? [];
-    view.show({ drawn, sights, current: list.current, on: new Set(list.ids), nearest, layers });
+    const nearest = nearestHere(player, list);
+    // Where movements are drawn larger, points of bodies are elsewhere.
+    gap = nearest?.points && picture.factor === 1 ? nearest : undefined;
+    const camera = drawn && report.camera ? cameraLines(report.camera, drawn.tip) : undefined;
+    const on = new Set(list.ids);
+    view.show({ drawn, sights, current: list.current, on, nearest: nearest?.between ?? [], gap, camera, layers });
     view.canvas.dataset.tip = drawn ? drawn.tip.map((v) => v.toFixed(6)).join(' ') : '';
     // Nobody wants every step of a film read out.
     stop.setAttribute('aria-live', player.playing ? 'off' : 'polite');
@@ -65,7 +73,10 @@ export function viewer(list) {
     card.replaceChildren(...poseCard(list));
   };
   for (const event of ['frame', 'state']) player.addEventListener(event, show);
-  list.addEventListener('list', () => player.rebuild());
+  list.addEventListener('list', () => {
+    for (const [id, keyframe] of list.keyframes) picture.moveTip(id, keyframe.tip);
+    player.rebuild();
+  });
   list.addEventListener('current', show);
   onTheme(() => (view.paint(), show()));
   player.go(player.stops[0]?.index ?? 0);
@@ -80,6 +91,8 @@ export function viewer(list) {
     picture.possibleFactor > 1 ? enlarger(picture, show) : null,
     solid ? null : h('p', { class: 'note' }, lines),
     h('div', { class: 'now' }, stop, card),
+    cameraPicture(list) ?? '',
+    poseMover(list),
   );
   return { element, show: pick };
 }

@@ -38,6 +38,9 @@ struct Kernels {
                               double least_sum);
   /// Lower triangle (by whole tiles) of h = X Xᵀ, n × n column-major; rows of x are `length` doubles, a multiple of 8.
   void (*gram)(const double* x, std::size_t n, int length, double* h);
+  /// out[o][i][x] = Σ_k m[i·columns + k] in[o][k][x], x < stride, for o < outer: one axis of a tensor times a matrix.
+  void (*combine_rows)(const double* in, double* out, std::size_t outer, std::size_t stride, const double* m, int rows,
+                       int columns);
   const char* name;
 };
 

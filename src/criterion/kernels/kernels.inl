@@ -275,9 +275,59 @@ void gram(const double* x, std::size_t n, int length, double* h) {
   }
 }
 
+/// One outer index with a stride of four or more: columns of the tensor are taken four at a time.
+inline void combine_wide(const double* __restrict in, double* __restrict out, std::size_t stride, const double* m,
+                         int rows, int columns) {
+  std::size_t x = 0;
+  for (; x + 8 <= stride; x += 8)
+    for (int i = 0; i < rows; ++i) {
+      Lanes a = {0, 0, 0, 0}, b = {0, 0, 0, 0};
+      for (int k = 0; k < columns; ++k) {
+        const double* from = in + static_cast<std::size_t>(k) * stride + x;
+        const double factor = m[i * columns + k];
+        a += factor * *reinterpret_cast<const Lanes*>(from);
+        b += factor * *reinterpret_cast<const Lanes*>(from + 4);
+      }
+      double* to = out + static_cast<std::size_t>(i) * stride + x;
+      *reinterpret_cast<Lanes*>(to) = a;
+      *reinterpret_cast<Lanes*>(to + 4) = b;
+    }
+  for (; x < stride; ++x)
+    for (int i = 0; i < rows; ++i) {
+      double sum = 0;
+      for (int k = 0; k < columns; ++k) sum += m[i * columns + k] * in[static_cast<std::size_t>(k) * stride + x];
+      out[static_cast<std::size_t>(i) * stride + x] = sum;
+    }
+}
+
+/// The last axis, rows of the result four at a time; `turned` is m transposed, its rows 16 apart and padded with zeros.
+inline void combine_last(const double* __restrict in, double* __restrict out, std::size_t outer, const double* turned,
+                         int rows, int columns) {
+  for (std::size_t o = 0; o < outer; ++o, in += columns, out += rows)
+    for (int i = 0; i < rows; i += 4) {
+      Lanes sum = {0, 0, 0, 0};
+      for (int k = 0; k < columns; ++k) sum += in[k] * *reinterpret_cast<const Lanes*>(turned + 16 * k + i);
+      for (int l = 0; l < 4 && i + l < rows; ++l) out[i + l] = sum[l];
+    }
+}
+
+void combine_rows(const double* in, double* out, std::size_t outer, std::size_t stride, const double* m, int rows,
+                  int columns) {
+  if (stride == 1 && rows <= 16 && columns <= 16) {
+    double turned[16 * 16] = {};
+    for (int i = 0; i < rows; ++i)
+      for (int k = 0; k < columns; ++k) turned[16 * k + i] = m[i * columns + k];
+    combine_last(in, out, outer, turned, rows, columns);
+    return;
+  }
+  for (std::size_t o = 0; o < outer; ++o)
+    combine_wide(in + o * static_cast<std::size_t>(columns) * stride, out + o * static_cast<std::size_t>(rows) * stride,
+                 stride, m, rows, columns);
+}
+
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross, scan_rows, next_block,
-                              next_between,     gram,   KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows, next_block,
+                              next_between,     gram,   combine_rows,      KERNELS_TEXT};
 
 }  // namespace posewright

@@ -5,7 +5,8 @@
 #include "program.hpp"
 #include "text.hpp"
 
-// Form: public TP listings (ros-industrial/fanuc fanuc_driver/tpe); coupling: fanuc_driver/src/fanuc_utils.cpp;
+// Form: public TP listings (ros-industrial/fanuc fanuc_driver/tpe; PAYLOAD[n] stands behind the frames there; an R-30iA
+// has ten payload schedules); coupling: fanuc_driver/src/fanuc_utils.cpp;
 // docs/export.md.
 
 namespace posewright::formats {
@@ -23,6 +24,7 @@ const ProgramRules tp_rules = {
     .decimals = 5};
 
 constexpr std::size_t most_lines = 9999;
+constexpr int most_payloads = 10;
 constexpr std::size_t longest_remark = 32, longest_message = 24;
 
 std::vector<std::string> tp_measure_lines(const RobotProgram& program, int output, int input) {
@@ -42,6 +44,9 @@ std::vector<std::string> main_lines(const RobotProgram& program, const ExportOpt
   std::vector<std::string> lines = {
       fmt::format("  !{} ;", export_mark), fmt::format("  UFRAME_NUM={} ;", options.base.value_or(0)),
       fmt::format("  UTOOL_NUM={} ;", tool_number(options, 1)), fmt::format("  DO[{}]=OFF ;", output)};
+  if (!options.payload.empty())
+    lines.insert(lines.end() - 1,
+                 fmt::format("  PAYLOAD[{}] ;", signal_number(options.payload, "--payload", 1, most_payloads, 1)));
   for (const ProgramStep& step : program.steps) {
     if (!step.comment.empty()) lines.push_back("  !" + program_text(step.comment, longest_remark) + " ;");
     if (step.kind == ProgramStep::Kind::move)
@@ -90,17 +95,17 @@ Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
 }  // namespace
 
 PoseFormat fanuc_tp() {
-  return {
-      "fanuc-tp",
-      "FANUC TP listing",
-      "FANUC controllers with ASCII upload, or maketp",
-      ".LS",
-      "six turning joints; --coupling",
-      {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling", "controller"},
-      true,
-      false,
-      write_tp,
-      nullptr};
+  return {"fanuc-tp",
+          "FANUC TP listing",
+          "FANUC controllers with ASCII upload, or maketp",
+          ".LS",
+          "six turning joints; --coupling",
+          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload", "base", "coupling",
+           "controller"},
+          true,
+          false,
+          write_tp,
+          nullptr};
 }
 
 }  // namespace posewright::formats

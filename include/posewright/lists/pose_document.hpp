@@ -1,0 +1,63 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/controller/controller_settings.hpp"
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/outputs/pose_formats.hpp"
+
+namespace posewright {
+
+/// How a file of poses is read.
+struct DocumentOptions {
+  std::string format;  ///< as `export` calls it; empty: by the file's ending and first character
+  ControllerSettings controller;
+  std::optional<double> coupling;
+};
+
+/// Other values for the poses of a document.
+struct OtherValues {
+  std::span<const double> configurations;  ///< poses × coordinates, SI
+  std::span<const double> actuators;       ///< poses × actuators of a parallel robot; empty for arms
+  std::vector<std::string> actuator_names{};
+};
+
+/// A file that has poses, to be written again with other values for them: a plan or route (its via points are poses
+/// too; home, where a robot rests, is none), a list in one of the formats that are read, CSV, a robot program. JSON,
+/// CSV and programs keep everything else that they say; other lists are written anew, with what their format's reader
+/// takes.
+class PoseDocument {
+ public:
+  virtual ~PoseDocument() = default;
+
+  /// All points in the order of the file; those of a route's motions come last.
+  const PoseList& poses() const { return poses_; }
+  /// What the user must know of how it was read.
+  const std::vector<std::string>& notes() const { return poses_.notes; }
+
+  /// The file with other values. Poses that are not to be touched have their listed ones.
+  /// @param remark  of one line, put where the format has a place for a comment
+  /// Throws CannotDo if the format cannot hold them.
+  virtual std::string text(const OtherValues& values, const std::string& remark) const = 0;
+
+ protected:
+  PoseList poses_;
+};
+
+/// In every remark, so that nobody compensates twice.
+inline constexpr const char* compensated_mark = "Written by posewright compensate";
+
+/// Throws InputError with file and line as read_poses(), and for a file that is compensated already.
+std::unique_ptr<PoseDocument> read_document(const std::filesystem::path& file,
+                                            const std::vector<Coordinate>& coordinates, const DocumentOptions& options);
+/// The same for bytes in memory; `name` stands for the file.
+std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
+                                             const std::vector<Coordinate>& coordinates,
+                                             const DocumentOptions& options);
+
+}  // namespace posewright

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/blocks/harmonic_parts.hpp"
+
+namespace posewright {
+
+/// Rows whose squares, times factors, sum to no less than a model's information at every configuration (theory.md eq.
+/// (39)): JᵀJ ⪯ Σ_k s_k(r_k) B_kᵀB_k, with equality where nothing is random but the instrument.
+class HarmonicRows {
+ public:
+  virtual ~HarmonicRows() = default;
+
+  const std::vector<HarmonicPart>& parts() const { return parts_; }
+  /// What columns are multiplied by.
+  const std::vector<ColumnFactor>& factors() const { return factors_; }
+  /// Degree of the columns in each coordinate of the model; 0 for choices.
+  const std::vector<int>& degrees() const { return degrees_; }
+  /// Distances that factors of parts depend on.
+  int distances() const { return distances_; }
+
+  /// Chooses what can be chosen so that the bound is near d at these configurations.
+  virtual void tune(const std::vector<std::vector<double>>& configurations, std::span<const double> weights) = 0;
+
+  /// Work space of one thread.
+  class Work {
+   public:
+    virtual ~Work() = default;
+  };
+  virtual std::unique_ptr<Work> work() const = 0;
+  /// Rows of all parts, one part after the other, and squares of the distances (m²).
+  /// @param factors  the value of each, in place of that at q
+  /// @return false if q is out of reach
+  virtual bool at(std::span<const double> q, std::span<const double> factors, Work& work, BlockArray::RowMatrix& B,
+                  std::span<double> squares) const = 0;
+
+ protected:
+  std::vector<HarmonicPart> parts_;
+  std::vector<ColumnFactor> factors_;
+  std::vector<int> degrees_;
+  int distances_ = 0;
+};
+
+/// The factor at a coordinate's value.
+double value_of(const ColumnFactor& factor, double x);
+
+}  // namespace posewright

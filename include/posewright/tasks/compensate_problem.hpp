@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/model/command_solver.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+struct CompensateOptions {
+  CommandSolver::Options solver{};
+  /// What the lists mean is where the nominal robot stands with its nominal springs, under the load; else where its
+  /// controller takes it to stand, which knows of no springs.
+  bool elastic_target = false;
+  int threads = 0;  ///< never changes a result
+};
+
+/// A list of poses with what is to be commanded for them.
+struct CompensatedList {
+  std::string file;
+  std::vector<int> ids, lines;  ///< as the list has them; line 0: not known
+  std::size_t width = 0;        ///< coordinates of a configuration
+  std::vector<double> configurations, actuators,
+      changes;  ///< poses × width; × commanded, of a parallel robot; × commanded
+  std::vector<CommandSolver::Solution> solutions;
+
+  std::span<const double> configuration(std::size_t pose) const {
+    return {configurations.data() + pose * width, width};
+  }
+};
+
+/// A pose that cannot be commanded as it is meant.
+struct NotCompensated {
+  std::string file;
+  int line = 0, id = 0;
+  std::string why;
+
+  /// "FILE:LINE: pose 3: why", as far as they are known.
+  std::string text() const;
+};
+
+struct AxisChange {
+  std::string name, unit;           ///< rad or m
+  double largest = 0.0, rms = 0.0;  ///< of what is commanded less what was listed
+};
+
+struct TipErrorSummary {
+  double position_rms = 0.0, position_largest = 0.0;  ///< m
+  double rotation_rms = 0.0, rotation_largest = 0.0;  ///< rad
+};
+
+struct Compensation {
+  std::string variant;
+  bool position_only = false, parallel = false;
+  std::vector<Coordinate> coordinates;  ///< of a configuration
+  std::vector<AxisChange> axes;         ///< commanded joints or actuators, over the poses that are compensated
+  std::size_t compensated = 0;
+  TipErrorSummary before, after;  ///< of these, as the calibrated model predicts it
+  std::vector<NotCompensated> failures;
+  std::vector<CompensatedList> lists;
+  std::vector<std::string> notes;
+};
+
+/// Coordinates that lists are read with: the robot's own with the limits in force.
+/// @param problem  with parameters (apply_parameters())
+/// Throws CannotDo for a robot that carries no tip.
+std::vector<Coordinate> compensation_coordinates(const Problem& problem);
+
+/// Commands for the robot of a problem with parameters (apply_parameters()), so that it stands where the nominal one
+/// would. Poses are independent of each other: any number of threads has the same result.
+/// Throws CannotDo for a robot of fewer than six axes (unless for positions only) and where it is stopped, InputError
+/// for lists of another robot and for a joint with listed compliances between its positions.
+Compensation compensate_problem(const Problem& problem, const std::vector<PoseList>& lists,
+                                const CompensateOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

@@ -1,0 +1,377 @@
+#include "posewright/lists/pose_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/outputs/joint_targets.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/support/trimmed.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::uintmax_t document_size_limit = 200'000'000;
+
+/// Coordinates that a robot moves, in their order.
+std::vector<std::size_t> moving(const std::vector<Coordinate>& coordinates) {
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < coordinates.size(); ++k)
+    if (!coordinates[k].choice()) result.push_back(k);
+  return result;
+}
+
+/// For each name its place among the coordinates.
+std::vector<std::size_t> places_of(const std::vector<std::string>& names, const std::vector<Coordinate>& coordinates) {
+  std::vector<std::size_t> result;
+  for (const std::string& name : names) {
+    const auto at =
+        std::find_if(coordinates.begin(), coordinates.end(), [&](const Coordinate& c) { return c.name == name; });
+    result.push_back(std::size_t(at - coordinates.begin()));
+  }
+  return result;
+}
+
+[[noreturn]] void refuse_twice(const std::string& file) {
+  throw InputError({file, 0}, "is compensated already", "poses as they are meant");
+}
+
+/// Plans, routes, evaluations, lists of schema posewright/poses/1.
+class JsonDocument : public PoseDocument {
+ public:
+  JsonDocument(const std::string& bytes, const std::string& name, const std::vector<Coordinate>& coordinates)
+      : width_(coordinates.size()) {
+    const PoseSequence sequence = parse_sequence(bytes, name);
+    json_ = parse_ordered_json(bytes);
+    if (json_.contains("compensated")) refuse_twice(name);
+    poses_ = read_poses_text(bytes, name, coordinates, "json");
+    places_ = places_of(sequence.names, coordinates);
+    for (const std::size_t place : places_) speeds_.push_back(coordinates[place].speed);
+    add_via_points(sequence, coordinates, name);
+  }
+
+  std::string text(const OtherValues& values, const std::string& remark) const override {
+    nlohmann::ordered_json json = json_;
+    std::size_t next = 0;
+    for (auto& pose : json["poses"]) {
+      pose[pose.contains("configuration") ? "configuration" : "values"] = configuration(values, next);
+      if (pose.contains("actuators") && pose["actuators"].is_object())
+        for (std::size_t i = 0; i < values.actuator_names.size(); ++i)
+          if (pose["actuators"].contains(values.actuator_names[i]))
+            pose["actuators"][values.actuator_names[i]] = values.actuators[next * values.actuator_names.size() + i];
+      ++next;
+    }
+    if (json.contains("motions")) write_motions(json, values, next);
+    json["compensated"] = remark;
+    return lenient_json_text(json);
+  }
+
+ private:
+  /// Points between the ends of motions: seen under the load and from the station of the pose that they lead to.
+  void add_via_points(const PoseSequence& sequence, const std::vector<Coordinate>& coordinates,
+                      const std::string& name) {
+    for (const SequenceMotion& motion : sequence.motions) {
+      std::size_t to = 0;
+      while (to + 1 < poses_.ids.size() && poses_.ids[to] != motion.to) ++to;
+      for (std::size_t i = 1; i + 1 < motion.points.size(); ++i) {
+        std::vector<double> q = poses_.configurations[to];
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+          const Coordinate& c = coordinates[places_[k]];
+          require_inside(motion.points[i][k], c,
+                         {fmt::format("{}: motion from {} to {}", name, motion.from, motion.to), 0});
+          q[places_[k]] = as_allowed(motion.points[i][k], c);
+        }
+        poses_.configurations.push_back(std::move(q));
+        poses_.ids.push_back(motion.to);
+        poses_.lines.push_back(0);
+        poses_.measured.push_back(false);
+      }
+    }
+  }
+
+  std::vector<double> configuration(const OtherValues& values, std::size_t pose) const {
+    std::vector<double> q;
+    for (const std::size_t place : places_) q.push_back(values.configurations[pose * width_ + place]);
+    return q;
+  }
+
+  /// That the joints' velocities, where they are known, need for a way.
+  double least_seconds(const nlohmann::ordered_json& points) const {
+    double seconds = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      double slowest = 0;
+      for (std::size_t i = 0; i < places_.size(); ++i)
+        if (speeds_[i] > 0)
+          slowest =
+              std::max(slowest, std::abs(points[k][i].get<double>() - points[k - 1][i].get<double>()) / speeds_[i]);
+      seconds += slowest;
+    }
+    return seconds;
+  }
+
+  void write_motions(nlohmann::ordered_json& json, const OtherValues& values, std::size_t next) const {
+    const auto end_at = [&](const nlohmann::ordered_json& id, nlohmann::ordered_json& point) {
+      for (const auto& pose : json["poses"])
+        if (pose["id"] == id) point = pose[pose.contains("configuration") ? "configuration" : "values"];
+    };
+    for (auto& motion : json["motions"]) {
+      auto& points = motion["points"];
+      const double before = least_seconds(points);
+      end_at(motion["from"], points.front());
+      end_at(motion["to"], points.back());
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) points[i] = configuration(values, next++);
+      // No motion may be asked to be faster than it was: a way that became longer takes longer.
+      if (const double more = least_seconds(points) - before; more > 0)
+        motion["seconds"] = motion["seconds"].get<double>() + more;
+    }
+  }
+
+  nlohmann::ordered_json json_;
+  std::size_t width_;
+  std::vector<std::size_t> places_;
+  std::vector<double> speeds_;
+};
+
+/// Cells of joints are replaced; comments, other columns and line ends stay.
+class CsvDocument : public PoseDocument {
+ public:
+  CsvDocument(std::string bytes, const std::string& name, const std::vector<Coordinate>& coordinates)
+      : bytes_(std::move(bytes)), width_(coordinates.size()) {
+    if (bytes_.find(compensated_mark) != std::string::npos) refuse_twice(name);
+    poses_ = read_poses_text(bytes_, name, coordinates);
+    std::string plain = bytes_;
+    if (plain.starts_with(byte_order_mark)) plain.erase(0, byte_order_mark.size());
+    table_ = read_csv_table(plain, name);
+    const std::vector<std::size_t> places = places_of(table_.names, coordinates);
+    for (std::size_t i = 0; i < table_.names.size(); ++i)
+      if (places[i] < coordinates.size() && !coordinates[places[i]].choice())
+        columns_.push_back({i, places[i], unit_of(i, coordinates[places[i]].unit)});
+  }
+
+  std::string text(const OtherValues& values, const std::string& remark) const override {
+    std::vector<Column> actuators;
+    for (std::size_t i = 0; i < table_.names.size(); ++i)
+      for (std::size_t k = 0; k < values.actuator_names.size(); ++k)
+        if (table_.names[i] == values.actuator_names[k]) actuators.push_back({i, k, unit_of(i, "m")});
+    const std::size_t first = bytes_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+    const std::size_t end = bytes_.find('\n');
+    const char* line_end = end != std::string::npos && end > 0 && bytes_[end - 1] == '\r' ? "\r\n" : "\n";
+    std::string result = bytes_.substr(0, first) + "# " + remark + line_end;
+    std::size_t pose = 0;
+    int number = 1;
+    for (std::size_t begin = first; begin < bytes_.size(); ++number) {
+      const std::size_t stop = std::min(bytes_.find('\n', begin), bytes_.size());
+      std::string line = bytes_.substr(begin, stop - begin);
+      if (pose < table_.rows.size() && table_.rows[pose].line == number) {
+        std::vector<std::string> cells(table_.names.size());
+        // What stays is not written anew: digits of its own are somebody's.
+        for (const Column& c : columns_)
+          if (values.configurations[pose * width_ + c.value] != poses_.configurations[pose][c.value])
+            cells[c.column] = fmt::format("{}", values.configurations[pose * width_ + c.value] / c.unit);
+        for (const Column& c : actuators)
+          cells[c.column] = fmt::format("{}", values.actuators[pose * values.actuator_names.size() + c.value] / c.unit);
+        line = with_cells(line, cells);
+        ++pose;
+      }
+      result += line;
+      if (stop < bytes_.size()) result += '\n';
+      begin = stop + 1;
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
+  struct Column {
+    std::size_t column, value;
+    double unit;  ///< of the header, in SI
+  };
+
+  double unit_of(std::size_t column, const std::string& own) const {
+    const std::string& unit = table_.units[column];
+    return unit.empty() ? 1.0 : parse_value("1 " + unit, own == "m" ? Quantity::length : Quantity::angle);
+  }
+
+  /// The line with cells that are not empty in the place of its own, the blanks around these kept.
+  static std::string with_cells(const std::string& line, const std::vector<std::string>& cells) {
+    std::string result;
+    bool quoted = false;
+    std::size_t begin = 0, cell = 0;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+      if (i < line.size() && line[i] == '"') quoted = !quoted;
+      if (i < line.size() && (line[i] != ',' || quoted)) continue;
+      const std::string_view own = std::string_view(line).substr(begin, i - begin);
+      const std::string_view core = trimmed(own);
+      if (cell < cells.size() && !cells[cell].empty() && !core.empty()) {
+        const auto before = std::size_t(core.data() - own.data());
+        result.append(own.substr(0, before)).append(cells[cell]).append(own.substr(before + core.size()));
+      } else {
+        result.append(own);
+      }
+      if (i < line.size()) result += ',';
+      begin = i + 1;
+      ++cell;
+    }
+    return result;
+  }
+
+  std::string bytes_;
+  std::size_t width_;
+  PoseTable table_;
+  std::vector<Column> columns_;
+};
+
+/// Joint values of a program are replaced where they stand.
+class ProgramDocument : public PoseDocument {
+ public:
+  ProgramDocument(const std::string& format, const std::string& bytes, const std::string& name,
+                  const std::vector<Coordinate>& coordinates, const DocumentOptions& options)
+      : moving_(moving(coordinates)),
+        width_(coordinates.size()),
+        targets_(format, bytes, name, names_of(coordinates, moving_), units_of(coordinates, moving_),
+                 options.controller, options.coupling) {
+    if (bytes.find(compensated_mark) != std::string::npos) refuse_twice(name);
+    for (const Coordinate& c : coordinates)
+      if (c.choice() && c.labels.size() > 1)
+        throw InputError({name, 0}, "has no place for the " + c.name + " of a pose",
+                         "a plan, route or list that says it; its result can be exported");
+    poses_.name = name;
+    int homes = 0;
+    for (std::size_t t = 0; t < targets_.targets().size(); ++t) {
+      const JointTarget& target = targets_.targets()[t];
+      if (target.home) {
+        ++homes;
+        continue;
+      }
+      std::vector<double> q;
+      for (const Coordinate& c : coordinates) q.push_back(c.choice() ? c.values.front() : 0.0);
+      const std::vector<double> joints = targets_.joints(t);
+      for (std::size_t i = 0; i < moving_.size(); ++i) {
+        require_inside(joints[i], coordinates[moving_[i]], {name, target.line});
+        q[moving_[i]] = as_allowed(joints[i], coordinates[moving_[i]]);
+      }
+      of_pose_.push_back(t);
+      poses_.configurations.push_back(std::move(q));
+      poses_.ids.push_back(int(poses_.configurations.size()));
+      poses_.lines.push_back(target.line);
+    }
+    if (targets_.targets().empty()) poses_.notes.push_back(name + " has no joint values: it is written as it is");
+    if (homes > 0) poses_.notes.push_back(fmt::format("{}: home stays where the joints have it", name));
+    if (const auto& lines = targets_.cartesian(); !lines.empty())
+      poses_.notes.push_back(fmt::format(
+          "{}: {} {} given by position and orientation and {} as {}: the controller reaches {} by its own kinematics "
+          "(line {}{})",
+          name, lines.size(), lines.size() == 1 ? "point is" : "points are", lines.size() == 1 ? "stays" : "stay",
+          lines.size() == 1 ? "it is" : "they are", lines.size() == 1 ? "it" : "them",
+          fmt::join(lines.begin(), lines.begin() + long(std::min<std::size_t>(lines.size(), 8)), ", "),
+          lines.size() > 8 ? ", …" : ""));
+  }
+
+  std::string text(const OtherValues& values, const std::string& remark) const override {
+    JointTargets changed = targets_;
+    for (std::size_t p = 0; p < of_pose_.size(); ++p) {
+      std::vector<double> q;
+      for (const std::size_t k : moving_) q.push_back(values.configurations[p * width_ + k]);
+      // What is listed stays to its last digit.
+      if (same(q, p)) continue;
+      try {
+        changed.replace(of_pose_[p], q);
+      } catch (const CannotDo& error) {
+        throw CannotDo(fmt::format("{}:{}: {}", poses_.name, poses_.lines[p], error.what()));
+      }
+    }
+    return changed.text(targets_.targets().empty() ? "" : remark);
+  }
+
+ private:
+  static std::vector<std::string> names_of(const std::vector<Coordinate>& all, const std::vector<std::size_t>& which) {
+    std::vector<std::string> names;
+    for (const std::size_t k : which) names.push_back(all[k].name);
+    return names;
+  }
+  static std::vector<std::string> units_of(const std::vector<Coordinate>& all, const std::vector<std::size_t>& which) {
+    std::vector<std::string> units;
+    for (const std::size_t k : which) units.push_back(all[k].unit);
+    return units;
+  }
+  bool same(const std::vector<double>& q, std::size_t pose) const {
+    for (std::size_t i = 0; i < moving_.size(); ++i)
+      if (q[i] != poses_.configurations[pose][moving_[i]]) return false;
+    return true;
+  }
+
+  std::vector<std::size_t> moving_;
+  std::size_t width_;
+  JointTargets targets_;
+  std::vector<std::size_t> of_pose_;
+};
+
+/// A list in a format that has a reader and a writer.
+class ListDocument : public PoseDocument {
+ public:
+  ListDocument(const PoseFormat& format, const std::string& bytes, const std::string& name,
+               const std::vector<Coordinate>& coordinates)
+      : format_(format), coordinates_(coordinates) {
+    if (bytes.find(compensated_mark) != std::string::npos) refuse_twice(name);
+    poses_ = read_poses_text(bytes, name, coordinates, format.name);
+    if (format.to_be_filled)
+      poses_.notes.push_back(name + ": what was measured is not taken over into the list that is written");
+  }
+
+  std::string text(const OtherValues& values, const std::string&) const override {
+    PoseSequence sequence;
+    sequence.file = poses_.name;
+    for (const std::size_t k : moving(coordinates_)) {
+      sequence.names.push_back(coordinates_[k].name);
+      sequence.units.push_back(coordinates_[k].unit);
+    }
+    for (std::size_t p = 0; p < poses_.configurations.size(); ++p) {
+      SequencePose pose;
+      pose.id = poses_.ids[p];
+      for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+        const Coordinate& c = coordinates_[k];
+        const double value = values.configurations[p * coordinates_.size() + k];
+        if (!c.choice()) pose.values.push_back(value);
+        else if (c.name == "load_case") pose.load_case = c.label_at(value);
+        else pose.conditions.emplace_back(c.name, c.label_at(value));
+      }
+      sequence.poses.push_back(std::move(pose));
+    }
+    const Exported exported = export_poses(format_, sequence, {});
+    return exported.files.front().bytes;
+  }
+
+ private:
+  const PoseFormat& format_;
+  std::vector<Coordinate> coordinates_;
+};
+
+}  // namespace
+
+std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
+                                             const std::vector<Coordinate>& coordinates,
+                                             const DocumentOptions& options) {
+  std::string format = options.format;
+  const auto first = bytes.find_first_not_of(" \t\r\n");
+  if (format.empty() && first != std::string::npos && bytes[first] == '{') format = "json";
+  if (format.empty()) format = JointTargets::format_of_ending(std::filesystem::path(name).extension().string());
+  if (format.empty() || format == "csv") return std::make_unique<CsvDocument>(std::move(bytes), name, coordinates);
+  if (format == "json") return std::make_unique<JsonDocument>(bytes, name, coordinates);
+  if (JointTargets::reads(format)) return std::make_unique<ProgramDocument>(format, bytes, name, coordinates, options);
+  return std::make_unique<ListDocument>(find_readable_format(format), bytes, name, coordinates);
+}
+
+std::unique_ptr<PoseDocument> read_document(const std::filesystem::path& file,
+                                            const std::vector<Coordinate>& coordinates,
+                                            const DocumentOptions& options) {
+  return parse_document(read_file(file, document_size_limit), file.string(), coordinates, options);
+}
+
+}  // namespace posewright

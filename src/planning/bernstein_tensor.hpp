@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/support/taylor_model.hpp"
+
+namespace posewright {
+
+/// Bernstein coefficients on [−1, 1]^n of a Taylor model's polynomial: none of its values is above the largest (Farouki
+/// 2012, Computer Aided Geometric Design 29(6)).
+class BernsteinTensor {
+ public:
+  /// @param small  monomials of the highest degrees in a variable are not expanded where their sizes sum up to less
+  void take(const TaylorModel& f, double small);
+  /// What f does not exceed in the box: its radius, what was not expanded and all rounding are counted in.
+  double largest() const;
+  /// Variable along which the coefficients vary most.
+  int most_varied() const;
+
+ private:
+  void choose_degrees(const TaylorModel& f, double small);
+
+  std::vector<int> degrees_;
+  std::vector<double> now_, next_;
+  double beyond_ = 0.0;  // the coefficients
+};
+
+}  // namespace posewright

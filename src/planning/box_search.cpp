@@ -1,0 +1,60 @@
+#include "posewright/planning/box_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "posewright/support/parallel.hpp"
+
+namespace posewright {
+namespace {
+
+// Boxes of one round; more threads than this would have nothing to do.
+constexpr std::size_t boxes_a_round = 16;
+
+}  // namespace
+
+BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<std::unique_ptr<BoxJudge>()>& make,
+                              const BoxSearchOptions& options, const Monitor& monitor) {
+  BoxSearchResult result;
+  std::priority_queue<SearchBox> open;
+  const int threads = thread_count(options.threads);
+  std::vector<std::unique_ptr<BoxJudge>> judges;
+  for (int i = 0; i < threads; ++i) judges.push_back(make());
+  const auto enough_now = [&] {
+    const double best = result.found.value;
+    const double near = std::isfinite(best) ? best + options.tolerance * std::abs(best) : best;
+    return std::max(near, options.enough - options.slack);
+  };
+  while (true) {
+    std::vector<LargestFound> found(round.size(), result.found);
+    const double enough = enough_now();
+    parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
+      // Boxes that are not judged keep an infinite bound.
+      if (monitor.should_stop()) return;
+      judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+    });
+    result.boxes += long(round.size());
+    for (LargestFound& one : found)
+      if (one.value > result.found.value) result.found = std::move(one);
+    for (SearchBox& box : round) open.push(std::move(box));
+    round.clear();
+    result.complete = open.top().bound <= enough_now();
+    if (result.complete || monitor.should_stop() || result.boxes >= options.most_boxes) break;
+    for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough_now(); ++i) {
+      const SearchBox box = open.top();
+      open.pop();
+      const auto a = std::size_t(box.longest);
+      const double middle = 0.5 * (box.lower[a] + box.upper[a]);
+      round.push_back(box);
+      round.back().upper[a] = middle;
+      round.push_back(box);
+      round.back().lower[a] = middle;
+    }
+  }
+  result.largest = result.found.value;
+  result.bound = open.top().bound + options.slack;
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,114 @@
+#include "box_tensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bernstein.hpp"
+#include "posewright/support/dense.hpp"
+
+namespace posewright {
+namespace {
+
+// Widest box to begin with: u = tan(w/4) stays well below 1, where the weights' coefficients would vanish.
+constexpr double widest = 2 * std::numbers::pi / 3;
+// The weights are sums of few positive numbers: they are right to this.
+constexpr double weight_error = 1e-12;
+
+}  // namespace
+
+BoxTensor::BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees)
+    : axes_(axes), degrees_(std::move(degrees)) {}
+
+void BoxTensor::put(const SearchBox& box, double most) {
+  terms_.clear();
+  for (std::size_t a = 0; a < axes_.size(); ++a) terms_.push_back(harmonic_terms(axes_[a], degrees_[a]));
+  weight_.assign(1, 1.0);
+  double growth = 1;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const Eigen::MatrixXd M = bernstein_on(axes_[a], degrees_[a], lower_of(axes_, box, a), upper_of(axes_, box, a));
+    apply_along(now_, scratch_, terms_, a, M);
+    growth *= M.cwiseAbs().rowwise().sum().maxCoeff();
+    // The weight alone is what the function 1 becomes.
+    next_weight_.clear();
+    for (const double before : weight_)
+      for (Eigen::Index k = 0; k < M.rows(); ++k) next_weight_.push_back(before * M(k, 0));
+    weight_.swap(next_weight_);
+  }
+  // Every coefficient is a sum of products: its rounding is that of all terms' sizes, a dozen operations an axis.
+  const double absolute = 16.0 * double(axes_.size()) * epsilon * growth * most;
+  const double lightest = *std::min_element(weight_.begin(), weight_.end());
+  rounding_ = absolute / lightest;
+  for (std::size_t i = 0; i < now_.size(); ++i) now_[i] /= weight_[i];
+}
+
+double BoxTensor::largest() const {
+  const double top = *std::max_element(now_.begin(), now_.end()) + rounding_;
+  return top + weight_error * std::abs(top);
+}
+
+double BoxTensor::smallest() const {
+  const double bottom = *std::min_element(now_.begin(), now_.end()) - rounding_;
+  return bottom - weight_error * std::abs(bottom);
+}
+
+std::size_t BoxTensor::highest_corner(double& value) const {
+  std::size_t best = 0;
+  value = -std::numeric_limits<double>::infinity();
+  for (std::size_t corner = 0; corner < (std::size_t(1) << axes_.size()); ++corner) {
+    std::size_t at = 0;
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      at = at * std::size_t(terms_[a]) + ((corner >> a & 1) != 0 ? std::size_t(terms_[a] - 1) : 0);
+    if (now_[at] > value) {
+      value = now_[at];
+      best = corner;
+    }
+  }
+  return best;
+}
+
+int BoxTensor::most_varied() const {
+  int most = 0;
+  double largest = -1;
+  std::size_t stride = now_.size(), outer = 1;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const auto terms = std::size_t(terms_[a]);
+    stride /= terms;
+    double variation = 0;
+    for (std::size_t o = 0; o < outer; ++o)
+      for (std::size_t x = 0; x < stride; ++x) {
+        const double* first = now_.data() + o * terms * stride + x;
+        double sum = 0;
+        for (std::size_t k = 0; k + 1 < terms; ++k) sum += std::abs(first[(k + 1) * stride] - first[k * stride]);
+        variation = std::max(variation, sum);
+      }
+    outer *= terms;
+    if (variation > largest) {
+      largest = variation;
+      most = axes_[a].follows < 0 ? int(a) : axes_[a].follows;
+    }
+  }
+  return most;
+}
+
+std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes) {
+  std::vector<SearchBox> boxes(1);
+  for (const HarmonicAxis& axis : axes) {
+    // A turn and more is one turn.
+    const double width = axis.turns ? std::min(axis.upper - axis.lower, 2 * std::numbers::pi) : axis.upper - axis.lower;
+    const int parts = axis.turns ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
+    std::vector<SearchBox> finer;
+    for (const SearchBox& box : boxes)
+      for (int k = 0; k < parts; ++k) {
+        SearchBox part = box;
+        part.lower.push_back(axis.lower + width * k / parts);
+        part.upper.push_back(axis.lower + width * (k + 1) / parts);
+        finer.push_back(std::move(part));
+      }
+    boxes = std::move(finer);
+  }
+  return boxes;
+}
+
+}  // namespace posewright

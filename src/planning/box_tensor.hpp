@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/planning/box_search.hpp"
+#include "posewright/planning/harmonic_function.hpp"
+
+namespace posewright {
+
+/// Bernstein coefficients of a harmonic function on a box, and their quotients with those of Π(1 + u²)^D: none of the
+/// function's values in the box is outside their range, at corners they are its values.
+class BoxTensor {
+ public:
+  BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees);
+
+  /// Coefficients that put() takes.
+  std::vector<double>& coefficients() { return now_; }
+  /// Turns coefficients() into quotients.
+  /// @param most  sum of the sizes of all that the coefficients are sums of: rounding goes with it
+  void put(const SearchBox& box, double most);
+
+  /// What no value exceeds, and what none is below; rounding is counted in.
+  double largest() const;
+  double smallest() const;
+  /// Axis along which the quotients vary most; of one that follows another, the other.
+  int most_varied() const;
+  /// Corner of the largest quotient: bit a is set where axis a is at its upper end.
+  std::size_t highest_corner(double& value) const;
+
+ private:
+  const std::vector<HarmonicAxis>& axes_;
+  std::vector<int> degrees_, terms_;
+  std::vector<double> now_, scratch_;
+  std::vector<double> weight_, next_weight_;
+  double rounding_ = 0.0;
+};
+
+/// Limits of an axis in a box: its own, or what follows from those of the axis that it follows.
+inline double lower_of(const std::vector<HarmonicAxis>& axes, const SearchBox& box, std::size_t a) {
+  return axes[a].follows < 0 ? box.lower[a] : box.lower[std::size_t(axes[a].follows)] - axes[a].shift;
+}
+inline double upper_of(const std::vector<HarmonicAxis>& axes, const SearchBox& box, std::size_t a) {
+  return axes[a].follows < 0 ? box.upper[a] : box.upper[std::size_t(axes[a].follows)] - axes[a].shift;
+}
+
+/// The box of all axes in parts whose angles are narrow enough for u.
+std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes);
+
+}  // namespace posewright

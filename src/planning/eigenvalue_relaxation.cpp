@@ -1,0 +1,170 @@
+#include "posewright/planning/eigenvalue_relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "posewright/support/dense.hpp"
+
+namespace posewright {
+namespace {
+
+// Share of an even choice mixed into the numbers to begin with.
+constexpr double inward = 0.1;
+// How near to an end of its range a step may bring a number.
+constexpr double to_boundary = 0.95;
+// μ falls by this once the square of the Newton decrement is below 1: then the step leaves next to nothing.
+constexpr double fall = 0.15, centred = 1.0;
+
+/// H_ij += ‖Z_i Z_jᵀ‖² of blocks of r rows.
+void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H) {
+  const Eigen::MatrixXd squares = (Z * Z.transpose()).cwiseAbs2();
+  if (r == 1) {
+    H += squares;
+    return;
+  }
+  for (Eigen::Index j = 0; j < H.cols(); ++j)
+    for (Eigen::Index i = 0; i < H.rows(); ++i) H(i, j) += squares.block(i * r, j * r, r, r).sum();
+}
+
+Eigen::MatrixXd inverse_factor(const Eigen::LLT<Eigen::MatrixXd>& factor) {
+  return factor.matrixU().solve(Eigen::MatrixXd::Identity(factor.rows(), factor.rows()));
+}
+
+}  // namespace
+
+EigenvalueRelaxation::EigenvalueRelaxation(RowMatrix rows, int r, int nuisance, Eigen::MatrixXd known,
+                                           Eigen::VectorXd room, const Eigen::VectorXd& numbers, bool with_ratio)
+    : rows_(std::move(rows)),
+      r_(r),
+      nuisance_(nuisance),
+      m_(rows_.cols()),
+      f_(room.size()),
+      known_(std::move(known)),
+      room_(std::move(room)),
+      with_ratio_(with_ratio) {
+  const double total = numbers.sum();
+  const double all = room_.sum();
+  n_ = (1 - inward) * numbers + inward * total / all * room_;
+  // Numbers at their upper end leave it.
+  n_ = n_.cwiseMin(0.999 * room_);
+  const double missing = total - n_.sum();
+  n_ += missing / (room_ - n_).sum() * (room_ - n_);
+  if (!(n_.array() > 0).all() || !((room_ - n_).array() > 0).all()) return;
+  information_ = known_;
+  for (Eigen::Index i = 0; i < f_; ++i)
+    information_.noalias() += n_[i] * rows_.middleRows(i * r_, r_).transpose() * rows_.middleRows(i * r_, r_);
+  Eigen::MatrixXd interest = information_.bottomRightCorner(m_ - nuisance_, m_ - nuisance_);
+  if (nuisance_ > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(information_.topLeftCorner(nuisance_, nuisance_));
+    if (factor.info() != Eigen::Success) return;
+    interest -= information_.bottomLeftCorner(m_ - nuisance_, nuisance_) *
+                factor.solve(information_.topRightCorner(nuisance_, m_ - nuisance_));
+  }
+  const Eigen::VectorXd lambda =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(interest, Eigen::EigenvaluesOnly).eigenvalues();
+  const double last = lambda[lambda.size() - 1];
+  if (!(lambda[0] > 1e-12 * last)) return;
+  least_ = 0.9 * lambda[0];
+  most_ = 1.1 * last;
+  regular_ = factorise(n_, least_, most_);
+  if (!regular_) return;
+  mu_ = 1 / inverse_factor(low_).bottomRows(m_ - nuisance_).squaredNorm();
+}
+
+bool EigenvalueRelaxation::factorise(const Eigen::VectorXd& n, double least, double most) {
+  RowMatrix weighted = rows_;
+  for (Eigen::Index i = 0; i < f_; ++i) weighted.middleRows(i * r_, r_) *= std::sqrt(n[i]);
+  information_ = known_;
+  information_.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
+  Eigen::MatrixXd shifted = information_;
+  shifted.diagonal().tail(m_ - nuisance_).array() -= least;
+  low_.compute(shifted);
+  if (low_.info() != Eigen::Success) return false;
+  if (!with_ratio_) return true;
+  shifted = -information_;
+  shifted.diagonal().array() += most;
+  high_.compute(shifted);
+  return high_.info() == Eigen::Success;
+}
+
+double EigenvalueRelaxation::gap() const { return mu_ * double((with_ratio_ ? 2 : 1) * m_ + 2 * f_); }
+
+Eigen::MatrixXd EigenvalueRelaxation::least_factor() const {
+  const Eigen::MatrixXd inverse = inverse_factor(low_);
+  return inverse / inverse.bottomRows(m_ - nuisance_).norm();
+}
+
+Eigen::MatrixXd EigenvalueRelaxation::most_factor() const {
+  const Eigen::MatrixXd inverse = inverse_factor(high_);
+  return inverse / inverse.norm();
+}
+
+/// Gradient and curvature of (s − tL)/μ + log det(M − s P) + log det(L I − M) + Σ ln n_i + Σ ln(room_i − n_i), but for
+/// the terms of s and L alone.
+void EigenvalueRelaxation::products() {
+  const Eigen::Index size = f_ + (with_ratio_ ? 2 : 1);
+  hessian_.setZero(size, size);
+  gradient_.setZero(size);
+  const Eigen::ArrayXd above = n_.array().inverse(), below = (room_ - n_).array().inverse();
+  gradient_.head(f_) = above - below;
+  hessian_.diagonal().head(f_) = above.square() + below.square();
+  const auto add = [&](const Eigen::MatrixXd& inverse, Eigen::Index first, double sign, Eigen::Index at) {
+    const RowMatrix Z = rows_ * inverse;
+    add_squares(Z, r_, hessian_.topLeftCorner(f_, f_));
+    // V P V in the same factor: B Bᵀ with B = L⁻¹ P L⁻ᵀ.
+    const Eigen::MatrixXd own = inverse.bottomRows(m_ - first).transpose() * inverse.bottomRows(m_ - first);
+    const RowMatrix mixed = Z * own;
+    for (Eigen::Index i = 0; i < f_; ++i) {
+      const auto Zi = Z.middleRows(i * r_, r_);
+      gradient_[i] += sign * Zi.squaredNorm();
+      hessian_(i, at) = hessian_(at, i) = -mixed.middleRows(i * r_, r_).cwiseProduct(Zi).sum();
+    }
+    gradient_[at] -= sign * own.trace();
+    hessian_(at, at) += own.squaredNorm();
+  };
+  add(inverse_factor(low_), nuisance_, 1.0, f_);
+  if (with_ratio_) add(inverse_factor(high_), 0, -1.0, f_ + 1);
+}
+
+bool EigenvalueRelaxation::step(double t) {
+  products();
+  gradient_[f_] += 1 / mu_;
+  if (with_ratio_) gradient_[f_ + 1] -= t / mu_;
+  const Eigen::LLT<Eigen::MatrixXd> factor(hessian_);
+  if (factor.info() != Eigen::Success) return false;
+  Eigen::VectorXd ones = Eigen::VectorXd::Zero(hessian_.rows());
+  ones.head(f_).setOnes();
+  change_ = factor.solve(gradient_);
+  const Eigen::VectorXd b = factor.solve(ones);
+  change_ -= change_.head(f_).sum() / b.head(f_).sum() * b;
+  const double decrement = change_.dot(gradient_);
+  if (!(decrement >= 0) || !std::isfinite(decrement)) return false;
+  double length = 1.0;
+  for (Eigen::Index i = 0; i < f_; ++i) {
+    if (change_[i] < 0) length = std::min(length, to_boundary * n_[i] / -change_[i]);
+    else if (change_[i] > 0) length = std::min(length, to_boundary * (room_[i] - n_[i]) / change_[i]);
+  }
+  const auto move = [&](double by) {
+    return factorise(n_ + by * change_.head(f_), least_ + by * change_[f_],
+                     with_ratio_ ? most_ + by * change_[f_ + 1] : most_);
+  };
+  const double whole = length;
+  while (!move(length)) {
+    length *= 0.7;
+    if (length < 1e-4) {
+      move(0.0);
+      return false;
+    }
+  }
+  // Not to the very edge of what is positive definite: that is a convex set, so that less is inside too.
+  if (length < whole) move(length *= 0.8);
+  n_ += length * change_.head(f_);
+  least_ += length * change_[f_];
+  if (with_ratio_) most_ += length * change_[f_ + 1];
+  if (decrement < centred) mu_ *= fall;
+  return true;
+}
+
+}  // namespace posewright

@@ -1,0 +1,142 @@
+#include "posewright/planning/workspace_proof.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "posewright/planning/enclosed_proof.hpp"
+#include "posewright/planning/harmonic_bound.hpp"
+#include "posewright/support/dense.hpp"
+
+namespace posewright {
+namespace {
+
+// Tensors of so many axes are sampled in a second.
+constexpr std::size_t axes_for_nothing = 3, axes_at_once = 4;
+// Coefficients of all tensors that a proof may hold: half a gigabyte.
+constexpr double most_coefficients = 64e6;
+// Coefficients of all boxes: some ten seconds of one core, whatever the number of joints. Counted and not timed, so
+// that a plan is the same on every machine.
+constexpr double proof_work = 3e8;
+constexpr long fewest_boxes = 3000, fewest_large_boxes = 300;
+// A box of more coefficients than this takes some ten milliseconds.
+constexpr double large_box = 1e6;
+// A bound that is loose by more is not worth its time.
+constexpr double most_loose = 0.05;
+
+WeightedConfigurations support_of(const WorkspaceBound& found, const ConfigurationSpace& space) {
+  WeightedConfigurations result{found.support, found.weights};
+  for (std::size_t i = 0; i < found.candidates.size(); ++i) {
+    const auto q = space.candidate(found.candidates[i]);
+    result.configurations.emplace_back(q.begin(), q.end());
+    result.weights.push_back(found.candidate_weights[i]);
+  }
+  return result;
+}
+
+/// Whether factors depend on distances, of an arm with more than a few joints.
+bool grows_with_distance(const HarmonicForms& forms) {
+  return !forms.forms.front()->distance_degrees().empty() && forms.forms.front()->axes().size() > axes_at_once;
+}
+
+/// How far the forms' bound is above d where the weights are, on average: a proof by it is no better.
+double looseness(const HarmonicForms& forms, const WeightedConfigurations& where, const ConfigurationSpace& space,
+                 const Eigen::MatrixXd& T, int rows) {
+  const auto probe = space.probe();
+  BlockArray block(1, rows, int(T.rows()));
+  double bound = 0, direct = 0;
+  for (std::size_t i = 0; i < where.configurations.size(); ++i) {
+    const std::vector<double>& q = where.configurations[i];
+    if (!probe->block(q, block.row(0, 0), block.stride())) continue;
+    const auto form = std::find_if(forms.forms.begin(), forms.forms.end(),
+                                   [&](const auto& f) { return f->configuration(f->values(q)) == q; });
+    if (form == forms.forms.end()) continue;
+    std::vector<double> values = (*form)->values(q);
+    const auto evaluator = (*form)->evaluator();
+    bound += where.weights[i] * sensitivity_of(**form, *evaluator, T, values);
+    direct += where.weights[i] * (std::as_const(block).block(0) * T).squaredNorm();
+  }
+  return direct > 0 ? bound / direct - 1 : 0.0;
+}
+
+/// As many boxes as the work allows.
+long most_boxes(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
+  double largest = 0;
+  for (const auto& f : functions) largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms() - 1)));
+  return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
+}
+
+void set_deadline(Monitor& own, const std::optional<double>& seconds) {
+  if (!seconds) return;
+  const auto end = Monitor::Clock::now() +
+                   std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(*seconds));
+  own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
+}
+
+}  // namespace
+
+void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
+                     const WorkspaceBoundOptions& options, const Monitor& monitor) {
+  WorkspaceProof& proof = result.proof;
+  if (result.stopped || monitor.should_stop()) proof.why_not = "stopped";
+  else if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
+  else proof.why_not.clear();
+  if (!proof.why_not.empty()) return;
+  const WeightedConfigurations support = support_of(result, space);
+  if (prove_by_enclosure(result, space, candidates, rows, options, monitor)) return;
+  const HarmonicForms forms = space.harmonic_forms(support);
+  proof.why_not = forms.why_not;
+  if (!proof.why_not.empty()) return;
+  double cost = 0;
+  for (const auto& form : forms.forms) cost += HarmonicSensitivity::cost(*form);
+  if (forms.forms.empty() || cost > most_coefficients) proof.why_not = "more joints and effects than memory holds";
+  else if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
+    proof.why_not = "a quick look at fewer than 1,000 candidates";
+  if (proof.why_not.empty())
+    if (const double loose = looseness(forms, support, space, result.factor, rows); loose > most_loose)
+      proof.why_not = fmt::format(
+          "noise of the joints or of the visit, beside the instrument's, is bounded {:.0f} % too high", 100 * loose);
+  if (proof.why_not.empty() && !options.proof.seconds && grows_with_distance(forms))
+    proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 600";
+  if (!proof.why_not.empty()) return;
+
+  Monitor own;
+  own.interrupted = monitor.interrupted;
+  own.deadline = monitor.deadline;
+  set_deadline(own, options.proof.seconds);
+  std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
+  for (const auto& form : forms.forms) {
+    functions.push_back(
+        std::make_unique<HarmonicSensitivity>(*form, result.factor, options.seed, options.threads, own));
+    if (functions.back()->defined()) continue;
+    proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
+    return;
+  }
+  BoxSearchOptions limits;
+  limits.tolerance = options.tolerance;
+  limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
+  limits.threads = options.threads;
+  const double extra =
+      options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
+  if (options.proof.gap) {
+    limits.enough = result.degree * (1 + *options.proof.gap) - extra;
+    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
+  }
+  const BoxSearchResult most = largest_value(functions, limits, own);
+  proof.boxes = most.boxes;
+  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
+  if (!std::isfinite(most.bound)) {
+    proof.why_not = own.should_stop() ? "stopped" : "an instrument that may stand within the arm's reach";
+    return;
+  }
+  proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
+  proof.bound = result.value + result.degree * std::log(proof.max_ratio);
+  if (!most.found.where.empty())
+    proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
+}
+
+}  // namespace posewright

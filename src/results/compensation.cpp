@@ -1,0 +1,116 @@
+#include "posewright/results/compensation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "document.hpp"
+#include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// More lines than these nobody reads; --json has all.
+constexpr std::size_t most_failures = 20;
+
+std::string length_in_mm(double metres) { return fmt::format("{:.6f}", metres * 1e3); }
+std::string angle_in_deg(double radians) { return fmt::format("{:.6f}", radians * 180 / std::numbers::pi); }
+
+Json tip_error_json(const TipError& error) {
+  return {{"position", finite_or_null(error.position)}, {"rotation", finite_or_null(error.rotation)}};
+}
+
+Json error_summary_json(const TipErrorSummary& s) {
+  return {{"position_rms", s.position_rms},
+          {"position_largest", s.position_largest},
+          {"rotation_rms", s.rotation_rms},
+          {"rotation_largest", s.rotation_largest}};
+}
+
+Json commanded_list_json(const CompensatedList& list, const Compensation& all) {
+  Json poses = Json::array();
+  const std::size_t axes = all.axes.size();
+  for (std::size_t i = 0; i < list.solutions.size(); ++i) {
+    const CommandSolver::Solution& s = list.solutions[i];
+    Json pose = {{"id", list.ids[i]}, {"line", list.lines[i] > 0 ? Json(list.lines[i]) : Json(nullptr)}};
+    pose["compensated"] = s.outcome == CommandSolver::Outcome::reached;
+    Json configuration = Json::array();
+    for (std::size_t k = 0; k < list.width; ++k)
+      if (!all.coordinates[k].choice()) configuration.push_back(list.configuration(i)[k]);
+    pose["configuration"] = configuration;
+    if (all.parallel) {
+      pose["actuators"] = Json::object();
+      for (std::size_t k = 0; k < axes; ++k) pose["actuators"][all.axes[k].name] = list.actuators[i * axes + k];
+    }
+    pose["before"] = tip_error_json(s.before);
+    pose["after"] = tip_error_json(s.after);
+    poses.push_back(std::move(pose));
+  }
+  return {{"file", list.file}, {"poses", std::move(poses)}};
+}
+
+}  // namespace
+
+std::string compensation_text(const Compensation& c) {
+  using A = Table::Align;
+  const std::size_t all = c.compensated + c.failures.size();
+  std::string text =
+      fmt::format("{} of {} {} compensated, variant {}{}\n\n", c.compensated, all, all == 1 ? "pose is" : "poses are",
+                  c.variant, c.position_only ? ", positions alone" : "");
+  if (c.compensated > 0) {
+    Table errors({"error of the tip, predicted", "RMS", "largest"}, {A::left, A::right, A::right});
+    errors.row({"position before [mm]", length_in_mm(c.before.position_rms), length_in_mm(c.before.position_largest)});
+    errors.row({"position after [mm]", length_in_mm(c.after.position_rms), length_in_mm(c.after.position_largest)});
+    errors.row(
+        {"orientation before [deg]", angle_in_deg(c.before.rotation_rms), angle_in_deg(c.before.rotation_largest)});
+    errors.row({"orientation after [deg]", angle_in_deg(c.after.rotation_rms), angle_in_deg(c.after.rotation_largest)});
+    text += errors.text() + "\n";
+    Table changes({c.parallel ? "change of actuator" : "change of joint", "", "RMS", "largest"},
+                  {A::left, A::left, A::right, A::right});
+    for (const AxisChange& axis : c.axes) {
+      const auto shown = [&](double value) { return axis.unit == "m" ? length_in_mm(value) : angle_in_deg(value); };
+      changes.row({axis.name, axis.unit == "m" ? "mm" : "deg", shown(axis.rms), shown(axis.largest)});
+    }
+    text += changes.text();
+  }
+  if (c.failures.empty()) return text;
+  text += fmt::format("\nNot compensated: {}\n", c.failures.size());
+  for (std::size_t i = 0; i < std::min(most_failures, c.failures.size()); ++i)
+    text += "  " + c.failures[i].text() + "\n";
+  if (c.failures.size() > most_failures)
+    text += fmt::format("  … and {} more (--json)\n", c.failures.size() - most_failures);
+  return text;
+}
+
+Json compensation_json(const Problem& problem, const Compensation& c) {
+  Json json = begin_document("posewright/compensation/1", problem);
+  json["variant"] = c.variant;
+  json["position_only"] = c.position_only;
+  json["poses"] = c.compensated + c.failures.size();
+  json["compensated"] = c.compensated;
+  json["names"] = Json::array();
+  json["units"] = Json::array();
+  for (const Coordinate& coordinate : c.coordinates)
+    if (!coordinate.choice()) {
+      json["names"].push_back(coordinate.name);
+      json["units"].push_back(coordinate.unit);
+    }
+  json["error"] = {{"before", error_summary_json(c.before)}, {"after", error_summary_json(c.after)}};
+  json["changes"] = Json::array();
+  for (const AxisChange& axis : c.axes)
+    json["changes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"rms", axis.rms}, {"largest", axis.largest}});
+  json["not_compensated"] = Json::array();
+  for (const NotCompensated& n : c.failures)
+    json["not_compensated"].push_back(
+        {{"file", n.file}, {"line", n.line > 0 ? Json(n.line) : Json(nullptr)}, {"id", n.id}, {"why", n.why}});
+  json["lists"] = Json::array();
+  for (const CompensatedList& list : c.lists) json["lists"].push_back(commanded_list_json(list, c));
+  json["notes"] = c.notes;
+  return json;
+}
+
+}  // namespace posewright

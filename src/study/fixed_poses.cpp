@@ -1,0 +1,98 @@
+#include "fixed_poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr std::string_view marked[] = {"yes", "true", "1"}, unmarked[] = {"no", "false", "0", ""};
+
+SourcePlace place_of(const PoseList& list, std::size_t i) {
+  return {list.name, i < list.lines.size() ? list.lines[i] : 0};
+}
+
+int id_of(const PoseList& list, std::size_t i) {
+  return i < list.own_ids.size() && list.own_ids[i] > 0 ? list.own_ids[i] : int(i) + 1;
+}
+
+/// Whether the list fixes its i-th pose: a plan's measured ones are no longer to be measured, and marks say which.
+bool is_fixed(const PoseList& list, std::size_t i) {
+  if (i < list.measured.size() && list.measured[i]) return false;
+  if (list.marks.empty()) return true;
+  const std::string& mark = list.marks[i];
+  if (std::find(std::begin(marked), std::end(marked), mark) != std::end(marked)) return true;
+  if (std::find(std::begin(unmarked), std::end(unmarked), mark) != std::end(unmarked)) return false;
+  throw InputError(place_of(list, i), fmt::format("'{}' in column 'fixed'", mark.substr(0, 40)), "yes or no");
+}
+
+PoseList fixed_of(const PoseList& list) {
+  PoseList fixed;
+  fixed.name = list.name;
+  for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+    if (!is_fixed(list, i)) continue;
+    fixed.configurations.push_back(list.configurations[i]);
+    fixed.lines.push_back(place_of(list, i).line);
+    fixed.own_ids.push_back(id_of(list, i));
+  }
+  return fixed;
+}
+
+/// Why a variant's workspace forbids q; empty: none does.
+std::string violation(const Study& study, const std::vector<double>& q) {
+  for (const Variant& v : study.variants)
+    if (const int reason = v.workspace->violation(q); reason >= 0) return v.workspace->reasons()[std::size_t(reason)];
+  return {};
+}
+
+bool contains(const Configurations& list, const std::vector<double>& q) {
+  for (std::size_t i = 0; i < list.count(); ++i)
+    if (std::equal(q.begin(), q.end(), list[i].begin())) return true;
+  return false;
+}
+
+}  // namespace
+
+void fix_poses(Study& study, const PoseList& list, Repeats repeats) {
+  require_fits(list, study.first().workspace->coordinates());
+  for (std::size_t i = 0; i < list.configurations.size(); ++i) {
+    const std::vector<double>& q = list.configurations[i];
+    if (const std::string reason = violation(study, q); !reason.empty())
+      throw InputError(place_of(list, i), fmt::format("pose {} cannot be fixed: {}", id_of(list, i), reason),
+                       "poses that the robot can take as the problem describes it");
+    const bool measured = contains(study.measured, q);
+    if (repeats.most == 1 && (measured || contains(study.fixed, q)))
+      throw InputError(place_of(list, i),
+                       fmt::format("pose {} is {}", id_of(list, i), measured ? "measured already" : "fixed twice"),
+                       "each pose once, or repeats: allow");
+    append(study.fixed, q);
+  }
+}
+
+std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings) {
+  const std::filesystem::path file = options.fixed ? "" : problem.design.fixed.value_or("");
+  if (!options.fixed && file.empty()) return {};
+  const PoseList list = options.fixed
+                            ? *options.fixed
+                            : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
+  if (list.configurations.empty()) return {};
+  PoseList fixed = fixed_of(list);
+  const std::size_t count = fixed.configurations.size();
+  if (count == 0) throw InputError({list.name, 0}, "fixes no pose", "'yes' in column 'fixed' of at least one");
+  if (settings.poses > 0 && int(count) >= settings.poses)
+    throw InputError(place_of(fixed, std::size_t(settings.poses) - 1),
+                     fmt::format("{} poses are fixed of a plan of {}", count, settings.poses),
+                     "fewer: something is to be chosen (evaluate judges a whole list)");
+  if (settings.reserve)
+    throw InputError({list.name, 0}, "reserve stands beside fixed poses",
+                     "one of both: what is fixed may be lost, too");
+  settings.fixed = std::move(fixed);
+  return list.notes;
+}
+
+}  // namespace posewright

@@ -1,0 +1,265 @@
+#include "posewright/tasks/compensate_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "posewright/model/calibrated_values.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/parallel.hpp"
+#include "posewright/workspace/workspace.hpp"
+
+namespace posewright {
+namespace {
+
+// Poses that one thread takes at a time: Ctrl-C is heard between them.
+constexpr std::size_t chunk = 512;
+
+const VariantSpec& calibrated_variant(const Problem& problem) {
+  if (!problem.parameters)
+    throw InputError({problem.file.string(), 0}, "no calibrated parameters", "a parameters file");
+  return find_variant(problem, problem.parameters->variant.value);
+}
+
+/// The robot as its controller knows it: nominal parameters, joints that stand where they read and do not bend.
+std::unique_ptr<TipModel> nominal_tip(Problem problem, VariantSpec variant, bool elastic) {
+  problem.parameters.reset();
+  variant.nominal.clear();
+  variant.convention = VariantSpec::Convention::frames;
+  if (auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
+    if (!elastic) arm->elastostatic.reset();
+    arm->joint_effects.clear();
+    arm->temperature.reset();
+  }
+  return make_tip(problem, variant);
+}
+
+std::unique_ptr<TipModel> calibrated_tip(const Problem& problem) {
+  auto tip = make_tip(problem, calibrated_variant(problem));
+  if (tip == nullptr) throw CannotDo("this robot carries no tip that could be brought anywhere");
+  return tip;
+}
+
+/// Calibrated less nominal of the robot's own parameters; what belongs to the instrument is left out.
+std::vector<double> corrections(const Problem& problem, const TipModel& tip) {
+  const VariantSpec& variant = calibrated_variant(problem);
+  const auto model = make_model(problem, variant);
+  const std::vector<CalibratedValue> values = calibrated_values(problem, variant, *model, {});
+  std::vector<double> result(tip.parameters().size(), 0.0);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    // A target may be called as a joint is: the robot's parameters come first.
+    for (const CalibratedValue& value : values)
+      if (value.name == tip.parameters()[i].name) {
+        result[i] = value.correction();
+        break;
+      }
+  return result;
+}
+
+/// Length of the translation and of the rotation among six corrections of a displacement.
+std::string shown_displacement(const TipModel& tip, const std::vector<double>& correction, const std::string& frame) {
+  double length = 0, angle = 0;
+  for (std::size_t i = 0; i < correction.size(); ++i) {
+    if (!tip.parameters()[i].name.starts_with(frame)) continue;
+    (tip.parameters()[i].unit == "m" ? length : angle) += correction[i] * correction[i];
+  }
+  if (length == 0 && angle == 0) return "";
+  return fmt::format("{}, {}", shown_value(std::sqrt(length), "m"), shown_value(std::sqrt(angle), "rad"));
+}
+
+std::string in_own_unit(double value, const std::string& unit) {
+  return unit == "m" ? fmt::format("{:.3f} mm", value * 1e3)
+                     : fmt::format("{:.4f} deg", value * 180 / std::numbers::pi);
+}
+
+class Compensator {
+ public:
+  Compensator(const Problem& problem, const CompensateOptions& options)
+      : problem_(problem), options_(options), tip_(calibrated_tip(problem)), correction_(corrections(problem, *tip_)) {
+    solver_ = std::make_unique<CommandSolver>(nominal_tip(problem, calibrated_variant(problem), options.elastic_target),
+                                              calibrated_tip(problem), correction_, compensation_coordinates(problem),
+                                              options.solver);
+    result_.variant = problem.parameters->variant.value;
+    result_.position_only = options.solver.position_only;
+    result_.parallel = solver_->is_parallel();
+    result_.coordinates = solver_->coordinates();
+    for (const Coordinate& c : solver_->commanded()) result_.axes.push_back({c.name, c.unit});
+  }
+
+  Compensation run(const std::vector<PoseList>& lists, const Monitor& monitor) {
+    for (const PoseList& list : lists) result_.lists.push_back(solved(list, monitor));
+    for (const CompensatedList& list : result_.lists) add(list);
+    finish();
+    add_notes();
+    return std::move(result_);
+  }
+
+ private:
+  CompensatedList solved(const PoseList& list, const Monitor& monitor) const {
+    require_fits(list, solver_->coordinates());
+    const std::size_t count = list.configurations.size(), axes = solver_->commanded().size();
+    CompensatedList out;
+    out.file = list.name;
+    out.ids = list.ids;
+    out.lines = list.lines;
+    out.lines.resize(count, 0);
+    for (std::size_t i = out.ids.size(); i < count; ++i) out.ids.push_back(int(i) + 1);
+    out.width = solver_->coordinates().size();
+    out.configurations.resize(count * out.width);
+    out.changes.resize(count * axes);
+    if (solver_->is_parallel()) out.actuators.resize(count * axes);
+    out.solutions.resize(count);
+    require_listed_positions(list);
+    std::atomic<std::size_t> done = 0;
+    parallel_for((count + chunk - 1) / chunk, thread_count(options_.threads), [&](std::size_t part, int) {
+      if (monitor.should_stop()) return;
+      const std::size_t end = std::min(count, (part + 1) * chunk);
+      for (std::size_t i = part * chunk; i < end; ++i)
+        out.solutions[i] = solver_->solve(
+            list.configurations[i], {out.configurations.data() + i * out.width, out.width},
+            {out.changes.data() + i * axes, axes},
+            out.actuators.empty() ? std::span<double>() : std::span(out.actuators.data() + i * axes, axes));
+      done += end - part * chunk;
+      monitor.report({"poses", double(done), double(count), {}, {}, {}});
+    });
+    if (done < count) throw CannotDo("stopped before all poses were solved");
+    return out;
+  }
+
+  /// What a listed compliance is between its positions nobody knows.
+  void require_listed_positions(const PoseList& list) const {
+    for (std::size_t k = 0; k < solver_->coordinates().size(); ++k) {
+      const Coordinate& c = solver_->coordinates()[k];
+      if (!c.discrete() || c.choice()) continue;
+      for (std::size_t i = 0; i < list.configurations.size(); ++i)
+        if (std::find(c.values.begin(), c.values.end(), list.configurations[i][k]) == c.values.end())
+          throw InputError({list.name, list.lines.empty() ? 0 : list.lines[i]},
+                           fmt::format("'{}' is at {}, where its compliance is not known", c.name,
+                                       in_own_unit(list.configurations[i][k], c.unit)),
+                           "the listed positions of that joint");
+    }
+  }
+
+  void add(const CompensatedList& list) {
+    const std::size_t axes = solver_->commanded().size();
+    for (std::size_t i = 0; i < list.solutions.size(); ++i) {
+      const CommandSolver::Solution& s = list.solutions[i];
+      if (s.outcome != CommandSolver::Outcome::reached) {
+        result_.failures.push_back({list.file, list.lines[i], list.ids[i], why_not(s)});
+        continue;
+      }
+      ++result_.compensated;
+      for (std::size_t k = 0; k < axes; ++k) {
+        const double change = list.changes[i * axes + k];
+        result_.axes[k].largest = std::max(result_.axes[k].largest, std::abs(change));
+        result_.axes[k].rms += change * change;
+      }
+      add(s.before, result_.before);
+      add(s.after, result_.after);
+    }
+  }
+
+  static void add(const TipError& error, TipErrorSummary& summary) {
+    summary.position_rms += error.position * error.position;
+    summary.rotation_rms += error.rotation * error.rotation;
+    summary.position_largest = std::max(summary.position_largest, error.position);
+    summary.rotation_largest = std::max(summary.rotation_largest, error.rotation);
+  }
+
+  void finish() {
+    const double count = std::max(1.0, double(result_.compensated));
+    const auto root = [&](double& sum) { sum = std::sqrt(sum / count); };
+    for (AxisChange& axis : result_.axes) root(axis.rms);
+    for (TipErrorSummary* summary : {&result_.before, &result_.after}) {
+      root(summary->position_rms);
+      root(summary->rotation_rms);
+    }
+  }
+
+  std::string why_not(const CommandSolver::Solution& s) const {
+    using Outcome = CommandSolver::Outcome;
+    const std::size_t axes = solver_->commanded().size();
+    const auto k = std::size_t(std::max(s.coordinate, 0));
+    const Coordinate& c = k < axes ? solver_->commanded()[k] : solver_->coordinates()[k - axes];
+    switch (s.outcome) {
+      case Outcome::reached:
+        return "";
+      case Outcome::out_of_reach:
+        return "the nominal robot does not reach it";
+      case Outcome::no_solution:
+        return std::isfinite(s.after.position)
+                   ? fmt::format("the calibrated robot does not reach it: {} and {} are left",
+                                 shown_value(s.after.position, "m"), shown_value(s.after.rotation, "rad"))
+                   : "the calibrated robot does not reach it";
+      case Outcome::too_far:
+        return fmt::format("'{}' would have to move by {}: a singularity is near", c.name,
+                           in_own_unit(s.value, c.unit));
+      case Outcome::beyond_limit:
+        return fmt::format("'{}' would be at {}, allowed are {} to {}", c.name, in_own_unit(s.value, c.unit),
+                           in_own_unit(c.lower, c.unit), in_own_unit(c.upper, c.unit));
+    }
+    return "";
+  }
+
+  void add_notes() {
+    const std::string base = shown_displacement(*tip_, correction_, "base."),
+                      tool = shown_displacement(*tip_, correction_, "tool.");
+    if (!base.empty() && !options_.solver.with_base)
+      result_.notes.push_back("poses are those in the robot's own base: where the base was found to stand (" + base +
+                              " from where the problem file puts it) is left out; --with-base counts it");
+    if (!tool.empty() && options_.solver.with_tool)
+      result_.notes.push_back("the tool's correction (" + tool +
+                              ") counts; if it is that of what was measured and not of what works, --without-tool");
+    const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot);
+    if (arm != nullptr && arm->elastostatic && !options_.elastic_target)
+      result_.notes.emplace_back(
+          "what the springs give way under the load of each pose is made up for in full: a controller takes the robot "
+          "to "
+          "be stiff (--elastic-target if the poses were found with the nominal springs)");
+    if (problem_.parameters->unmodelled)
+      result_.notes.push_back(fmt::format("the effect that the calibration found and did not name (1σ {}) is left",
+                                          shown_value(problem_.parameters->unmodelled->size, "m")));
+    if (options_.solver.position_only)
+      result_.notes.emplace_back("positions alone are compensated: the tip's orientation is what it will be");
+  }
+
+  const Problem& problem_;
+  const CompensateOptions& options_;
+  std::unique_ptr<TipModel> tip_;
+  std::vector<double> correction_;
+  std::unique_ptr<CommandSolver> solver_;
+  Compensation result_;
+};
+
+}  // namespace
+
+std::string NotCompensated::text() const {
+  return fmt::format("{}{}: pose {}: {}", file, line > 0 ? fmt::format(":{}", line) : "", id, why);
+}
+
+std::vector<Coordinate> compensation_coordinates(const Problem& problem) {
+  const auto tip = calibrated_tip(problem);
+  const auto model = make_model(problem, calibrated_variant(problem));
+  const std::vector<Coordinate> limits = limits_in_force(*model, problem);
+  std::vector<Coordinate> result = tip->coordinates();
+  for (Coordinate& c : result)
+    for (const Coordinate& narrowed : limits)
+      if (narrowed.name == c.name) c = narrowed;
+  for (Coordinate& c : result)
+    for (const auto& [name, velocity] : problem.workspace.motion.velocity)
+      if (name.value == c.name) c.speed = velocity.value;
+  return result;
+}
+
+Compensation compensate_problem(const Problem& problem, const std::vector<PoseList>& lists,
+                                const CompensateOptions& options, const Monitor& monitor) {
+  return Compensator(problem, options).run(lists, monitor);
+}
+
+}  // namespace posewright

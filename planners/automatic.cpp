@@ -203,7 +203,7 @@ class Run {
     const auto same = [](const Outcome& a, const Outcome& b) { return a.value - b.value < smallest_gain; };
     found.erase(std::unique(found.begin(), found.end(), same), found.end());
     // A move of one pose costs as many evaluations as it has axes, squared; without a gradient many more.
-    const std::size_t cost = task_.space->axes().size() * (task_.space->is_box() ? 1 : 2);
+    const std::size_t cost = task_.space->axes().size() * (task_.space->margins() ? 1 : 2);
     const std::size_t most = std::clamp<std::size_t>(axes_for_one / cost, 1, moved_starts);
     if (found.size() > most) found.resize(most);
     return found;

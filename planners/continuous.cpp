@@ -5,10 +5,12 @@
 #include <limits>
 #include <memory>
 #include <nlopt.hpp>
+#include <span>
 
 #include "exchange.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/planning/ascent.hpp"
+#include "posewright/planning/block_gradient.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
@@ -26,7 +28,6 @@ constexpr double round_gain = 1e-6, dear_round_gain = 2e-5;
 constexpr int joint_evaluations = 200;
 // MMA's own work grows with the square of the number of coordinates.
 constexpr std::size_t most_joint_coordinates = 500;
-constexpr double difference_step = 1e-5;
 
 Eigen::MatrixXd information_of(const DesignTask& task, const BlockArray& blocks) {
   const auto all = blocks.all();
@@ -67,10 +68,14 @@ bool is_apart(const DesignTask& task, const PoseSet& poses, std::size_t i, std::
 class Joint {
  public:
   Joint(const DesignTask& task, const PoseSet& poses)
-      : task_(task), axes_(task.space->axes()), probe_(task.space->probe()), start_(poses), now_(poses), best_(poses) {
-    for (std::size_t k = 0; k < axes_.size(); ++k)
-      if (axes_[k].continuous && axes_[k].upper > axes_[k].lower) moving_.push_back(k);
-  }
+      : task_(task),
+        axes_(task.space->axes()),
+        probe_(task.space->probe()),
+        gradient_(*task.space, poses.blocks.rows(), poses.blocks.columns()),
+        moving_(gradient_.moving()),
+        start_(poses),
+        now_(poses),
+        best_(poses) {}
 
   std::size_t size() const { return moving_.size() * start_.configurations.size(); }
   std::vector<double> unit() const {
@@ -122,23 +127,10 @@ class Joint {
                 best_.blocks.data());
   }
 
-  void differentiate(const Eigen::MatrixXd& S, std::vector<double>& gradient) {
-    ProbedBlock low(now_.blocks.rows(), now_.blocks.columns()), high(now_.blocks.rows(), now_.blocks.columns());
-    std::size_t at = 0;
+  void differentiate(const Eigen::MatrixXd& S, std::span<double> gradient) {
     for (std::size_t i = 0; i < now_.configurations.size(); ++i) {
-      const BlockArray::RowMatrix slope = 2 * now_.blocks.block(i) * S;
-      std::vector<double> near = now_.configurations[i];
-      for (const std::size_t k : moving_) {
-        const double width = axes_[k].upper - axes_[k].lower, q = near[k];
-        const double up = std::min(axes_[k].upper, q + difference_step * width);
-        const double down = std::max(axes_[k].lower, q - difference_step * width);
-        near[k] = up;
-        const bool there = high.at(*probe_, near);
-        near[k] = down;
-        const bool here = low.at(*probe_, near);
-        near[k] = q;
-        gradient[at++] = there && here ? slope.cwiseProduct(high.map() - low.map()).sum() / (up - down) * width : 0.0;
-      }
+      slope_.noalias() = 2 * now_.blocks.block(i) * S;
+      gradient_.at(*probe_, now_.configurations[i], slope_, gradient.subspan(i * moving_.size(), moving_.size()));
     }
   }
 
@@ -156,8 +148,10 @@ class Joint {
   const DesignTask& task_;
   const std::vector<ConfigurationSpace::Axis>& axes_;
   std::unique_ptr<ConfigurationSpace::Probe> probe_;
+  BlockGradient gradient_;
+  BlockArray::RowMatrix slope_;
+  const std::vector<std::size_t>& moving_;
   Copy start_, now_, best_;
-  std::vector<std::size_t> moving_;
 };
 
 double call(const std::vector<double>& u, std::vector<double>& gradient, void* data) {
@@ -234,7 +228,7 @@ class InTurn {
   }
 
   long go(int rounds, const Monitor& monitor) {
-    const double enough = task_.space->is_box()
+    const double enough = task_.space->margins()
                               ? round_gain
                               : std::max(round_gain, dear_round_gain * task_.criterion->function().degree());
     long moves = 0;
@@ -277,9 +271,40 @@ class InTurn {
   AscentResult ascent(std::size_t i, const Eigen::MatrixXd& M, ConfigurationSpace::Probe& probe) const {
     const auto block = poses_.blocks.block(i);
     OnePose objective(task_.criterion->function(), M - block.transpose() * block);
-    return ascend(*task_.space, probe, objective, poses_.blocks.rows(), poses_.blocks.columns(),
-                  poses_.configurations[i], evaluations_per_pose,
-                  [&](std::span<const double> q) { return is_apart(task_, poses_, i, q); });
+    const auto accept = [&](std::span<const double> q) { return is_apart(task_, poses_, i, q); };
+    const auto from = [&](std::vector<double> start) {
+      return ascend(*task_.space, probe, objective, poses_.blocks.rows(), poses_.blocks.columns(), std::move(start),
+                    evaluations_per_pose, accept);
+    };
+    AscentResult best = from(poses_.configurations[i]);
+    // A station or a load case is nothing to move along: the most promising other one starts a search of its own.
+    std::vector<double> other = best_other_choice(best.q, objective, probe);
+    if (other.empty()) return best;
+    const AscentResult found = from(std::move(other));
+    if (found.value > best.value && probe.feasible(found.q) && accept(found.q)) return found;
+    return best;
+  }
+
+  /// q with one choice made otherwise, that of the largest value; empty if there is none.
+  std::vector<double> best_other_choice(const std::vector<double>& q, BlockObjective& objective,
+                                        ConfigurationSpace::Probe& probe) const {
+    std::vector<double> best, other = q;
+    double most = -std::numeric_limits<double>::infinity();
+    ProbedBlock block(poses_.blocks.rows(), poses_.blocks.columns());
+    const std::vector<ConfigurationSpace::Axis>& axes = task_.space->axes();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      for (const double value : axes[k].choices) {
+        if (value == q[k]) continue;
+        other[k] = value;
+        if (!block.at(probe, other) || !probe.perhaps_feasible(other)) continue;
+        const double reached = objective.value(block.map());
+        if (!(reached > most)) continue;
+        most = reached;
+        best = other;
+      }
+      other[k] = q[k];
+    }
+    return best;
   }
 
   double value_with(std::size_t i, std::span<const double> q, ConfigurationSpace::Probe& probe) {

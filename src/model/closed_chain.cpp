@@ -1,5 +1,7 @@
 #include "posewright/model/closed_chain.hpp"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -17,6 +19,9 @@ constexpr double newton_tolerance = 1e-12;
 // Smallest pivot of F_x, relative to its largest, that is not a singularity: nearer to one the linear model would not
 // hold over the tolerances.
 constexpr double singular_pivot = 1e-4;
+
+// Of the central differences of twists along the coordinates, m or rad: their error is about its square.
+constexpr double freedom_step = 1e-5;
 
 /// At most six coordinates, so nothing here touches the heap.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
@@ -44,6 +49,16 @@ bool solve_response(Scratch& s) {
   const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> freedoms = s.freedoms.transpose();
   s.response = -s.factor.solve(freedoms).transpose();
   return true;
+}
+
+/// f's derivatives by twists expressed in A become those by the same twists expressed in B.
+void slopes_to_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> slopes) {
+  const Eigen::Matrix3d& R = X_AB.linear();
+  for (Eigen::Index j = 0; j < slopes.cols(); ++j) {
+    const Eigen::Vector3d a = slopes.col(j).head<3>(), b = slopes.col(j).tail<3>();
+    slopes.col(j).head<3>() = R.transpose() * a;
+    slopes.col(j).tail<3>() = R.transpose() * (b + a.cross(X_AB.translation()));
+  }
 }
 
 Scratch& scratch_of_this_thread() {
@@ -141,6 +156,84 @@ bool ClosedChain::linearise(const Point& at, std::span<const int> selected, Eige
     change_frame(X_MeasureBase, *reading_twists);
   }
   return true;
+}
+
+bool ClosedChain::do_loops_change(std::span<const double>, std::span<const double>, std::span<const double>,
+                                  std::span<const int>, const Loops&, Twist&, Eigen::VectorXd&) const {
+  return false;
+}
+
+bool ClosedChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                            std::span<double> gradient) const {
+  Scratch& s = scratch_of_this_thread();
+  static thread_local Loops slope;
+  static thread_local Twists twists, readings;
+  const auto own = own_part(at.correction);
+  s.actuators.resize(actuators_.size());
+  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
+  own_selection(selected, s.own);
+  const Eigen::Isometry3d X_BasePlatform = do_platform(at.q, s.freedoms);
+  loops(at.q, s.actuators, own, s.own, s.loops);
+  if (!solve_response(s)) return false;
+
+  Frame<double> frame = frame_of(X_MeasureBase_);
+  displace(frame, at.correction.empty() ? nullptr : at.correction.data());
+  const Eigen::Isometry3d X_MeasureBase = isometry_of(frame);
+  frame.then(X_BasePlatform);
+  const int first_tool = first_own() + own_count_;
+  const DisplacementAxes tool =
+      displace(frame, at.correction.size() > std::size_t(first_tool) ? at.correction.data() + first_tool : nullptr);
+  twists = f.twists;
+  readings = f.reading_twists;
+  // The tool's axes ride on the platform, the base's stay.
+  Twist by_platform = f.tip;
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    if (s.own[c] >= 0) continue;
+    auto column = twists.col(Eigen::Index(c));
+    if (const int k = selected[c] - first_tool; k >= 0 && k < 6) by_platform += carried_change(tool.twist(k), column);
+    column.setZero();
+  }
+  slopes_to_frame(X_MeasureBase, twists);
+  slopes_to_frame(X_MeasureBase, readings);
+  slopes_to_frame(X_MeasureBase, by_platform);
+
+  // Of the response R = −B F_x⁻¹, F_x = F_X B: dR = −(dB + R (dF_X B + F_X dB)) F_x⁻¹.
+  using Response = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+  Response by_response = twists * s.loops.parameter.transpose();
+  if (readings.cols() > 0) by_response += readings * s.loops.actuator.transpose();
+  const Square by_coordinates = s.loops.platform * s.freedoms;
+  const Response Z = by_coordinates.partialPivLu().solve(by_response.transpose()).transpose();
+  const Square Q = s.response.transpose() * Z;
+  const Response by_freedoms = -Z - s.loops.platform.transpose() * Q;
+  slope.parameter.noalias() = s.response.transpose() * twists;
+  slope.platform.noalias() = -Q * s.freedoms.transpose();
+  if (readings.cols() > 0) slope.actuator.noalias() = s.response.transpose() * readings;
+  else slope.actuator.setZero(s.loops.actuator.rows(), s.loops.actuator.cols());
+  Eigen::VectorXd by_actuators = Eigen::VectorXd::Zero(s.loops.actuator.cols());
+  if (!do_loops_change(at.q, s.actuators, own, s.own, slope, by_platform, by_actuators))
+    return TipModel::pull_back(at, selected, f, gradient);
+  // The loops stay closed: F_ρ dρ = −F_X B dq.
+  by_platform -= s.loops.platform.transpose() * s.loops.actuator.transpose().partialPivLu().solve(by_actuators);
+  for (Eigen::Index k = 0; k < s.freedoms.cols(); ++k) gradient[std::size_t(k)] += s.freedoms.col(k).dot(by_platform);
+  add_turned_freedoms(at.q, by_freedoms, gradient);
+  return true;
+}
+
+/// Twists along the coordinates turn with them: central differences of these alone.
+void ClosedChain::add_turned_freedoms(std::span<const double> q, const Eigen::Ref<const Twists>& by_freedoms,
+                                      std::span<double> gradient) const {
+  static thread_local Twists ahead, behind;
+  std::array<double, 6> near{};
+  std::copy(q.begin(), q.end(), near.begin());
+  const auto there = std::span<const double>(near).first(q.size());
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    near[k] = q[k] + freedom_step;
+    do_platform(there, ahead);
+    near[k] = q[k] - freedom_step;
+    do_platform(there, behind);
+    near[k] = q[k];
+    gradient[k] += by_freedoms.cwiseProduct(ahead - behind).sum() / (2 * freedom_step);
+  }
 }
 
 bool ClosedChain::sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,

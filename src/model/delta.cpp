@@ -103,4 +103,32 @@ void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std
   }
 }
 
+bool Delta::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                            std::span<const int> selected, const Loops& slope, Twist& by_platform,
+                            Eigen::VectorXd& by_actuators) const {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  for (int i = 0; i < delta_legs; ++i) {
+    const DeltaLeg leg = corrected_leg(spec_, i, own);
+    const double theta = rho[std::size_t(i)] + leg[4], cosine = std::cos(theta), sine = std::sin(theta);
+    const Eigen::Vector3d d(std::cos(leg[5]), std::sin(leg[5]), 0), across(-d.y(), d.x(), 0);
+    const double radial = leg[1] - leg[0] - leg[2] * cosine;
+    const Eigen::Vector3d h = Eigen::Vector3d(q[0], q[1], q[2]) + radial * d + leg[2] * sine * up;
+    const double reach = h.norm();
+    const Eigen::Vector3d e = h / reach;
+    DeltaLeg a{};  // slopes of this leg's columns, see do_loops()
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      if (selected[c] >= 0 && selected[c] / delta_parameters == i)
+        a[std::size_t(selected[c] % delta_parameters)] += slope.parameter(i, Eigen::Index(c));
+    const double swing = -leg[2] * (a[4] + slope.actuator(i, i));
+    const Eigen::Vector3d by_e = (a[0] - a[1]) * d + a[2] * (cosine * d - sine * up) +
+                                 swing * (sine * d + cosine * up) - a[5] * radial * across -
+                                 slope.platform.row(i).head<3>().transpose();
+    const Eigen::Vector3d by_h = (by_e - e.dot(by_e) * e) / reach;
+    by_platform.head<3>() += by_h;
+    by_actuators[i] += swing * (cosine * e.dot(d) - sine * e.z()) - a[2] * (sine * e.dot(d) + cosine * e.z()) -
+                       a[5] * leg[2] * sine * e.dot(across) + leg[2] * by_h.dot(sine * d + cosine * up);
+  }
+  return true;
+}
+
 }  // namespace posewright

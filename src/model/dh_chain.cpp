@@ -146,40 +146,79 @@ HarmonicColumns DhChain::harmonic_columns(std::span<const int> selected, std::sp
   return result;
 }
 
-bool DhChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
-                        Twists* reading_twists) const {
-  static thread_local std::vector<Twist> along;  // of base, named motions, tool
-  along.clear();
-  if (reading_twists != nullptr) reading_twists->resize(6, Eigen::Index(coordinates_.size()));
+struct DhChain::State {
+  std::vector<Twist> motions;         ///< of every elementary motion
+  std::vector<Twist> along;           ///< of base, named motions, tool, as parameters are counted
+  std::vector<std::size_t> carriers;  ///< of each of these: how many motions carry it
+};
+
+Eigen::Isometry3d DhChain::run(const Point& at, State& state) const {
+  state.motions.clear();
+  state.along.clear();
+  state.carriers.clear();
+  const auto add = [&](const Twist& twist) {
+    state.along.push_back(twist);
+    state.carriers.push_back(state.motions.size());
+  };
   const bool corrected = !at.correction.empty();
   Frame<double> frame = frame_of(chain_.base);
   const DisplacementAxes base = displace(frame, corrected ? at.correction.data() : nullptr);
-  for (int k = 0; k < 6; ++k) along.push_back(base.twist(k));
+  for (int k = 0; k < 6; ++k) add(base.twist(k));
   for (const ElementaryMotion& motion : chain_.motions) {
     const Eigen::Vector3d axis = frame.R.col(motion.axis);
     const Twist twist = motion.rotation ? revolute(axis, frame.p) : prismatic(axis);
     double value = motion.nominal;
-    if (motion.coordinate >= 0) {
-      value += at.q[std::size_t(motion.coordinate)];
-      if (reading_twists != nullptr) reading_twists->col(motion.coordinate) = twist;
-    }
+    if (motion.coordinate >= 0) value += at.q[std::size_t(motion.coordinate)];
     if (!motion.name.empty()) {
-      if (corrected) value += at.correction[along.size()];
-      along.push_back(twist);
+      if (corrected) value += at.correction[state.along.size()];
+      add(twist);
     }
+    state.motions.push_back(twist);
     if (motion.rotation) frame.then_rotate(Eigen::Vector3d::Unit(motion.axis), value);
     else frame.p += axis * value;
   }
   frame.then(chain_.tool);
   const bool tool_corrected = at.correction.size() > std::size_t(tool_);
   const DisplacementAxes tool = displace(frame, tool_corrected ? at.correction.data() + tool_ : nullptr);
-  for (int k = 0; k < 6; ++k) along.push_back(tool.twist(k));
+  for (int k = 0; k < 6; ++k) add(tool.twist(k));
+  return isometry_of(frame);
+}
+
+bool DhChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
+                        Twists* reading_twists) const {
+  static thread_local State state;
+  X_MeasureTip = run(at, state);
   twists.resize(6, Eigen::Index(selected.size()));
   for (std::size_t c = 0; c < selected.size(); ++c) {
-    if (std::size_t(selected[c]) < along.size()) twists.col(Eigen::Index(c)) = along[std::size_t(selected[c])];
+    if (std::size_t(selected[c]) < state.along.size())
+      twists.col(Eigen::Index(c)) = state.along[std::size_t(selected[c])];
     else twists.col(Eigen::Index(c)).setZero();
   }
-  X_MeasureTip = isometry_of(frame);
+  if (reading_twists == nullptr) return true;
+  reading_twists->resize(6, Eigen::Index(coordinates_.size()));
+  for (std::size_t i = 0; i < chain_.motions.size(); ++i)
+    if (chain_.motions[i].coordinate >= 0) reading_twists->col(chain_.motions[i].coordinate) = state.motions[i];
+  return true;
+}
+
+bool DhChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                        std::span<double> gradient) const {
+  static thread_local State state;
+  static thread_local std::vector<Twist> carried;  // f's change by a twist of what so many motions carry
+  run(at, state);
+  carried.assign(state.motions.size() + 1, Twist::Zero());
+  carried.back() = f.tip;
+  for (std::size_t c = 0; c < selected.size(); ++c)
+    if (const auto i = std::size_t(selected[c]); i < state.along.size())
+      carried[state.carriers[i]] += carried_change(state.along[i], f.twists.col(Eigen::Index(c)));
+  for (std::size_t i = 0; f.reading_twists.cols() > 0 && i < state.motions.size(); ++i)
+    if (const int k = chain_.motions[i].coordinate; k >= 0)
+      carried[i] += carried_change(state.motions[i], f.reading_twists.col(k));
+  Twist beyond = Twist::Zero();
+  for (std::size_t i = state.motions.size(); i-- > 0;) {
+    beyond += carried[i + 1];
+    if (const int k = chain_.motions[i].coordinate; k >= 0) gradient[std::size_t(k)] += state.motions[i].dot(beyond);
+  }
   return true;
 }
 

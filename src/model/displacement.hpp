@@ -25,6 +25,15 @@ inline Twist prismatic(const Eigen::Vector3d& axis) {
   return twist;
 }
 
+/// a with a · m = slope · [m, ξ] for every twist m: how slope · ξ changes if ξ is carried along m, [m, ξ] = (ω_m × v +
+/// v_m × ω, ω_m × ω).
+inline Twist carried_change(const Twist& twist, const Twist& slope) {
+  const Eigen::Vector3d v = twist.head<3>(), w = twist.tail<3>(), a = slope.head<3>(), b = slope.tail<3>();
+  Twist change;
+  change << w.cross(a), v.cross(a) + w.cross(b);
+  return change;
+}
+
 /// The six axes of a displacement and where they act: translations and rz along the undisplaced axes, ry and rx along
 /// partially rotated ones, all through the displaced origin.
 struct DisplacementAxes {

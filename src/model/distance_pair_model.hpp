@@ -22,6 +22,10 @@ class DistancePairModel : public IdentificationModel {
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
   bool do_measurable(const Point& at) const override;
+  std::optional<int> do_measurable_margins() const override;
+  bool do_measurable_margins_at(const Point& at, std::span<double> out) const override;
+  bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                    const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
   bool do_actuator_values(const Point& at, std::span<double> values) const override;
   /// That of the second configuration.
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;

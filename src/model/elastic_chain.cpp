@@ -21,6 +21,9 @@ constexpr double compliance_tolerance = 0.3e-6;  // rad/(N·m); m/N for prismati
 constexpr double small_angle = 0.5 * degree;
 constexpr int steps_of_range = 200;
 
+// Of the central differences of deflections, rad or m: their error is about its square.
+constexpr double bending_step = 1e-5;
+
 using Wrench = Eigen::Matrix<double, 6, 1>;  // force, moment about the origin of M
 
 Wrench force_at(const Eigen::Vector3d& force, const Eigen::Vector3d& point) {
@@ -243,34 +246,96 @@ void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::s
   }
 }
 
+struct ElasticChain::Bent {
+  std::vector<int> selected;
+  std::vector<double> rigid;  ///< corrections of the chain alone
+  std::vector<double> deflection, derivative;
+  Twists twists, readings;
+  TipAdjoint f;
+
+  /// What a gear makes of a reading; a deflection does not go through it.
+  double gear(const ChainLayout& layout, int joint) const {
+    return 1 + (rigid.empty() ? 0.0 : rigid[std::size_t(layout.offset[std::size_t(joint)]) + 1]);
+  }
+};
+
+ElasticChain::Bent& ElasticChain::bent(const Point& at, std::span<const int> selected) const {
+  static thread_local Bent b;
+  const std::size_t count = springs_.size();
+  b.deflection.assign(chain_.coordinates().size(), 0.0);
+  b.derivative.assign(count, 0.0);
+  deflect(at, b.deflection, b.derivative);
+  without_block(at.correction, first_, count, b.rigid);
+  b.selected.clear();
+  for (const int index : selected) {
+    if (index < first_) b.selected.push_back(index);
+    else b.selected.push_back(index < first_ + int(count) ? chain_.layout().count : index - int(count));
+  }
+  return b;
+}
+
 bool ElasticChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
                              Twists* reading_twists) const {
-  static thread_local std::vector<int> geometric;
-  static thread_local std::vector<double> rigid, derivative;
-  static thread_local Twists own_readings;
-  const std::size_t joints = chain_.coordinates().size(), count = springs_.size();
-  std::array<double, max_joints> deflection{};
-  derivative.assign(count, 0.0);
-  deflect(at, std::span(deflection).first(joints), derivative);
-
-  without_block(at.correction, first_, springs_.size(), rigid);
-  geometric.clear();
-  for (const int index : selected) {
-    if (index < first_) geometric.push_back(index);
-    else geometric.push_back(index < first_ + int(count) ? chain_.layout().count : index - int(count));
-  }
-  Twists* readings = reading_twists != nullptr ? reading_twists : &own_readings;
-  chain_.linearise_deflected(at.q.first(joints), std::span(deflection).first(joints), rigid, geometric, X, twists,
-                             readings);
+  Bent& b = bent(at, selected);
+  Twists* readings = reading_twists != nullptr ? reading_twists : &b.readings;
+  chain_.linearise_deflected(at.q.first(b.deflection.size()), b.deflection, b.rigid, b.selected, X, twists, readings);
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int i = selected[c] - first_;
-    if (i < 0 || i >= int(count)) continue;
+    if (i < 0 || i >= int(springs_.size())) continue;
     const int joint = springs_[std::size_t(i)].coordinate;
-    // A reading's twist has the gear correction in it; a deflection does not go through the gear's scale.
-    const double gear = rigid.empty() ? 0.0 : rigid[std::size_t(chain_.layout().offset[std::size_t(joint)]) + 1];
-    twists.col(Eigen::Index(c)) = readings->col(joint) * (derivative[std::size_t(i)] / (1 + gear));
+    twists.col(Eigen::Index(c)) =
+        readings->col(joint) * (b.derivative[std::size_t(i)] / b.gear(chain_.layout(), joint));
   }
   return true;
+}
+
+bool ElasticChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                             std::span<double> gradient) const {
+  Bent& b = bent(at, selected);
+  const ChainLayout& layout = chain_.layout();
+  const std::size_t joints = b.deflection.size();
+  const auto q = at.q.first(joints);
+  Eigen::Isometry3d X;
+  chain_.linearise_deflected(q, b.deflection, b.rigid, {}, X, b.twists, &b.readings);
+  b.f = f;
+  if (f.reading_twists.cols() == 0) b.f.reading_twists = Twists::Zero(6, Eigen::Index(joints));
+  // f by every deflection and by every derivative of one, the chain held.
+  std::vector<double> by_deflection(joints, 0.0), by_derivative(springs_.size(), 0.0);
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    const int i = selected[c] - first_;
+    if (i < 0 || i >= int(springs_.size())) continue;
+    const int joint = springs_[std::size_t(i)].coordinate;
+    const Twist slope = f.twists.col(Eigen::Index(c)) / b.gear(layout, joint);
+    b.f.reading_twists.col(joint) += b.derivative[std::size_t(i)] * slope;
+    by_derivative[std::size_t(i)] += b.readings.col(joint).dot(slope);
+  }
+  chain_.pull_back_deflected(q, b.deflection, b.rigid, b.selected, b.f, gradient, by_deflection);
+  add_bending(at, by_deflection, by_derivative, gradient);
+  return true;
+}
+
+void ElasticChain::add_bending(const Point& at, std::span<const double> by_deflection,
+                               std::span<const double> by_derivative, std::span<double> gradient) const {
+  const std::size_t joints = by_deflection.size();
+  std::vector<double> q(at.q.begin(), at.q.end()), deflection(joints), derivative(springs_.size());
+  Point near = at;
+  near.q = q;
+  near.read = {};
+  for (std::size_t k = 0; k < joints; ++k) {
+    if (coordinates_[k].discrete()) continue;
+    double change = 0;
+    for (const double step : {-bending_step, bending_step}) {
+      q[k] = at.q[k] + step;
+      std::fill(deflection.begin(), deflection.end(), 0.0);
+      deflect(near, deflection, derivative);
+      double sum = 0;
+      for (std::size_t i = 0; i < joints; ++i) sum += by_deflection[i] * deflection[i];
+      for (std::size_t i = 0; i < springs_.size(); ++i) sum += by_derivative[i] * derivative[i];
+      change += step > 0 ? sum : -sum;
+    }
+    q[k] = at.q[k];
+    gradient[k] += change / (2 * bending_step);
+  }
 }
 
 }  // namespace posewright

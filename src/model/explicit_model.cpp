@@ -158,6 +158,69 @@ bool ExplicitModel::do_linearise(const Point& at, std::span<const int> selected,
   return true;
 }
 
+/// Rows Y along unit twists and twists T make Y T, so that f's derivatives go to Y, to T, and from these to the robot
+/// and the instrument; the covariance has D Dᵀ in it, D = Y N of what moves the tip at random.
+bool ExplicitModel::do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                                 const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const {
+  static thread_local Linearisation l;
+  static thread_local Eigen::MatrixXd Y, by_random_rows;
+  static thread_local Twists by_random;
+  static thread_local TipAdjoint by_tip;
+  static thread_local MeasurementModel::Adjoint by_readings;
+  const Parts p = parts(at);
+  Eigen::Isometry3d X;
+  if (!twists_and_noise(p, selected, X, l)) return false;
+  const MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  Y.resize(rows_, 6);
+  measurement_->rows_of_twists(sighting, Twists::Identity(6, 6), Y);
+  by_readings.twist_rows.noalias() = by_G * l.twists.transpose();
+  by_tip.twists.noalias() = Y.transpose() * by_G;
+  by_random_rows.noalias() = 2 * by_covariance * (Y * l.random_twists);
+  by_readings.twist_rows.noalias() += by_random_rows * l.random_twists.transpose();
+  by_random.noalias() = Y.transpose() * by_random_rows;
+  if (repeatability_.independent > 0) displacements_pulled_back(by_covariance, Y, by_readings.twist_rows);
+
+  // Turns about the tip's origin move it by p × axis.
+  Eigen::Vector3d by_origin = Eigen::Vector3d::Zero();
+  const auto turned = [&](int k, double size, const Eigen::Ref<const Twist>& slope) {
+    if (k >= 3) by_origin += size * Eigen::Vector3d::Unit(k - 3).cross(Eigen::Vector3d(slope.head<3>()));
+  };
+  by_readings.own.clear();
+  by_readings.own_columns.resize(rows_, Eigen::Index(selected.size()));
+  by_readings.own_motions.resize(6, Eigen::Index(selected.size()));
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    if (selected[c] < tip_parameters_) continue;
+    auto slope = by_tip.twists.col(Eigen::Index(c));
+    if (const int k = selected[c] - tip_column(0, 0); k >= 0) {
+      turned(k, 1.0, slope);
+    } else {
+      const auto i = Eigen::Index(by_readings.own.size());
+      by_readings.own.push_back(selected[c] - tip_parameters_);
+      by_readings.own_columns.col(i) = by_G.col(Eigen::Index(c));
+      by_readings.own_motions.col(i) = slope;
+    }
+    slope.setZero();  // the robot counts its tool's parameters here
+  }
+  const Eigen::Index readings = reading_noise_ ? l.reading_twists.cols() : 0;
+  for (Eigen::Index k = readings; k < by_random.cols(); ++k)
+    turned(int(k - readings), repeatability_.rotation, by_random.col(k));
+  by_tip.reading_twists = by_random.leftCols(readings);
+  for (Eigen::Index j = 0; j < readings; ++j) by_tip.reading_twists.col(j) *= tip_->reading_noise()[std::size_t(j)];
+  by_readings.covariance = by_covariance;
+  by_tip.tip = measurement_->pull_back(sighting, by_readings) +
+               change_by_motion(X.translation(), by_origin, Eigen::Vector3d::Zero());
+  return tip_->pull_back(p.tip, selected, by_tip, gradient.first(tip_->coordinates().size()));
+}
+
+void ExplicitModel::displacements_pulled_back(const Eigen::MatrixXd& by_covariance, const Eigen::MatrixXd& unit_rows,
+                                              Eigen::MatrixXd& by_unit_rows) const {
+  const double variance = repeatability_.independent * repeatability_.independent;
+  const Eigen::Index each = std::max(1, rows_per_target_);
+  for (Eigen::Index first = 0; first + each <= rows_; first += each)
+    by_unit_rows.block(first, 0, each, 3).noalias() +=
+        2 * variance * by_covariance.block(first, first, each, each) * unit_rows.block(first, 0, each, 3);
+}
+
 bool ExplicitModel::do_read(const Point& at, Eigen::VectorXd& y) const {
   const Parts p = parts(at);
   static thread_local Twists none;
@@ -222,6 +285,16 @@ bool ExplicitModel::do_measurable(const Point& at) const {
   Twists none;
   Eigen::Isometry3d X;
   return tip_->linearise(p.tip, {}, X, none, nullptr) && measurement_->sees({X, p.own_correction, p.station});
+}
+
+bool ExplicitModel::do_measurable_margins_at(const Point& at, std::span<double> out) const {
+  if (out.empty()) return true;
+  const Parts p = parts(at);
+  static thread_local Twists none;
+  Eigen::Isometry3d X;
+  if (!tip_->linearise(p.tip, {}, X, none, nullptr)) return false;
+  measurement_->margins_at({X, p.own_correction, p.station}, out);
+  return true;
 }
 
 bool ExplicitModel::do_reading_twists(const Point& at, Twists& twists) const {

@@ -125,4 +125,24 @@ void FiveBar::do_sensors(std::span<const double> q, std::span<const double> rho,
   }
 }
 
+bool FiveBar::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                              std::span<const int> selected, const Loops& slope, Twist& by_platform,
+                              Eigen::VectorXd& by_actuators) const {
+  for (int i = 0; i < 2; ++i) {
+    const FiveBarLeg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
+    std::array<double, five_bar_parameters> a{};  // slopes of this leg's columns, see do_loops()
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      if (selected[c] >= 0 && selected[c] / five_bar_parameters == i)
+        a[std::size_t(selected[c] % five_bar_parameters)] += slope.parameter(i, Eigen::Index(c));
+    const double swing = leg.proximal * (a[4] + slope.actuator(i, i));
+    const Eigen::Vector2d by_e = Eigen::Vector2d(a[0], a[1]) + a[2] * leg.along + swing * leg.across -
+                                 slope.platform.row(i).head<2>().transpose();
+    const Eigen::Vector2d by_d = (by_e - leg.e.dot(by_e) * leg.e) / leg.reach;
+    by_platform.head<2>() += by_d;
+    by_actuators[i] +=
+        a[2] * leg.e.dot(leg.across) - swing * leg.e.dot(leg.along) - leg.proximal * by_d.dot(leg.across);
+  }
+  return true;
+}
+
 }  // namespace posewright

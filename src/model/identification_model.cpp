@@ -118,6 +118,20 @@ bool IdentificationModel::linearise_factored(std::span<const double> q, std::spa
   return true;
 }
 
+bool IdentificationModel::pull_back(std::span<const double> q, std::span<const int> selected,
+                                    const Eigen::MatrixXd& by_G, const Eigen::MatrixXd& by_covariance,
+                                    std::span<double> gradient) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  require_size(gradient.size(), coordinates_.size(), "gradient");
+  std::fill(gradient.begin(), gradient.end(), 0.0);
+  return do_pull_back(point(q, shift_), selected, by_G, by_covariance, gradient);
+}
+
+bool IdentificationModel::do_pull_back(const Point&, std::span<const int>, const Eigen::MatrixXd&,
+                                       const Eigen::MatrixXd&, std::span<double>) const {
+  return false;
+}
+
 /// Moves `at` to where the robot stands with its (total) correction, the actuators as they are with nominal parameters.
 bool IdentificationModel::settle(Point& at, std::vector<double>& scratch) const {
   if (actuators_.empty() || at.correction.empty()) return true;
@@ -227,6 +241,17 @@ bool IdentificationModel::measurable(std::span<const double> q) const {
   require_size(q.size(), coordinates_.size(), "configuration");
   return do_measurable(point(q, shift_));
 }
+
+bool IdentificationModel::measurable_margins_at(std::span<const double> q, std::span<double> out) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  return do_measurable_margins_at(point(q, shift_), out);
+}
+
+std::optional<int> IdentificationModel::do_measurable_margins() const {
+  return unmeasurable_reason_.empty() ? std::optional(0) : std::nullopt;
+}
+
+bool IdentificationModel::do_measurable_margins_at(const Point&, std::span<double>) const { return true; }
 
 bool IdentificationModel::actuator_values(std::span<const double> q, std::span<double> values) const {
   require_size(q.size(), coordinates_.size(), "configuration");

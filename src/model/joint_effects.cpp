@@ -67,7 +67,7 @@ double JointEffects::Effect::derivative(double q) const {
 }
 
 JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& arm_spec, const std::string& file)
-    : arm_(std::move(arm)) {
+    : arm_(std::move(arm)), is_elastic_(arm_spec.elastostatic.has_value()) {
   coordinates_ = arm_->coordinates();
   const std::size_t moving = coordinates_.size();
   if (arm_spec.temperature) add_temperature(*arm_spec.temperature);
@@ -160,6 +160,10 @@ void JointEffects::add_temperature(const TemperatureSpec& spec) {
   coordinates_.push_back(std::move(c));
 }
 
+double JointEffects::Effect::second_derivative(double q) const {
+  return kind == Kind::cosine || kind == Kind::sine ? -constant * constant * value(q) : 0.0;
+}
+
 double JointEffects::coefficient(const Point& at, std::size_t effect) const {
   const std::size_t i = std::size_t(first_) + effect;
   return parameters_[i].nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
@@ -204,22 +208,38 @@ void JointEffects::take_loads_at(std::span<const double> correction) {
   arm_->take_loads_at(without_block(correction, first_, effects_.size(), rest));
 }
 
-bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
-                             Twists* reading_twists) const {
-  static thread_local std::vector<double> turned, rest;
-  static thread_local std::vector<int> of_arm;
-  static thread_local Twists joints;
+struct JointEffects::Inside {
+  std::vector<double> turned, rest;
+  std::vector<int> selected;
+  Twists twists, joints;
+  TipAdjoint f;
+  std::vector<double> gradient;
+  Point arm;
+};
+
+JointEffects::Inside& JointEffects::inside(const Point& at, std::span<const int> selected) const {
+  static thread_local Inside in;
   const int count = int(effects_.size()), beyond = int(arm_->parameters().size());
   const std::size_t own = arm_->coordinates().size();
-  turned.assign(at.q.begin(), at.q.begin() + std::ptrdiff_t(own));
+  in.turned.assign(at.q.begin(), at.q.begin() + std::ptrdiff_t(own));
   for (std::size_t e = 0; e < effects_.size(); ++e)
-    turned[std::size_t(effects_[e].joint)] += coefficient(at, e) * effects_[e].value(at.q[std::size_t(effects_[e].of)]);
-  of_arm.clear();
+    in.turned[std::size_t(effects_[e].joint)] +=
+        coefficient(at, e) * effects_[e].value(at.q[std::size_t(effects_[e].of)]);
+  in.selected.clear();
   for (const int index : selected)
-    of_arm.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
-  const Point arm{turned, without_block(at.correction, first_, effects_.size(), rest), at.station, at.load_case,
-                  at.readings().first(own)};
-  if (!arm_->linearise(arm, of_arm, X, twists, &joints)) return false;
+    in.selected.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
+  in.arm = {in.turned, without_block(at.correction, first_, effects_.size(), in.rest), at.station, at.load_case,
+            at.readings().first(own)};
+  return in;
+}
+
+bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+                             Twists* reading_twists) const {
+  Inside& in = inside(at, selected);
+  const int count = int(effects_.size());
+  const std::size_t own = arm_->coordinates().size();
+  Twists& joints = in.joints;
+  if (!arm_->linearise(in.arm, in.selected, X, twists, &joints)) return false;
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int e = selected[c] - first_;
     if (e < 0 || e >= count) continue;
@@ -233,6 +253,44 @@ bool JointEffects::linearise(const Point& at, std::span<const int> selected, Eig
     if (const double k = coefficient(at, e); k != 0 && effects_[e].of < int(own))
       reading_twists->col(effects_[e].of) +=
           k * effects_[e].derivative(at.q[std::size_t(effects_[e].of)]) * joints.col(effects_[e].joint);
+  return true;
+}
+
+bool JointEffects::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                             std::span<double> gradient) const {
+  // Loads bend an arm as it reads, not as it stands: there two derivatives would be wanted of the arm.
+  if (is_elastic_) return TipModel::pull_back(at, selected, f, gradient);
+  Inside& in = inside(at, selected);
+  Eigen::Isometry3d X;
+  if (!arm_->linearise(in.arm, {}, X, in.twists, &in.joints)) return false;
+  const int count = int(effects_.size()), own = int(arm_->coordinates().size());
+  in.f = f;
+  if (f.reading_twists.cols() > 0) in.f.reading_twists.conservativeResize(6, own);
+  else in.f.reading_twists = Twists::Zero(6, own);
+  const auto q_of = [&](const Effect& effect) { return at.q[std::size_t(effect.of)]; };
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    const int e = selected[c] - first_;
+    if (e < 0 || e >= count) continue;
+    const Effect& effect = effects_[std::size_t(e)];
+    const Twist slope = f.twists.col(Eigen::Index(c));
+    in.f.reading_twists.col(effect.joint) += effect.value(q_of(effect)) * slope;
+    gradient[std::size_t(effect.of)] += effect.derivative(q_of(effect)) * in.joints.col(effect.joint).dot(slope);
+  }
+  for (std::size_t e = 0; e < effects_.size() && f.reading_twists.cols() > 0; ++e) {
+    const Effect& effect = effects_[e];
+    const double k = coefficient(at, e);
+    if (k == 0 || effect.of >= own) continue;
+    const Twist slope = k * f.reading_twists.col(effect.of);
+    in.f.reading_twists.col(effect.joint) += effect.derivative(q_of(effect)) * slope;
+    gradient[std::size_t(effect.of)] += effect.second_derivative(q_of(effect)) * in.joints.col(effect.joint).dot(slope);
+  }
+  in.gradient.assign(std::size_t(own), 0.0);
+  if (!arm_->pull_back(in.arm, in.selected, in.f, in.gradient)) return false;
+  // A joint stands where it reads and where its effects put it.
+  for (std::size_t k = 0; k < std::size_t(own); ++k) gradient[k] += in.gradient[k];
+  for (std::size_t e = 0; e < effects_.size(); ++e)
+    gradient[std::size_t(effects_[e].of)] +=
+        coefficient(at, e) * effects_[e].derivative(q_of(effects_[e])) * in.gradient[std::size_t(effects_[e].joint)];
   return true;
 }
 

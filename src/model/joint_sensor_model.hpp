@@ -23,6 +23,7 @@ class JointSensorModel : public IdentificationModel {
                      Eigen::VectorXd& out) const override;
   bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
   bool do_measurable(const Point& at) const override;
+  std::optional<int> do_measurable_margins() const override { return 0; }
   bool do_actuator_values(const Point& at, std::span<double> values) const override;
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 

@@ -40,6 +40,19 @@ bool LoadDifference::do_linearise(const Point& at, std::span<const int> selected
   return true;
 }
 
+bool LoadDifference::do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                                  const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const {
+  // Nominal values are the inner model's; corrections of this one would be a second set.
+  if (!at.correction.empty()) return false;
+  std::vector<double> same(at.q.begin(), at.q.end()), unloaded(gradient.size());
+  same[load_] = 0.0;
+  if (!inside_->pull_back(at.q, selected, by_G, by_covariance, gradient) ||
+      !inside_->pull_back(same, selected, -by_G, by_covariance, unloaded))
+    return false;
+  for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] += unloaded[k];
+  return true;
+}
+
 bool LoadDifference::do_read(const Point& at, Eigen::VectorXd& y) const {
   static thread_local Eigen::VectorXd loaded, unloaded;
   static thread_local std::vector<double> same;

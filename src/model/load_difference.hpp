@@ -17,6 +17,8 @@ class LoadDifference : public IdentificationModel {
  private:
   void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                    const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   bool do_measurable(const Point& at) const override;
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;

@@ -1,5 +1,7 @@
 #include "measure_distance.hpp"
 
+#include <algorithm>
+
 namespace posewright {
 namespace {
 
@@ -22,6 +24,14 @@ double distance_variance(const DistanceMeasurement& spec, double d, double repea
 bool spans(const DistanceMeasurement& spec, double d) {
   if (!(d > shortest)) return false;
   return spec.range_upper <= 0 || (d >= spec.range_lower && d <= spec.range_upper);
+}
+
+int span_margins(const DistanceMeasurement& spec) { return spec.range_upper > 0 ? 2 : 0; }
+
+void span_margins_at(const DistanceMeasurement& spec, double d, std::span<double> out) {
+  const double range = std::max(spec.range_upper - spec.range_lower, shortest);
+  out[0] = (d - spec.range_lower) / range;
+  out[1] = (spec.range_upper - d) / range;
 }
 
 DistanceModel::DistanceModel(const MeasurementSpec& spec)
@@ -110,6 +120,42 @@ bool DistanceModel::sees(const Sighting& sighting) const {
   for (int row = 0; row < rows_; ++row)
     if (!spans(spec_, span_of(sighting, std::size_t(row)).between.norm())) return false;
   return true;
+}
+
+Twist DistanceModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  const int targets = int(spec_.targets.size()), anchors = int(spec_.anchors.size());
+  Twist sum = Twist::Zero();
+  for (int row = 0; row < rows_; ++row) {
+    const Span span = span_of(sighting, std::size_t(row));
+    const double d = span.between.norm();
+    const Eigen::Vector3d e = span.between / d;
+    const Twist rows = f.twist_rows.row(row).transpose();
+    // The row is (e, p × e): f by e, by p in it, by a turn of the tip.
+    const Eigen::Vector3d turn_part = rows.tail<3>();
+    Eigen::Vector3d by_e = rows.head<3>() + turn_part.cross(span.p), by_turn = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < f.own.size(); ++i) {
+      const int index = f.own[i];
+      const double slope = f.own_columns(row, Eigen::Index(i));
+      if (index < 3 * targets && index / 3 == row % targets) {
+        const Eigen::Vector3d along = slope * sighting.X_MeasureTip.linear().col(index % 3);
+        by_e += along;
+        by_turn += along.cross(e);
+      } else if (index >= 3 * targets && index < 3 * (targets + anchors) && index / 3 - targets == row / targets) {
+        by_e[index % 3] -= slope;
+      }
+    }
+    const double by_d =
+        f.covariance(row, row) * 2 * (spec_.sigma + spec_.sigma_per_m * d) * spec_.sigma_per_m / repeats_;
+    const Eigen::Vector3d by_point = e.cross(turn_part) + (by_e - e.dot(by_e) * e) / d + by_d * e;
+    sum += change_by_motion(span.p, by_point, by_turn);
+  }
+  return sum;
+}
+
+void DistanceModel::margins_at(const Sighting& sighting, std::span<double> out) const {
+  if (out.empty()) return;
+  for (std::size_t row = 0; row < std::size_t(rows_); ++row)
+    span_margins_at(spec_, span_of(sighting, row).between.norm(), out.subspan(2 * row, 2));
 }
 
 }  // namespace posewright

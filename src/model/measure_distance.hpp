@@ -8,6 +8,15 @@ namespace posewright {
 
 InstrumentView view_of(const DistanceMeasurement& distance);
 
+/// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats.
+double distance_variance(const DistanceMeasurement& spec, double d, double repeats);
+/// Whether the instrument can span d; distances under a micrometre have no direction.
+bool spans(const DistanceMeasurement& spec, double d);
+
+/// Of one distance: how many margins its range has, and these (IdentificationModel::measurable_margins()).
+int span_margins(const DistanceMeasurement& spec);
+void span_margins_at(const DistanceMeasurement& spec, double d, std::span<double> out);
+
 /// Distances from fixed anchors to targets on the tip: ball bar, cable sensor. Rows: anchor by anchor, target by
 /// target, d = ‖p − c‖ + length. Own parameters: target.NAME.{x,y,z} (tip frame), anchor.NAME.{x,y,z} (measurement
 /// frame), anchor.NAME.length (m, what the reading is too long by).
@@ -20,7 +29,10 @@ class DistanceModel : public MeasurementModel {
                       Eigen::Ref<Eigen::MatrixXd> rows) const override;
   void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+  Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
   bool sees(const Sighting& sighting) const override;
+  std::optional<int> margins() const override { return rows_ * span_margins(spec_); }
+  void margins_at(const Sighting& sighting, std::span<double> out) const override;
   HarmonicNoise harmonic_noise() const override;
 
  private:
@@ -33,10 +45,5 @@ class DistanceModel : public MeasurementModel {
   DistanceMeasurement spec_;
   double repeats_;
 };
-
-/// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats.
-double distance_variance(const DistanceMeasurement& spec, double d, double repeats);
-/// Whether the instrument can span d; distances under a micrometre have no direction.
-bool spans(const DistanceMeasurement& spec, double d);
 
 }  // namespace posewright

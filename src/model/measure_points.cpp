@@ -145,4 +145,36 @@ void PointsModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixX
   }
 }
 
+Twist PointsModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  const auto width = Eigen::Index(spec_.components.size());
+  const Eigen::Isometry3d X_MeasureStation = places_.pose(sighting.station, station_part(sighting.correction));
+  const Eigen::Matrix3d& R = X_MeasureStation.linear();
+  Twist sum = Twist::Zero();
+  for (std::size_t t = 0; t < spec_.targets.size(); ++t) {
+    const Eigen::Vector3d p = target(sighting, t);
+    const Eigen::Index first = Eigen::Index(t) * width;
+    Eigen::Vector3d by_point = Eigen::Vector3d::Zero();
+    // A turn about axis k moves the point by e_k × p.
+    Eigen::Matrix3d turns = Eigen::Matrix3d::Zero(), noise = Eigen::Matrix3d::Zero();
+    for (Eigen::Index i = 0; i < width; ++i) {
+      const int c = spec_.components[std::size_t(i)];
+      turns += R.col(c) * f.twist_rows.row(first + i).tail<3>();
+      for (Eigen::Index j = 0; j < width; ++j)
+        noise(c, spec_.components[std::size_t(j)]) = f.covariance(first + i, first + j) / repeats_;
+    }
+    for (int k = 0; k < 3; ++k) by_point += turns.col(k).cross(Eigen::Vector3d::Unit(k));
+    const Eigen::Vector3d p_Station = R.transpose() * (p - X_MeasureStation.translation());
+    by_point += R * point_covariance_change(spec_.noise, p_Station, noise);
+    sum += change_by_motion(p, by_point, Eigen::Vector3d::Zero());
+  }
+  for (std::size_t i = 0; i < f.own.size(); ++i) {
+    if (f.own[i] >= 3 * int(spec_.targets.size())) continue;  // a station stays where it is
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    for (Eigen::Index c = 0; c < width; ++c)
+      along += f.own_columns(f.own[i] / 3 * width + c, Eigen::Index(i)) * R.col(spec_.components[std::size_t(c)]);
+    sum.tail<3>() += sighting.X_MeasureTip.linear().col(f.own[i] % 3).cross(along);
+  }
+  return sum;
+}
+
 }  // namespace posewright

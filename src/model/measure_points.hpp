@@ -24,6 +24,7 @@ class PointsModel : public MeasurementModel {
   HarmonicNoise harmonic_noise() const override;
   std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+  Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 
  private:
   std::span<const double> station_part(std::span<const double> correction) const;

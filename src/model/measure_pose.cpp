@@ -38,6 +38,7 @@ PoseModel::PoseModel(const MeasurementSpec& spec)
   rows_ = int(spec_.components.size());
   for (const int c : spec_.components)
     readings_.push_back({std::string("pose.") + displacement_names[std::size_t(c)], c < 3 ? "m" : "rad"});
+  if (points_ != nullptr) fitted_ = fitted_pose_covariance(*points_, Eigen::Isometry3d::Identity());
   turns_ = int(std::count_if(spec_.components.begin(), spec_.components.end(), [](int c) { return c > 2; }));
 }
 
@@ -103,10 +104,36 @@ std::optional<Eigen::Matrix<double, 6, 6>> PoseModel::tip_covariance() const {
 
 void PoseModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const {
   const Eigen::Matrix<double, 6, 6> full =
-      points_ == nullptr ? spec_.covariance : fitted_pose_covariance(*points_, sighting.X_MeasureTip);
+      points_ == nullptr ? spec_.covariance : fitted_covariance(sighting.X_MeasureTip.linear());
   for (Eigen::Index i = 0; i < rows_; ++i)
     for (Eigen::Index j = 0; j < rows_; ++j)
       covariance(i, j) = full(spec_.components[std::size_t(i)], spec_.components[std::size_t(j)]) / repeats_;
+}
+
+Twist PoseModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  Eigen::Vector3d by_point = Eigen::Vector3d::Zero(), by_turn = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < rows_; ++i)
+    if (const int c = spec_.components[std::size_t(i)]; c < 3)
+      by_point += Eigen::Vector3d::Unit(c).cross(Eigen::Vector3d(f.twist_rows.row(i).tail<3>()));
+  if (points_ != nullptr) {
+    // The covariance turns with the tip: its change is Ω Σ + Σ Ωᵀ.
+    Eigen::Matrix<double, 6, 6> slope = Eigen::Matrix<double, 6, 6>::Zero();
+    for (Eigen::Index i = 0; i < rows_; ++i)
+      for (Eigen::Index j = 0; j < rows_; ++j)
+        slope(spec_.components[std::size_t(i)], spec_.components[std::size_t(j)]) = f.covariance(i, j) / repeats_;
+    const Eigen::Matrix<double, 6, 6> product = 2 * slope * fitted_covariance(sighting.X_MeasureTip.linear());
+    for (const int b : {0, 3})
+      by_turn += Eigen::Vector3d(product(b + 2, b + 1) - product(b + 1, b + 2), product(b, b + 2) - product(b + 2, b),
+                                 product(b + 1, b) - product(b, b + 1));
+  }
+  return change_by_motion(sighting.X_MeasureTip.translation(), by_point, by_turn);
+}
+
+Eigen::Matrix<double, 6, 6> PoseModel::fitted_covariance(const Eigen::Matrix3d& R) const {
+  Eigen::Matrix<double, 6, 6> turned;
+  for (const int i : {0, 3})
+    for (const int j : {0, 3}) turned.block<3, 3>(i, j) = R * fitted_.block<3, 3>(i, j) * R.transpose();
+  return turned;
 }
 
 }  // namespace posewright

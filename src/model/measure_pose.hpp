@@ -28,10 +28,15 @@ class PoseModel : public MeasurementModel {
   HarmonicNoise harmonic_noise() const override;
   std::optional<Eigen::Matrix<double, 6, 6>> tip_covariance() const override;
   void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const override;
+  Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 
  private:
+  /// Of points whose noise has no direction: that at the measurement frame's own axes, turned.
+  Eigen::Matrix<double, 6, 6> fitted_covariance(const Eigen::Matrix3d& R) const;
+
   PoseMeasurement spec_;
   std::unique_ptr<MeasurementModel> points_;  // of photogrammetry
+  Eigen::Matrix<double, 6, 6> fitted_ = Eigen::Matrix<double, 6, 6>::Zero();
   double repeats_;
   int turns_ = 0;  // how many of rx, ry, rz are read
 };

@@ -1,6 +1,8 @@
 #include "posewright/model/measurement_model.hpp"
 
+#include <Eigen/Geometry>
 #include <stdexcept>
+#include <vector>
 
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
@@ -11,6 +13,9 @@ namespace {
 
 // Smallest pivot of the scaled normal matrix of the pose fit that still counts as six independent degrees of freedom.
 constexpr double fit_pivot = 1e-6;
+
+// Of the central differences in the tip's pose, m or rad: their error is about its square.
+constexpr double pose_step = 1e-5;
 
 }  // namespace
 
@@ -30,7 +35,54 @@ void MeasurementModel::shifted(const Eigen::VectorXd& predicted, const Eigen::Ve
   out = predicted + change;
 }
 
+Twist MeasurementModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  static thread_local Eigen::MatrixXd rows, noise;
+  static thread_local Eigen::VectorXd column;
+  rows.resize(rows_, 6);
+  noise.resize(rows_, rows_);
+  column.resize(rows_);
+  const Eigen::Isometry3d& X = sighting.X_MeasureTip;
+  Eigen::Isometry3d near;
+  const auto value = [&] {
+    const Sighting there{near, sighting.correction, sighting.station};
+    rows_of_twists(there, Twists::Identity(6, 6), rows);
+    covariance(there, noise);
+    double sum = f.twist_rows.cwiseProduct(rows).sum() + f.covariance.cwiseProduct(noise).sum();
+    for (std::size_t i = 0; i < f.own.size(); ++i) {
+      if (Twist twist; motion(there, f.own[i], &twist)) {
+        sum += f.own_motions.col(Eigen::Index(i)).dot(twist);
+        continue;
+      }
+      own_column(there, f.own[i], column);
+      sum += f.own_columns.col(Eigen::Index(i)).dot(column);
+    }
+    return sum;
+  };
+  Eigen::Vector3d shift, turn;
+  for (int k = 0; k < 3; ++k) {
+    double ends[2], turned[2];
+    for (const int side : {0, 1}) {
+      const double step = side == 0 ? -pose_step : pose_step;
+      near = X;
+      near.translation()[k] += step;
+      ends[side] = value();
+      near = X;
+      near.linear() = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(k)) * X.linear();
+      turned[side] = value();
+    }
+    shift[k] = (ends[1] - ends[0]) / (2 * pose_step);
+    turn[k] = (turned[1] - turned[0]) / (2 * pose_step);
+  }
+  return change_by_motion(X.translation(), shift, turn);
+}
+
 bool MeasurementModel::sees(const Sighting&) const { return true; }
+
+std::optional<int> MeasurementModel::margins() const {
+  return unseen_reason_.empty() ? std::optional(0) : std::nullopt;
+}
+
+void MeasurementModel::margins_at(const Sighting&, std::span<double>) const {}
 
 Eigen::Matrix<double, 6, 6> fitted_pose_covariance(const MeasurementModel& measurement, const Eigen::Isometry3d& X) {
   const Eigen::Index rows = measurement.rows();

@@ -21,4 +21,18 @@ Eigen::Matrix3d point_covariance(const PointNoise& noise, const Eigen::Vector3d&
   return std::visit(CovarianceAt{p_Station}, noise);
 }
 
+Eigen::Vector3d point_covariance_change(const PointNoise& noise, const Eigen::Vector3d& p_Station,
+                                        const Eigen::Matrix3d& slope) {
+  const auto* tracker = std::get_if<TrackerNoise>(&noise);
+  const double distance = p_Station.norm();
+  if (tracker == nullptr || !(distance > 0)) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d beam = p_Station / distance, along_slope = slope * beam;
+  const double along = tracker->range + tracker->range_per_m * distance,
+               across = tracker->transverse + tracker->angle * distance;
+  // σ⊥² tr A + (σ∥² − σ⊥²) bᵀ A b, b = p/‖p‖.
+  const double by_across = 2 * across * tracker->angle, in_beam = beam.dot(along_slope);
+  const double by_distance = by_across * slope.trace() + (2 * along * tracker->range_per_m - by_across) * in_beam;
+  return by_distance * beam + 2 * (along * along - across * across) / distance * (along_slope - in_beam * beam);
+}
+
 }  // namespace posewright

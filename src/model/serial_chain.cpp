@@ -41,6 +41,15 @@ Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout
   return frame;
 }
 
+/// Corrections may leave out the tool's (an instrument with targets has none): pads them. Null: none.
+using PaddedCorrections = std::array<double, 8 * max_joints + 12>;
+const double* padded_corrections(std::span<const double> correction, int count, PaddedCorrections& padded) {
+  if (correction.empty()) return nullptr;
+  padded.fill(0.0);
+  std::copy_n(correction.begin(), std::min(correction.size(), std::size_t(count)), padded.begin());
+  return padded.data();
+}
+
 }  // namespace
 
 ChainLayout::ChainLayout(const ChainDescription& chain) : offset(chain.coordinates.size(), 0) {
@@ -125,14 +134,8 @@ HarmonicColumns SerialChain::harmonic_columns(std::span<const int> selected, std
 void SerialChain::linearise_deflected(std::span<const double> q, std::span<const double> deflection,
                                       std::span<const double> correction, std::span<const int> selected,
                                       Eigen::Isometry3d& X, Twists& twists, Twists* reading_twists) const {
-  // Corrections may leave out the tool's (an instrument with targets has none): pad them.
-  std::array<double, 8 * max_joints + 12> padded;
-  const double* all = nullptr;
-  if (!correction.empty()) {
-    padded.fill(0.0);
-    std::copy_n(correction.begin(), std::min(correction.size(), std::size_t(layout_.count)), padded.begin());
-    all = padded.data();
-  }
+  PaddedCorrections padded;
+  const double* all = padded_corrections(correction, layout_.count, padded);
   ChainState state;
   const Frame<double> tip =
       run_chain(chain_, layout_, q.data(), deflection.empty() ? nullptr : deflection.data(), all, state);
@@ -167,6 +170,64 @@ void SerialChain::linearise_deflected(std::span<const double> q, std::span<const
     }
   }
   X = isometry_of(tip);
+}
+
+bool SerialChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                            std::span<double> gradient) const {
+  pull_back_deflected(at.q, {}, at.correction, selected, f, gradient);
+  return true;
+}
+
+void SerialChain::pull_back_deflected(std::span<const double> q, std::span<const double> deflection,
+                                      std::span<const double> correction, std::span<const int> selected,
+                                      const TipAdjoint& f, std::span<double> gradient,
+                                      std::span<double> by_deflection) const {
+  PaddedCorrections padded;
+  const double* all = padded_corrections(correction, layout_.count, padded);
+  ChainState state;
+  run_chain(chain_, layout_, q.data(), deflection.empty() ? nullptr : deflection.data(), all, state);
+  const std::size_t joints = chain_.joints.size();
+  // Of what joints before the k-th carry: f's change by a twist of all of it.
+  std::array<Twist, max_joints + 1> carried;
+  std::fill_n(carried.begin(), joints + 1, Twist::Zero());
+  carried[joints] = f.tip;
+  const auto add_joints = [&](int coordinate, const Twist& slope) {
+    for (const int k : joints_of_coordinate_[std::size_t(coordinate)])
+      carried[std::size_t(k)] +=
+          chain_.joints[std::size_t(k)].multiplier * carried_change(state.motion[std::size_t(k)], slope);
+  };
+  const auto motion_along = [&](int coordinate, const Twist& slope) {
+    double sum = 0;
+    for (const int k : joints_of_coordinate_[std::size_t(coordinate)])
+      sum += chain_.joints[std::size_t(k)].multiplier * state.motion[std::size_t(k)].dot(slope);
+    return sum;
+  };
+  for (std::size_t c = 0; c < selected.size(); ++c) {
+    if (selected[c] >= layout_.count) continue;
+    const Twist slope = f.twists.col(Eigen::Index(c));
+    const Column& column = columns_[std::size_t(selected[c])];
+    if (column.kind < 6) {
+      // The base's own axes are carried by no joint.
+      if (column.joint >= 0)
+        carried[std::size_t(column.joint)] +=
+            carried_change(state.displacement[std::size_t(column.joint + 1)].twist(column.kind), slope);
+      continue;
+    }
+    const int coordinate = chain_.joints[std::size_t(column.joint)].coordinate;
+    add_joints(coordinate, column.kind == 7 ? Twist(q[std::size_t(coordinate)] * slope) : slope);
+    if (column.kind == 7) gradient[std::size_t(coordinate)] += motion_along(coordinate, slope);
+  }
+  const auto gear = [&](std::size_t i) { return 1 + (all == nullptr ? 0.0 : all[layout_.offset[i] + 1]); };
+  for (Eigen::Index i = 0; i < f.reading_twists.cols(); ++i)
+    add_joints(int(i), gear(std::size_t(i)) * f.reading_twists.col(i));
+  Twist beyond = Twist::Zero();
+  for (std::size_t k = joints; k-- > 0;) {
+    beyond += carried[k + 1];
+    const auto coordinate = std::size_t(chain_.joints[k].coordinate);
+    const double change = chain_.joints[k].multiplier * state.motion[k].dot(beyond);
+    gradient[coordinate] += gear(coordinate) * change;
+    if (!by_deflection.empty()) by_deflection[coordinate] += change;
+  }
 }
 
 }  // namespace posewright

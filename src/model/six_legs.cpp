@@ -286,6 +286,63 @@ void SixLegs::loops_at(const Frame<S>& platform, std::span<const S> rho, std::sp
   }
 }
 
+bool SixLegs::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
+                              std::span<const int> selected, const Loops& slope, Twist& by_platform,
+                              Eigen::VectorXd& by_actuators) const {
+  const Eigen::Isometry3d X = platform_pose(q);
+  const Eigen::Matrix3d& R = X.linear();
+  const auto entries = entries_of(spec_.actuation);
+  const bool slides = spec_.actuation == LegActuation::slide;
+  const int first_deformation = leg_count * per_leg_;
+  const Deformation deformation(slides && !own.empty() ? own.subspan(std::size_t(first_deformation)) : own.first(0));
+  for (int i = 0; i < leg_count; ++i) {
+    const double slide = slides ? rho[std::size_t(i)] : 0.0;
+    const PlacedLeg leg(spec_.legs[std::size_t(i)], entries, leg_part(own, i, per_leg_));
+    const double lift = deformation.none ? 0.0 : deformation.lift<double>(i, rho, reference_rho_);
+    const Eigen::Vector3d joint = X * Eigen::Vector3d(leg.b + lift * Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d h = joint - leg.a - slide * leg.u;
+    const double length_now = h.norm();
+    const Eigen::Vector3d e = h / length_now, up = R.col(2);
+    // h of the loops by the leg's direction e, and by e in the platform's axes; see do_loops() for what they are in.
+    Eigen::Vector3d by_e = Eigen::Vector3d::Zero(), by_e_platform = Eigen::Vector3d::Zero();
+    for (std::size_t c = 0; c < selected.size(); ++c) {
+      const int j = selected[c];
+      const double a = slope.parameter(i, Eigen::Index(c));
+      if (j < 0) continue;
+      if (j >= first_deformation) {
+        const int by = lifting_actuator(j - first_deformation, i);
+        if (by < 0) continue;
+        by_e_platform.z() -= a * (rho[std::size_t(by)] - reference_rho_[std::size_t(by)]);
+        by_actuators[by] -= a * up.dot(e);
+        continue;
+      }
+      if (j / per_leg_ != i) continue;
+      const Entry entry = entries[std::size_t(j % per_leg_)];
+      if (entry <= az) by_e[entry] += a;
+      else if (entry <= bz) by_e_platform[entry - bx] -= a;
+      else if (entry <= uy) {
+        const Eigen::Vector3d along =
+            Eigen::Vector3d::Unit(entry - ux) - leg.u[entry - ux] / leg.u.z() * Eigen::Vector3d::UnitZ();
+        by_e += a * slide * along;
+        by_actuators[i] += a * along.dot(e);
+      }
+    }
+    if (slides) by_e += slope.actuator(i, i) * leg.u;
+    for (int j = 0; j < leg_count && !deformation.none; ++j)
+      by_e_platform.z() -= slope.actuator(i, j) * deformation.K[std::size_t(6 * i + j)];
+    const Eigen::Vector3d force = slope.platform.row(i).head<3>(), moment = slope.platform.row(i).tail<3>();
+    const Eigen::Vector3d in_base = R * by_e_platform;
+    by_e += in_base - force - moment.cross(joint);
+    const Eigen::Vector3d by_h = (by_e - e.dot(by_e) * e) / length_now, by_joint = by_h - e.cross(moment);
+    if (slides) by_actuators[i] -= by_h.dot(leg.u);
+    for (int j = 0; j < leg_count && !deformation.none; ++j)
+      by_actuators[j] += deformation.K[std::size_t(6 * i + j)] * by_joint.dot(up);
+    by_platform.head<3>() += by_joint;
+    by_platform.tail<3>() += joint.cross(by_joint) + in_base.cross(e);
+  }
+  return true;
+}
+
 void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
                        std::span<const int> selected, Loops& out) const {
   loops_at<double>(frame_of(platform_pose(q)), rho, own, selected, out);

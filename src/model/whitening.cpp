@@ -73,4 +73,27 @@ bool whitened_block(const IdentificationModel& model, std::span<const double> q,
   return true;
 }
 
+/// Theory.md eq. (48). With J = Uᵀ G, U Uᵀ = Σ⁻¹ on the rows' span: ∂f/∂G = U ∂f/∂J, ∂f/∂Σ = −½ U (∂f/∂J Jᵀ) Uᵀ; the
+/// product is symmetric, for f does not change if the rows of J are turned.
+bool whitened_gradient(const IdentificationModel& model, std::span<const double> q, std::span<const int> selected,
+                       const BlockArray::RowMatrix& block, const BlockArray::RowMatrix& slope, Linearisation& scratch,
+                       std::span<double> gradient) {
+  static thread_local Eigen::MatrixXd U, by_G, by_covariance, turned;
+  const Eigen::Index width = block.rows();
+  U.setIdentity(model.rows(), width);
+  if (width < model.rows()) {
+    if (scratch.random_coefficients.cols() > 0) scratch.small_factor.matrixU().solveInPlace(U.topRows(width));
+    U.applyOnTheLeft(scratch.compression.householderQ());
+    if (scratch.covariance.isDiagonal(0.0))
+      U = scratch.covariance.diagonal().cwiseSqrt().cwiseInverse().asDiagonal() * U;
+    else scratch.factor.matrixU().solveInPlace(U);
+  } else {
+    scratch.factor.matrixU().solveInPlace(U);
+  }
+  turned.noalias() = slope * block.transpose();
+  by_G.noalias() = U * slope;
+  by_covariance.noalias() = -0.25 * U * (turned + turned.transpose()) * U.transpose();
+  return model.pull_back(q, selected, by_G, by_covariance, gradient);
+}
+
 }  // namespace posewright

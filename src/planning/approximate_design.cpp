@@ -18,6 +18,8 @@ namespace {
 // number.
 constexpr std::size_t most_settled = 1200;
 constexpr double settled_gap = 1e-6;
+// Less is what an interior point leaves on candidates that are in no solution.
+constexpr double trace_of_weight = 1e-6;
 
 /// Indices of the `count` largest values among `among`, ties by index.
 std::vector<int> largest(const std::vector<double>& value, std::vector<int> among, std::size_t count) {
@@ -96,6 +98,13 @@ ApproximateDesign all_alike(const BlockArray& blocks, const InformationFunction&
 
 }  // namespace
 
+std::vector<int> ApproximateDesign::weighted() const {
+  std::vector<int> result;
+  for (std::size_t i = 0; i < support.size(); ++i)
+    if (weights[i] > trace_of_weight) result.push_back(support[i]);
+  return result;
+}
+
 double ApproximateDesign::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
 
 ApproximateDesign solve_approximate_design(const BlockArray& blocks, const InformationFunction& function,
@@ -114,7 +123,8 @@ ApproximateDesign solve_approximate_design(const BlockArray& blocks, const Infor
   if (std::abs(options.cap * double(n) - 1) < 1e-12) return all_alike(blocks, function, options);
   RestrictedDesign restricted(blocks, function, options.cap, options.prior);
   std::size_t size = start;
-  while (!restricted.set_candidates(first_working_set(blocks, size))) {
+  const bool warm = options.start.size() >= 2 * top && restricted.set_candidates(options.start);
+  while (!warm && !restricted.set_candidates(first_working_set(blocks, size))) {
     if (size >= n)
       throw CannotDo("the parameters cannot be identified from these candidates: the information is singular");
     size *= 4;

@@ -7,13 +7,18 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "posewright/planning/block_gradient.hpp"
+
 namespace posewright {
 namespace {
 
 // Where SLSQP and SBPLX stop: relative change of the coordinates, in units of their range.
 constexpr double coordinate_tolerance = 1e-7;
-// Step of the central differences, in units of the range: the error of the derivative is about its square.
-constexpr double difference_step = 1e-5;
+// Searches end this far within the margins, in their units; step of the margins' central differences, in units of the
+// range; a margin where there is none.
+constexpr double kept_margin = 1e-6, margin_step = 1e-6, no_margin = -0.1;
+// A look around without gradient takes this part of the evaluations.
+constexpr int look_around = 2;
 // First step of SBPLX, in units of the range.
 constexpr double first_step = 0.05;
 
@@ -27,11 +32,12 @@ class Evaluator {
         objective_(objective),
         accept_(accept),
         block_(rows, columns),
-        low_(rows, columns),
-        high_(rows, columns),
+        gradient_(space, rows, columns),
+        moving_(gradient_.moving()),
+        margin_count_(std::size_t(space.margins().value_or(0))),
+        above_(margin_count_),
+        below_(margin_count_),
         q_(start) {
-    for (std::size_t k = 0; k < axes_.size(); ++k)
-      if (axes_[k].continuous && axes_[k].upper > axes_[k].lower) moving_.push_back(k);
     best_.q = std::move(start);
     best_.value = -std::numeric_limits<double>::infinity();
     if (probe_.perhaps_feasible(q_) && block_.at(probe_, q_)) best_.value = objective_.value(block_.map());
@@ -53,6 +59,37 @@ class Evaluator {
     return std::isfinite(value) ? value : floor_ - 1 - std::abs(floor_);
   }
 
+  /// Whether the smooth bounds of the feasible set are known: then f counts beyond them too, and margins() holds the
+  /// search.
+  bool follows_margins() const { return margin_count_ > 0; }
+  std::size_t margin_count() const { return margin_count_; }
+
+  /// From now on beyond them there is nothing, and nothing below what is reached counts.
+  void leave_margins() {
+    margin_count_ = 0;
+    floor_ = highest_ = best_.value;
+  }
+
+  /// What must be ≤ 0: the margins less a little, so that where they end is still within; and their derivatives by u.
+  void bounds(const std::vector<double>& u, double* result, double* gradient) {
+    place(u);
+    margins_at(q_, result);
+    if (gradient == nullptr) return;
+    std::vector<double> near = q_;
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+      const std::size_t k = moving_[i];
+      const double up = std::min(axes_[k].upper, q_[k] + margin_step * width(k)),
+                   down = std::max(axes_[k].lower, q_[k] - margin_step * width(k));
+      near[k] = up;
+      margins_at(near, above_.data());
+      near[k] = down;
+      margins_at(near, below_.data());
+      near[k] = q_[k];
+      for (std::size_t m = 0; m < margin_count_; ++m)
+        gradient[m * moving_.size() + i] = (above_[m] - below_[m]) / (up - down) * width(k);
+    }
+  }
+
   /// The highest that is feasible in every respect: what takes long to check is asked of few.
   const AscentResult& best() {
     for (; !improvements_.empty(); improvements_.pop_back()) {
@@ -66,6 +103,12 @@ class Evaluator {
   bool can_move() const { return !moving_.empty() && std::isfinite(best_.value); }
 
  private:
+  /// Where they have no values, nothing is within.
+  void margins_at(std::span<const double> q, double* result) {
+    if (!probe_.margins(q, std::span(result, margin_count_))) std::fill_n(result, margin_count_, no_margin);
+    for (std::size_t m = 0; m < margin_count_; ++m) result[m] = kept_margin - result[m];
+  }
+
   double width(std::size_t k) const { return axes_[k].upper - axes_[k].lower; }
 
   void place(const std::vector<double>& u) {
@@ -81,7 +124,7 @@ class Evaluator {
     const double value = objective_.value(block_.map());
     // No step is taken to where it is worse than at the start: whether one could, nobody needs to know.
     if (value <= floor_) return value;
-    if (!probe_.perhaps_feasible(q_)) return infeasible;
+    if (!probe_.perhaps_feasible(q_)) return follows_margins() ? value : infeasible;
     if (value > highest_ && (!accept_ || accept_(q_))) {
       highest_ = value;
       improvements_.emplace_back(value, q_);
@@ -92,35 +135,53 @@ class Evaluator {
   void differentiate(double value, std::vector<double>& gradient) {
     std::fill(gradient.begin(), gradient.end(), 0.0);
     if (!std::isfinite(value)) return;
-    const BlockArray::RowMatrix slope = 2 * block_.map() * objective_.gradient(block_.map());
-    std::vector<double> near = q_;
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-      const std::size_t k = moving_[i];
-      const double step = difference_step * width(k);
-      const double up = std::min(axes_[k].upper, q_[k] + step), down = std::max(axes_[k].lower, q_[k] - step);
-      near[k] = up;
-      const bool there = high_.at(probe_, near);
-      near[k] = down;
-      const bool here = low_.at(probe_, near);
-      near[k] = q_[k];
-      if (there && here) gradient[i] = slope.cwiseProduct(high_.map() - low_.map()).sum() / (up - down) * width(k);
-    }
+    slope_.noalias() = 2 * block_.map() * objective_.gradient(block_.map());
+    gradient_.at(probe_, q_, slope_, gradient);
   }
 
   const std::vector<ConfigurationSpace::Axis>& axes_;
   ConfigurationSpace::Probe& probe_;
   BlockObjective& objective_;
   const std::function<bool(std::span<const double>)>& accept_;
-  ProbedBlock block_, low_, high_;
+  ProbedBlock block_;
+  BlockGradient gradient_;
+  BlockArray::RowMatrix slope_;
+  const std::vector<std::size_t>& moving_;
+  std::size_t margin_count_;
+  std::vector<double> above_, below_;
   std::vector<double> q_;
-  std::vector<std::size_t> moving_;
   AscentResult best_;
   std::vector<std::pair<double, std::vector<double>>> improvements_;  // each higher than the one before
   double floor_ = 0.0, highest_ = 0.0;
 };
 
+void call_bounds(unsigned, double* result, unsigned size, const double* u, double* gradient, void* data) {
+  static_cast<Evaluator*>(data)->bounds({u, u + size}, result, gradient);
+}
+
 double call(const std::vector<double>& u, std::vector<double>& gradient, void* data) {
   return (*static_cast<Evaluator*>(data))(u, gradient);
+}
+
+void run(nlopt::algorithm algorithm, Evaluator& evaluator, int evaluations) {
+  std::vector<double> u = evaluator.unit_start();
+  nlopt::opt method(algorithm, unsigned(u.size()));
+  method.set_lower_bounds(0.0);
+  method.set_upper_bounds(1.0);
+  method.set_max_objective(call, &evaluator);
+  method.set_xtol_abs(coordinate_tolerance);
+  method.set_maxeval(evaluations);
+  if (algorithm == nlopt::LN_SBPLX) method.set_initial_step(first_step);
+  if (evaluator.follows_margins())
+    method.add_inequality_mconstraint(call_bounds, &evaluator, std::vector<double>(evaluator.margin_count(), 0.0));
+  double value = 0.0;
+  try {
+    method.optimize(u, value);
+  } catch (const nlopt::roundoff_limited&) {
+    // As good as the arithmetic allows: the best configuration seen stands.
+  } catch (const std::runtime_error&) {
+    // NLopt's "generic failure", e.g. of SLSQP's line search: the same.
+  }
 }
 
 }  // namespace
@@ -130,22 +191,13 @@ AscentResult ascend(const ConfigurationSpace& space, ConfigurationSpace::Probe& 
                     const std::function<bool(std::span<const double>)>& accept) {
   Evaluator evaluator(space, probe, objective, rows, columns, std::move(start), accept);
   if (!evaluator.can_move()) return evaluator.best();
-  std::vector<double> u = evaluator.unit_start();
-  nlopt::opt method(space.is_box() ? nlopt::LD_SLSQP : nlopt::LN_SBPLX, unsigned(u.size()));
-  method.set_lower_bounds(0.0);
-  method.set_upper_bounds(1.0);
-  method.set_max_objective(call, &evaluator);
-  method.set_xtol_abs(coordinate_tolerance);
-  method.set_maxeval(max_evaluations);
-  if (!space.is_box()) method.set_initial_step(first_step);
-  double value = 0.0;
-  try {
-    method.optimize(u, value);
-  } catch (const nlopt::roundoff_limited&) {
-    // As good as the arithmetic allows: the best configuration seen stands.
-  } catch (const std::runtime_error&) {
-    // NLopt's "generic failure", e.g. of SLSQP's line search: the same.
-  }
+  const bool smooth = space.margins().has_value();
+  run(smooth ? nlopt::LD_SLSQP : nlopt::LN_SBPLX, evaluator, max_evaluations);
+  if (!evaluator.follows_margins()) return evaluator.best();
+  // Where margins end a search it may have found but the nearest place of many: one without gradient looks around it.
+  evaluator.best();
+  evaluator.leave_margins();
+  run(nlopt::LN_SBPLX, evaluator, max_evaluations / look_around);
   return evaluator.best();
 }
 

@@ -55,8 +55,18 @@ ApproximateDesign extended_bound(const BlockArray& candidates, const Approximate
   const auto room = std::max(std::size_t(10 * candidates.columns()), std::size_t(4 / options.cap));
   std::vector<int> kept = united(largest(design.sensitivity, room), design.support);
   ApproximateDesign best;
+  // Weights of the round before: on candidates by their own index, on more from the number of candidates on.
+  std::vector<int> weighted = design.weighted();
+  const int count = int(candidates.count());
+  ApproximateDesignOptions warm = options;
   for (int round = 0; round < most_rounds; ++round) {
-    ApproximateDesign now = solve_approximate_design(joined(candidates, kept, more), function, options, watch);
+    warm.start.clear();
+    for (const int i : weighted)
+      warm.start.push_back(i < count ? int(std::lower_bound(kept.begin(), kept.end(), i) - kept.begin())
+                                     : i - count + int(kept.size()));
+    ApproximateDesign now = solve_approximate_design(joined(candidates, kept, more), function, warm, watch);
+    weighted = now.weighted();
+    for (int& i : weighted) i = i < int(kept.size()) ? kept[std::size_t(i)] : i - int(kept.size()) + count;
     std::vector<double> d;
     sensitivities(candidates, now.factor, options.threads, d);
     std::vector<double> all = d;

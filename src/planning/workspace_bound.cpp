@@ -235,6 +235,10 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
   int evaluations = options.evaluations / 4;
   Random random(options.seed, 0);
   const auto probe = space.probe();
+  // Each round begins with the weights of the one before and what came in.
+  for (const int i : on_candidates.weighted())
+    weights.start.push_back(
+        int(std::lower_bound(pool.original.begin(), pool.original.end(), i) - pool.original.begin()));
   const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
   const bool look_into_boxes = blocks.count() >= few_candidates && options.proof.seconds != 0.0 && !space.is_box() &&
                                space.enclosure(Eigen::MatrixXd::Identity(blocks.columns(), 1)) != nullptr;
@@ -271,6 +275,8 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     if (result.stopped) break;
     if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
+    weights.start = design.weighted();
+    for (std::size_t i = 0; i < found.size(); ++i) weights.start.push_back(int(pool.blocks.count() + i));
     append(pool, found, *probe);
   }
   result.factor = design.factor;

@@ -237,7 +237,7 @@ namespace {
 constexpr double loose_proof = 0.05;
 
 /// Over the whole workspace: proved where the largest d is, else as far as searches tell.
-Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, double offset, bool box) {
+Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, double offset, bool smooth) {
   const WorkspaceProof& proof = found.proof;
   const double proved = proof.bound + found.degree * std::log(double(poses)) + offset;
   const bool loose = proof.why_not.empty() && proof.bound - found.bound > loose_proof * found.degree;
@@ -254,7 +254,7 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
       0.0,
       found.bound_for(poses) + offset,
       found.max_ratio,
-      fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, box ? "SLSQP" : "SBPLX"),
+      fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, smooth ? "SLSQP" : "SBPLX"),
       false,
       proof.why_not};
   if (loose) {
@@ -357,7 +357,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   // A planner that proves something knows more than the weights alone.
   if (result.design.bound && !request.reserve)
     result.certificate.bound = std::min(result.certificate.bound, *result.design.bound + offset);
-  if (workspace) result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->is_box());
+  if (workspace)
+    result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->margins().has_value());
   // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
   // miss.
   if (auto& space_wide = result.certificate.workspace; space_wide && !space_wide->proved)

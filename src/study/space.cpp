@@ -40,6 +40,55 @@ class StudyProbe : public ConfigurationSpace::Probe {
   }
 
   bool block(std::span<const double> q, double* rows, int stride) override {
+    if (!fill(q)) return false;
+    BlockArray::Map(rows, white_.rows(), white_.cols(), Eigen::OuterStride<>(stride)) = white_;
+    return true;
+  }
+
+  bool margins(std::span<const double> q, std::span<double> out) override {
+    std::size_t first = 0;
+    for (const SpacePart& part : parts_) {
+      const auto own = std::size_t(part.workspace->margins().value_or(0));
+      if (!part.workspace->margins_at(q, out.subspan(first, own))) return false;
+      first += own;
+    }
+    return true;
+  }
+
+  bool gradient(std::span<const double> q, const BlockArray::RowMatrix& slope, std::span<double> result) override {
+    // What features leave at q is noise that depends on q in ways of its own.
+    for (const SpacePart& part : parts_)
+      if (part.features != nullptr) return false;
+    if (!std::equal(q.begin(), q.end(), filled_.begin(), filled_.end()) && !fill(q)) return false;
+    slope_ = slope;
+    divide_by_transpose(slope_);
+    std::fill(result.begin(), result.end(), 0.0);
+    of_part_.resize(result.size());
+    Eigen::Index column = 0;
+    for (std::size_t v = 0; v < parts_.size(); ++v) {
+      const SpacePart& part = parts_[v];
+      const Eigen::Index rows = own_[v].rows(),
+                         width = is_direct(part) ? Eigen::Index(part.selected.size()) : part.mix.cols();
+      const auto raw_slope = slope_.block(first_row_[v], column, rows, width);
+      if (is_direct(part)) {
+        own_block_ = raw_.block(first_row_[v], column, rows, width);
+        own_slope_ = raw_slope;
+      } else {
+        own_block_ = own_[v];
+        own_slope_.noalias() = raw_slope * part.mix.transpose();
+      }
+      if (!whitened_gradient(*part.model, q, linearised_[v], own_block_, own_slope_, scratch_[v], of_part_))
+        return false;
+      for (std::size_t k = 0; k < result.size(); ++k) result[k] += of_part_[k];
+      column += width;
+    }
+    return true;
+  }
+
+ private:
+  /// The block at q in raw and in the task's columns.
+  bool fill(std::span<const double> q) {
+    filled_.clear();
     Eigen::Index column = 0;
     for (std::size_t v = 0; v < parts_.size(); ++v) {
       const SpacePart& part = parts_[v];
@@ -60,11 +109,10 @@ class StudyProbe : public ConfigurationSpace::Probe {
     white_ = raw_;
     divide_by_upper(white_);
     if (!white_.allFinite()) return false;
-    BlockArray::Map(rows, white_.rows(), white_.cols(), Eigen::OuterStride<>(stride)) = white_;
+    filled_.assign(q.begin(), q.end());
     return true;
   }
 
- private:
   /// Far enough from every pose that is measured.
   bool is_new(std::span<const double> q) const {
     for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
@@ -85,6 +133,20 @@ class StudyProbe : public ConfigurationSpace::Probe {
     }
   }
 
+  /// X R⁻ᵀ.
+  void divide_by_transpose(BlockArray::RowMatrix& X) const {
+    const Eigen::Index m = X.cols();
+    for (Eigen::Index i = 0; i < X.rows(); ++i) {
+      double* x = X.row(i).data();
+      for (Eigen::Index j = m; j-- > 0;) {
+        const double* r = rows_of_R_.row(j).data();
+        double value = x[j];
+        for (Eigen::Index k = j + 1; k < m; ++k) value -= r[k] * x[k];
+        x[j] = value / r[j];
+      }
+    }
+  }
+
   static bool is_direct(const SpacePart& part) { return part.mix.size() == 0 && part.features == nullptr; }
 
   const std::vector<SpacePart>& parts_;
@@ -96,6 +158,9 @@ class StudyProbe : public ConfigurationSpace::Probe {
   std::vector<std::vector<int>> linearised_;  // columns of each part as its model gives them
   std::vector<BlockArray::RowMatrix> own_;    // of parts that are mixed or have features
   BlockArray::RowMatrix raw_, white_;
+  std::vector<double> filled_;  // q that these and scratch_ are of; empty: of none
+  BlockArray::RowMatrix slope_, own_slope_, own_block_;
+  std::vector<double> of_part_;
 };
 
 class StudyEnclosure : public ConfigurationSpace::Enclosure {
@@ -125,7 +190,7 @@ class StudySpace : public ConfigurationSpace {
              const Spacing& spacing, Eigen::MatrixXd R)
       : parts_(std::move(parts)), candidates_(candidates), measured_(std::move(measured)), spacing_(spacing), R_(std::move(R)) {
     for (const Coordinate& c : parts_.front().workspace->proposed())
-      axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad"});
+      axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad", c.values});
     // Poses that are there already are holes in the box.
     box_ = measured_.count() == 0 || spacing.unit.size() == 0;
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
@@ -133,6 +198,16 @@ class StudySpace : public ConfigurationSpace {
 
   const std::vector<Axis>& axes() const override { return axes_; }
   bool is_box() const override { return box_; }
+  std::optional<int> margins() const override {
+    if (measured_.count() > 0 && spacing_.unit.size() > 0) return std::nullopt;
+    int count = 0;
+    for (const SpacePart& part : parts_) {
+      const auto own = part.workspace->margins();
+      if (!own) return std::nullopt;
+      count += *own;
+    }
+    return count;
+  }
   HarmonicForms harmonic_forms(const WeightedConfigurations& where) const override {
     return harmonic_forms_of(parts_, axes_, R_, where);
   }

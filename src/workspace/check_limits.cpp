@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "checks.hpp"
 #include "posewright/model/pair_names.hpp"
@@ -12,6 +13,9 @@ class LimitsCheck : public SingleCheck {
  public:
   explicit LimitsCheck(std::vector<Coordinate> coordinates)
       : SingleCheck("limits"), coordinates_(std::move(coordinates)) {}
+
+  /// Searches stay within limits by themselves.
+  std::optional<int> margins() const override { return 0; }
 
  private:
   bool holds(std::span<const double> q) const override {
@@ -31,11 +35,25 @@ class CoupledCheck : public SingleCheck {
   CoupledCheck(std::string reason, std::vector<double> factors, double lower, double upper)
       : SingleCheck(std::move(reason)), factors_(std::move(factors)), lower_(lower), upper_(upper) {}
 
+  std::optional<int> margins() const override { return int(std::isfinite(lower_)) + int(std::isfinite(upper_)); }
+  bool margins_at(std::span<const double> q, std::span<double> out) const override {
+    const double range = std::isfinite(upper_ - lower_) && upper_ > lower_ ? upper_ - lower_ : 1.0;
+    const double at = sum(q);
+    std::size_t next = 0;
+    if (std::isfinite(lower_)) out[next++] = (at - lower_) / range;
+    if (std::isfinite(upper_)) out[next++] = (upper_ - at) / range;
+    return true;
+  }
+
  private:
   bool holds(std::span<const double> q) const override {
+    const double at = sum(q);
+    return at >= lower_ && at <= upper_;
+  }
+  double sum(std::span<const double> q) const {
     double sum = 0;
     for (std::size_t i = 0; i < q.size(); ++i) sum += factors_[i] * q[i];
-    return sum >= lower_ && sum <= upper_;
+    return sum;
   }
   std::vector<double> factors_;
   double lower_, upper_;

@@ -11,6 +11,10 @@ class MeasurableCheck : public SingleCheck {
  public:
   explicit MeasurableCheck(const IdentificationModel& model)
       : SingleCheck(model.unmeasurable_reason()), model_(model) {}
+  std::optional<int> margins() const override { return model_.measurable_margins(); }
+  bool margins_at(std::span<const double> q, std::span<double> out) const override {
+    return model_.measurable_margins_at(q, out);
+  }
 
  private:
   bool holds(std::span<const double> q) const override { return model_.measurable(q); }

@@ -62,6 +62,26 @@ class FeasibilityChecker : public ob::StateValidityChecker {
     return -1;
   }
 
+  std::optional<int> margins() const {
+    int count = 0;
+    for (const auto& check : checks_) {
+      const auto own = check->margins();
+      if (!own) return std::nullopt;
+      count += *own;
+    }
+    return count;
+  }
+
+  bool margins_at(std::span<const double> q, std::span<double> out) const {
+    std::size_t first = 0;
+    for (const auto& check : checks_) {
+      const auto own = std::size_t(check->margins().value_or(0));
+      if (!check->margins_at(q, out.subspan(first, own))) return false;
+      first += own;
+    }
+    return true;
+  }
+
   const std::vector<std::string>& reasons() const { return reasons_; }
 
  private:
@@ -181,6 +201,12 @@ double Workspace::share_of_coordinates_on_limits(std::span<const double> q) cons
     if (std::min(q[i] - c.lower, c.upper - q[i]) <= 1e-6 * width) ++at_limit;
   }
   return continuous == 0 ? 0.0 : double(at_limit) / double(continuous);
+}
+
+std::optional<int> Workspace::margins() const { return implementation_->checker->margins(); }
+
+bool Workspace::margins_at(std::span<const double> q, std::span<double> out) const {
+  return implementation_->checker->margins_at(q, out);
 }
 
 bool Workspace::on_boundary(std::span<const double> q, double actuator_share) const {

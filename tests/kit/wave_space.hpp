@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,10 +42,20 @@ class WaveSpace : public ConfigurationSpace {
   void check_first(Oracle quick) { quick_ = std::move(quick); }
   /// How often the whole oracle was asked for.
   long asked() const { return asked_; }
+  /// How often a block was.
+  long blocks_asked() const { return blocks_asked_; }
+  /// A smooth function that is ≥ 0 exactly where the oracle holds.
+  void bound_by(std::function<double(std::span<const double>)> margin) { margin_ = std::move(margin); }
+  /// Axis k is a choice between 0 and 1; candidates keep what they have, rounded.
+  void make_choice(std::size_t k) {
+    axes_[k].continuous = false;
+    axes_[k].choices = {0.0, 1.0};
+  }
   void allow_repeats() { spacing_.unit.resize(0); }
 
   const std::vector<Axis>& axes() const override { return axes_; }
   bool is_box() const override { return !oracle_; }
+  std::optional<int> margins() const override { return margin_ ? std::optional(1) : ConfigurationSpace::margins(); }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return configurations_[std::size_t(index)]; }
 
@@ -69,7 +80,12 @@ class WaveSpace : public ConfigurationSpace {
                  ? std::all_of(q.begin(), q.end(), [](double x) { return x >= 0 && x <= 1; }) && space_.quick_(q)
                  : feasible(q);
     }
+    bool margins(std::span<const double> q, std::span<double> out) override {
+      if (!out.empty()) out[0] = space_.margin_(q);
+      return true;
+    }
     bool block(std::span<const double> q, double* rows, int stride) override {
+      ++space_.blocks_asked_;
       space_.write(q, rows, stride);
       return true;
     }
@@ -90,7 +106,8 @@ class WaveSpace : public ConfigurationSpace {
 
   int rows_, columns_;
   Oracle oracle_, quick_;
-  mutable std::atomic<long> asked_{0};
+  std::function<double(std::span<const double>)> margin_;
+  mutable std::atomic<long> asked_{0}, blocks_asked_{0};
   std::vector<double> waves_;
   std::vector<Axis> axes_;
   Spacing spacing_;

@@ -10,6 +10,7 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/planning/ascent.hpp"
 #include "posewright/planning/extended_bound.hpp"
 #include "posewright/planning/workspace_bound.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -188,6 +189,82 @@ TEST(Continuous, NeverLeavesAHostileFeasibleSetAndNeverReturnsLess) {
       }
       EXPECT_NEAR(criterion->function().value(poses.blocks.all().transpose() * poses.blocks.all()), poses.value, 1e-9);
     }
+}
+
+TEST(Ascent, FollowsSmoothMarginsToTheBestPlaceOfADiscAndStaysInIt) {
+  const auto margin = [](std::span<const double> q) {
+    return 0.1 - (q[0] - 0.4) * (q[0] - 0.4) - (q[1] - 0.5) * (q[1] - 0.5);
+  };
+  class LargestTrace : public BlockObjective {
+   public:
+    double value(const BlockArray::ConstMap& J) override { return J.squaredNorm(); }
+    const Eigen::MatrixXd& gradient(const BlockArray::ConstMap&) override { return one_; }
+
+   private:
+    Eigen::MatrixXd one_ = Eigen::MatrixXd::Identity(5, 5);
+  };
+  int on_the_rim = 0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    WaveSpace space(2, 2, 5, 20, seed, [&](std::span<const double> q) { return margin(q) >= 0; });
+    space.bound_by(margin);
+    const auto probe = space.probe();
+    ProbedBlock block(2, 5);
+    LargestTrace f;
+    double highest = 0;
+    for (int i = 0; i <= 400; ++i)
+      for (int j = 0; j <= 400; ++j)
+        if (const std::vector<double> q{i / 400.0, j / 400.0}; space.inside(q) && block.at(*probe, q))
+          highest = std::max(highest, f.value(block.map()));
+    double reached = 0;
+    const long before = space.blocks_asked();
+    for (int i = 0; i < 20; ++i) {
+      const AscentResult end =
+          ascend(space, *probe, f, 2, 5, {space.candidate(i).begin(), space.candidate(i).end()}, 300);
+      EXPECT_TRUE(space.inside(end.q));
+      if (end.value > reached && margin(end.q) < 1e-4) ++on_the_rim;
+      reached = std::max(reached, end.value);
+    }
+    EXPECT_GT(reached, highest - 1e-4) << seed;
+    // A method without a gradient takes some hundred each.
+    EXPECT_LT(space.blocks_asked() - before, 20 * 120) << seed;
+  }
+  EXPECT_GT(on_the_rim, 0);
+}
+
+TEST(Continuous, MakesAnotherChoiceWhereThatIsWorthMore) {
+  int changed = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    // All candidates have made the first choice; half of what the other one offers must be better.
+    WaveSpace space(3, 2, 4, 1, seed);
+    space.make_choice(2);
+    BlockArray blocks(40, 2, 4);
+    PoseSet poses;
+    Random random(seed, 5);
+    const auto probe = space.probe();
+    poses.blocks = BlockArray(6, 2, 4);
+    for (std::size_t i = 0; i < 6; ++i) {
+      poses.configurations.push_back({random.uniform(), random.uniform(), 0.0});
+      poses.candidates.push_back(-1);
+      probe->block(poses.configurations[i], poses.blocks.row(i, 0), poses.blocks.stride());
+    }
+    const auto criterion = make_criterion("o1", plain_data(4));
+    DesignTask task{{&blocks, 0, 1}, criterion.get(), 6, nullptr};
+    task.space = &space;
+    poses.value = value_of_blocks(task, poses.blocks);
+    const double before = poses.value;
+    improve(task, poses, 1, Monitor{});
+    EXPECT_GE(poses.value, before);
+    BlockArray again(6, 2, 4);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double choice = poses.configurations[i][2];
+      EXPECT_TRUE(choice == 0.0 || choice == 1.0);
+      if (choice == 1.0) ++changed;
+      EXPECT_TRUE(space.inside(poses.configurations[i]));
+      probe->block(poses.configurations[i], again.row(i, 0), again.stride());
+    }
+    EXPECT_NEAR(value_of_blocks(task, again), poses.value, 1e-9);
+  }
+  EXPECT_GT(changed, 6) << "of 36";
 }
 
 TEST(WorkspaceBound, IsNotExceededByADenseGridAndFindsWhatCandidatesMiss) {

@@ -24,6 +24,9 @@ class ClosedChain : public TipModel {
  public:
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const final;
+  /// By theory.md eq. (50) where the robot gives the derivative of its loops, else TipModel's differences.
+  bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                 std::span<double> gradient) const final;
   bool actuator_values(const Point& at, std::span<double> values) const final;
 
   std::vector<Polyline> skeleton(std::span<const double> q) const final;
@@ -87,6 +90,12 @@ class ClosedChain : public TipModel {
   /// `out` has the right sizes and is all zero.
   virtual void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                         std::span<const int> selected, Loops& out) const = 0;
+  /// How h = ⟨slope.parameter, F_ξ⟩ + ⟨slope.platform, F_X⟩ + ⟨slope.actuator, F_ρ⟩ of do_loops() changes along spatial
+  /// twists of the platform (base frame), and with the actuators: adds to both, which have the right sizes. False: the
+  /// robot does not say.
+  virtual bool do_loops_change(std::span<const double> q, std::span<const double> actuators,
+                               std::span<const double> own, std::span<const int> selected, const Loops& slope,
+                               Twist& by_platform, Eigen::VectorXd& by_actuators) const;
   /// Legs and rims in the base frame, nominal.
   virtual std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const = 0;
   /// What the redundant sensors read and the same derivatives of it, for robots that have some.
@@ -99,6 +108,9 @@ class ClosedChain : public TipModel {
 
   void read_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                     std::span<const int> selected, Loops& out) const;
+
+  void add_turned_freedoms(std::span<const double> q, const Eigen::Ref<const Twists>& by_freedoms,
+                           std::span<double> gradient) const;
 
   Eigen::Isometry3d X_MeasureBase_;
   int own_count_ = 0;

@@ -44,9 +44,16 @@ class DhChain : public TipModel {
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
 
+  bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                 std::span<double> gradient) const override;
+
   const DhDescription& description() const { return chain_; }
 
  private:
+  struct State;
+  /// Tip's pose and every twist at one configuration.
+  Eigen::Isometry3d run(const Point& at, State& state) const;
+
   DhDescription chain_;
   int tool_ = 0;  ///< index of tool.x
 };

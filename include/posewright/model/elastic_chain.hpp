@@ -36,6 +36,10 @@ class ElasticChain : public TipModel {
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
 
+  /// That of the chain; how deflections change with the torques that bend it by central differences of these alone.
+  bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                 std::span<double> gradient) const override;
+
   void take_loads_at(std::span<const double> correction) override;
 
   /// Torque (N·m or N) at every coordinate under load case `load`; with the links' weight where it counts.
@@ -54,8 +58,14 @@ class ElasticChain : public TipModel {
   void add_springs(const SourcePlace& place);
   /// Torque at one coordinate by the load case, without the weight of links.
   double load_alone(const Point& at, std::size_t coordinate) const;
+  /// One configuration as the chain without springs takes it; held by this thread.
+  struct Bent;
+  Bent& bent(const Point& at, std::span<const int> selected) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
   void deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const;
+  /// Adds what f changes because torques change with q, given its derivatives by deflections and by their derivatives.
+  void add_bending(const Point& at, std::span<const double> by_deflection, std::span<const double> by_derivative,
+                   std::span<double> gradient) const;
 
   SerialChain chain_;
   ElastostaticSpec spec_;

@@ -27,6 +27,8 @@ class ExplicitModel : public IdentificationModel {
  private:
   void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                    const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                      Eigen::VectorXd& out) const override;
@@ -35,6 +37,8 @@ class ExplicitModel : public IdentificationModel {
   int do_block_rows(std::span<const int> selected) const override;
   bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const override;
   bool do_measurable(const Point& at) const override;
+  std::optional<int> do_measurable_margins() const override { return measurement_->margins(); }
+  bool do_measurable_margins_at(const Point& at, std::span<double> out) const override;
   std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
                                                  std::string& why_not) const override;
   bool do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
@@ -48,6 +52,8 @@ class ExplicitModel : public IdentificationModel {
   Parts parts(const Point& at) const;
   bool twists_and_noise(const Parts& parts, std::span<const int> selected, Eigen::Isometry3d& X,
                         Linearisation& out) const;
+  void displacements_pulled_back(const Eigen::MatrixXd& by_covariance, const Eigen::MatrixXd& unit_rows,
+                                 Eigen::MatrixXd& by_unit_rows) const;
   void displace_alone(const MeasurementModel::Sighting& sighting, Linearisation& out) const;
 
   std::unique_ptr<TipModel> tip_;

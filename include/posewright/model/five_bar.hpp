@@ -21,6 +21,9 @@ class FiveBar : public ClosedChain {
   std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const override;
   void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                 std::span<const int> selected, Loops& out) const override;
+  bool do_loops_change(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                       std::span<const int> selected, const Loops& slope, Twist& by_platform,
+                       Eigen::VectorXd& by_actuators) const override;
   void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                   std::span<const int> selected, Loops& out) const override;
 

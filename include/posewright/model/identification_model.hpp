@@ -158,6 +158,14 @@ class IdentificationModel {
   bool linearise_factored(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                           Linearisation& out) const;
 
+  /// How a number f of what linearise() gives changes with every continuous coordinate, from its derivatives by G and
+  /// by the covariance (symmetric), nominal parameters: ∂f/∂q_k = ⟨∂f/∂G, ∂G/∂q_k⟩ + ⟨∂f/∂Σ, ∂Σ/∂q_k⟩ (theory.md eq.
+  /// (48)).
+  /// @param gradient  size coordinates(); what it says of choices means nothing
+  /// @return false if this model does not know its derivatives, or has none at q
+  bool pull_back(std::span<const double> q, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                 const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const;
+
   /// What a measurement of one configuration consists of, in the order of the rows.
   const std::vector<Reading>& readings() const { return readings_; }
   /// Readings h(ρ, ξ) with the parameters nominal + correction, while the actuators ρ stand as they do at q with
@@ -181,6 +189,10 @@ class IdentificationModel {
 
   /// False if the instrument cannot see q; why, in words for the table of rejections.
   bool measurable(std::span<const double> q) const;
+  /// How many smooth functions of q are ≥ 0 where it can be measured, and in units of the range that each has; a closed
+  /// chain's singularities are left out. None: measurable() alone knows.
+  std::optional<int> measurable_margins() const { return do_measurable_margins(); }
+  bool measurable_margins_at(std::span<const double> q, std::span<double> out) const;
   /// Empty if every reachable configuration can be measured.
   const std::string& unmeasurable_reason() const { return unmeasurable_reason_; }
 
@@ -231,6 +243,9 @@ class IdentificationModel {
 
  private:
   virtual bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const = 0;
+  /// `gradient` is all zero.
+  virtual bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                            const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const;
   /// Readings of the robot standing at q.
   virtual bool do_read(const Point& at, Eigen::VectorXd& y) const = 0;
   virtual void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
@@ -241,6 +256,8 @@ class IdentificationModel {
   virtual int do_block_rows(std::span<const int> selected) const;
   virtual bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const;
   virtual bool do_measurable(const Point& at) const;
+  virtual std::optional<int> do_measurable_margins() const;
+  virtual bool do_measurable_margins_at(const Point& at, std::span<double> out) const;
   virtual std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
                                                          std::string& why_not) const;
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;

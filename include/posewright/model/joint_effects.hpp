@@ -28,6 +28,8 @@ class JointEffects : public TipModel {
 
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
+  bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                 std::span<double> gradient) const override;
   /// The offset's columns times the effects' functions, as long as no effect is known to be there.
   HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
   void take_loads_at(std::span<const double> correction) override;
@@ -41,15 +43,20 @@ class JointEffects : public TipModel {
     double constant;  ///< periods in a turn; where a linear one is zero
     double value(double q) const;
     double derivative(double q) const;
+    double second_derivative(double q) const;
   };
 
   void add(const JointEffectsSpec& spec, int joint, const std::string& file);
   void add_temperature(const TemperatureSpec& spec);
   double coefficient(const Point& at, std::size_t effect) const;
+  /// Where the joints stand, and the selection and corrections as the arm counts them; all held by this thread.
+  struct Inside;
+  Inside& inside(const Point& at, std::span<const int> selected) const;
 
   std::unique_ptr<TipModel> arm_;
   std::vector<Effect> effects_;
-  int first_ = 0;         ///< index of the first effect's parameter
+  int first_ = 0;  ///< index of the first effect's parameter
+  bool is_elastic_ = false;
   int temperature_ = -1;  ///< coordinate; −1: there is none
   double reference_temperature_ = 0.0;
 };

@@ -46,6 +46,15 @@ class MeasurementModel {
     int station = 0;
   };
 
+  /// How a number f depends on what an instrument gives at one sighting: what pull_back() takes to the tip's pose.
+  struct Adjoint {
+    Eigen::MatrixXd twist_rows;   ///< rows × 6: ∂f/∂(rows along unit twists)
+    std::vector<int> own;         ///< own parameters that f depends on
+    Eigen::MatrixXd own_columns;  ///< rows × own: ∂f/∂(their columns); of motions nothing
+    Twists own_motions;           ///< 6 × own: ∂f/∂(their motions); of columns nothing
+    Eigen::MatrixXd covariance;   ///< rows × rows, symmetric: ∂f/∂(covariance)
+  };
+
   const std::vector<Parameter>& parameters() const { return parameters_; }
   /// Parameters that `auto` may choose, in tiers (IdentificationModel::Preference; indices into parameters()).
   const std::vector<IdentificationModel::Preference>& preferences() const { return preferences_; }
@@ -72,6 +81,10 @@ class MeasurementModel {
   virtual void rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                               Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
+  /// a where f changes by a · ξ if the tip moves along the spatial twist ξ and its parameters' twists stay. An
+  /// instrument that does not say gets central differences in the tip's six motions.
+  virtual Twist pull_back(const Sighting& sighting, const Adjoint& f) const;
+
   /// How rows and noise depend on the tip's pose. Default: in no way that a bound over boxes could use.
   virtual HarmonicNoise harmonic_noise() const { return {}; }
 
@@ -88,6 +101,9 @@ class MeasurementModel {
   /// False if the instrument cannot read the tip there; unseen_reason() says why, empty if it always can.
   virtual bool sees(const Sighting& sighting) const;
   const std::string& unseen_reason() const { return unseen_reason_; }
+  /// IdentificationModel::measurable_margins() of what it sees alone.
+  virtual std::optional<int> margins() const;
+  virtual void margins_at(const Sighting& sighting, std::span<double> out) const;
 
   /// Covariance (6 × 6) of the tip's pose by the linear fit to one measurement, as twists about its origin in its own
   /// axes (m, rad), where that is the same at every pose. Empty: it is not, or the readings do not fix the pose.
@@ -103,6 +119,13 @@ class MeasurementModel {
   int rows_ = 0;
   int rows_per_target_ = 0;
 };
+
+/// Change by spatial twists of what moves a point at p (a · change of p) and turns vectors (b · small rotation).
+inline Twist change_by_motion(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Twist twist;
+  twist << a, p.cross(a) + b;
+  return twist;
+}
 
 /// Covariance (6 × 6) of the pose in spatial twists about the tip's origin, by the linear fit of the pose to an
 /// instrument's readings: Σ_X = (Yᵀ Σ_y⁻¹ Y)⁻¹, Y = derivative of the readings along those twists.

@@ -20,6 +20,10 @@ class SerialChain : public TipModel {
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
 
+  /// A twist that joint j carries along changes by the Lie bracket [ξ_j, ξ] per radian or metre of it.
+  bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                 std::span<double> gradient) const override;
+
   /// Degree 1 in each joint; in one that others follow, the sum of their whole ratios. A gear's column is that of the
   /// offset times the joint's own reading.
   HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
@@ -30,6 +34,12 @@ class SerialChain : public TipModel {
   void linearise_deflected(std::span<const double> q, std::span<const double> deflection,
                            std::span<const double> correction, std::span<const int> selected,
                            Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const;
+
+  /// pull_back() with the joints deflected so, the deflection held; unless it is empty, f's change by each coordinate's
+  /// deflection is added to `by_deflection`.
+  void pull_back_deflected(std::span<const double> q, std::span<const double> deflection,
+                           std::span<const double> correction, std::span<const int> selected, const TipAdjoint& f,
+                           std::span<double> gradient, std::span<double> by_deflection = {}) const;
 
   const ChainDescription& description() const { return chain_; }
   const ChainLayout& layout() const { return layout_; }

@@ -29,6 +29,9 @@ class SixLegs : public ClosedChain {
   std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const override;
   void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                 std::span<const int> selected, Loops& out) const override;
+  bool do_loops_change(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
+                       std::span<const int> selected, const Loops& slope, Twist& by_platform,
+                       Eigen::VectorXd& by_actuators) const override;
   bool do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
                   Enclosed& out) const override;
 

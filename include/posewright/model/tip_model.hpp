@@ -15,6 +15,14 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 using Polyline = std::vector<Eigen::Vector3d>;
 
+/// How a number f depends on where a tip is and how parameters move it: what TipModel::pull_back() takes to the
+/// configuration.
+struct TipAdjoint {
+  Twists twists;              ///< 6 × selected: ∂f/∂(each entry of a parameter's twist)
+  Twists reading_twists;      ///< 6 × readings, or without columns: the same of the joints' or actuators' readings
+  Twist tip = Twist::Zero();  ///< f changes by tip · ξ where the tip moves along the spatial twist ξ
+};
+
 /// Columns as polynomials of the joints' cosines and sines (and lengths), times factors that are none.
 struct HarmonicColumns {
   std::string why_not;        ///< for people; empty: the rest holds
@@ -48,6 +56,12 @@ class TipModel {
   /// (6 × readings); both are resized if needed. False if q is unreachable or singular.
   virtual bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
                          Twists& twists, Twists* reading_twists) const = 0;
+
+  /// Adds to `gradient` (size coordinates()) how f changes with every continuous coordinate, where the tip's pose and
+  /// twists are those of linearise() (theory.md eqs. (49) and (50)). A robot that does not say gets central differences
+  /// of linearise(). False if q or what is near it is unreachable or singular.
+  virtual bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
+                         std::span<double> gradient) const;
 
   /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty;
   /// theory.md eq. (37)). Twists of zero columns are polynomials.

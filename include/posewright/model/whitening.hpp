@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "posewright/blocks/block_array.hpp"
 #include "posewright/model/identification_model.hpp"
 
 namespace posewright {
@@ -16,5 +17,15 @@ void factorise_covariance(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen::M
 /// Throws CannotDo if the covariance is not positive definite.
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
                     std::span<const int> selected, Linearisation& scratch, double* out, int stride);
+
+/// How a number that depends on a configuration through JᵀJ alone changes with every continuous coordinate.
+/// @param block    J as whitened_block() wrote it for q
+/// @param slope    r × selected: the number's derivative by J there
+/// @param scratch  as whitened_block() left it at q
+/// @param gradient  size coordinates(); what it says of choices means nothing
+/// @return false if the model does not know its derivatives
+bool whitened_gradient(const IdentificationModel& model, std::span<const double> q, std::span<const int> selected,
+                       const BlockArray::RowMatrix& block, const BlockArray::RowMatrix& slope, Linearisation& scratch,
+                       std::span<double> gradient);
 
 }  // namespace posewright

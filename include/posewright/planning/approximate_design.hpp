@@ -25,6 +25,8 @@ struct ApproximateDesign {
   int rounds = 0, newton_steps = 0;
   bool stopped = false;  ///< the monitor stopped it; the bound is valid all the same
 
+  /// Those of the support whose weight is more than a trace: where weights of nearly the same candidates begin.
+  std::vector<int> weighted() const;
   /// Upper bound of Φ over all exact plans of `poses` poses: M of N poses is N times that of weights k_i/N.
   double bound_for(int poses) const;
 };
@@ -37,7 +39,10 @@ struct ApproximateDesignOptions {
   int threads = 1;  ///< for the passes over all candidates; 0 = all
   /// Information known before, per unit of weight (that of a plan of N poses divided by N), in the blocks' coordinates;
   /// empty: none. It counts as if every candidate carried it too, so everything above holds with d_i + its own share.
-  Eigen::MatrixXd prior;
+  Eigen::MatrixXd prior{};
+  /// Candidates on which most of the weight is expected, ascending: the first working set if they are enough. It
+  /// changes how long the solution takes and nothing else. Empty: none are known.
+  std::vector<int> start{};
 };
 
 /// Maximises Φ of M(w) = Σ w_i J_iᵀJ_i over 0 ≤ w ≤ cap, Σw = 1.

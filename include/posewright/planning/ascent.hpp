@@ -28,9 +28,9 @@ struct AscentResult {
 };
 
 /// Local maximum of f over the continuous axes of the space from a feasible start, by NLopt. Where the feasible set is
-/// the box of the axes: SLSQP with the derivative of f (exact in the block; the block's own by central differences).
-/// Elsewhere SBPLX, infeasible configurations counting as worse than the start. Every configuration is checked: the
-/// result is feasible and never worse than the start.
+/// bounded by the axes and smooth margins: SLSQP with the derivative of f (BlockGradient), and where there are margins
+/// SBPLX after it. Elsewhere SBPLX, infeasible configurations counting as worse than the start. Every configuration is
+/// checked: the result is feasible and never worse than the start.
 /// @param accept  more conditions on a result (minimum distance); may be empty
 AscentResult ascend(const ConfigurationSpace& space, ConfigurationSpace::Probe& probe, BlockObjective& objective,
                     int rows, int columns, std::vector<double> start, int max_evaluations,

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/block_array.hpp"
 #include "posewright/criterion/spacing.hpp"
 #include "posewright/planning/harmonic_form.hpp"
 #include "posewright/support/taylor_model.hpp"
@@ -23,8 +25,9 @@ class ConfigurationSpace {
  public:
   struct Axis {
     double lower = 0.0, upper = 0.0;
-    bool continuous = true;  ///< false: a choice; keeps the value that a start has
-    bool turns = false;      ///< an angle, rad
+    bool continuous = true;         ///< false: a choice; keeps the value that a start has
+    bool turns = false;             ///< an angle, rad
+    std::vector<double> choices{};  ///< of a choice: its values
   };
   /// Evaluations of one thread.
   class Probe {
@@ -36,6 +39,14 @@ class ConfigurationSpace {
     /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False
     /// if q has none.
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
+    /// What margins() counts, at q: nowhere feasible where one is negative, and where all are positive at most
+    /// something forbids q that is seldom met. False if there are none.
+    virtual bool margins(std::span<const double>, std::span<double>) { return false; }
+    /// How a number that depends on q through JᵀJ alone changes with each continuous axis.
+    /// @param slope  its derivative by J (r × m), J the block as block() writes it at q
+    /// @param gradient  size of the axes; what it says of choices means nothing
+    /// @return false if derivatives are not known here: BlockGradient then takes differences of blocks
+    virtual bool gradient(std::span<const double>, const BlockArray::RowMatrix&, std::span<double>) { return false; }
   };
 
   /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.
@@ -54,6 +65,9 @@ class ConfigurationSpace {
   virtual const std::vector<Axis>& axes() const = 0;
   /// Whether every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
+  /// How many smooth functions of q bound the feasible set within the axes' limits, so that a search may follow them
+  /// with a gradient. None: what else bounds it is known as yes or no alone.
+  virtual std::optional<int> margins() const { return is_box() ? std::optional(0) : std::nullopt; }
   /// What bounds ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
   /// @param where  configurations at which bounds that can be chosen ought to be good
   virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,11 @@ class ValidityCheck {
   virtual std::vector<std::string> reasons() const = 0;
   /// Index into reasons() of what forbids q, or −1.
   virtual int violation(std::span<const double> q) const = 0;
+  /// How many smooth functions of q are ≥ 0 exactly where it holds; 0 where it seldom forbids what other checks allow
+  /// (a singularity). None: it says yes or no alone.
+  virtual std::optional<int> margins() const { return std::nullopt; }
+  /// These functions at q, in units of the range that each has; false if they have no value there.
+  virtual bool margins_at(std::span<const double>, std::span<double>) const { return true; }
   /// Whether it follows motions, and so takes a hundred times as long as checks of one configuration.
   virtual bool follows_motions() const { return false; }
 };

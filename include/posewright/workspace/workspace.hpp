@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,9 @@ class Workspace {
   int violation(std::span<const double> q) const;
   /// Whether all checks but those that follow motions allow q: true wherever violation() is −1.
   bool is_free_at(std::span<const double> q) const;
+  /// Those of all checks together, none if one has none (ValidityCheck::margins()).
+  std::optional<int> margins() const;
+  bool margins_at(std::span<const double> q, std::span<double> out) const;
   /// Null if there is none.
   const Cell* cell() const;
   /// Whether collisions or sights constrain configurations: checks then cost much more.

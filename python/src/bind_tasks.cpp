@@ -272,7 +272,8 @@ one after the other; interpolate: predict with what the parameters leave as well
         py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
   m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
         py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved poses.");
+        "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved "
+        "poses.");
 }
 
 }  // namespace posewright::python

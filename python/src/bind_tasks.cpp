@@ -374,7 +374,8 @@ elastic_target: the poses were found with the nominal springs; most: largest tur
         py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
   m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
         py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved poses.");
+        "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved "
+        "poses.");
 }
 
 }  // namespace posewright::python

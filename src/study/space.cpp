@@ -188,7 +188,11 @@ class StudySpace : public ConfigurationSpace {
  public:
   StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, Configurations measured,
              const Spacing& spacing, Eigen::MatrixXd R)
-      : parts_(std::move(parts)), candidates_(candidates), measured_(std::move(measured)), spacing_(spacing), R_(std::move(R)) {
+      : parts_(std::move(parts)),
+        candidates_(candidates),
+        measured_(std::move(measured)),
+        spacing_(spacing),
+        R_(std::move(R)) {
     for (const Coordinate& c : parts_.front().workspace->proposed())
       axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad", c.values});
     // Poses that are there already are holes in the box.

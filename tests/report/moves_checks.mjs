@@ -100,6 +100,7 @@ async function checkBeyond(page, { data, plan }, id) {
   await page.getByRole('checkbox', { name: `Measure pose ${id}`, exact: true }).uncheck();
   near(await value(page, 'logdet'), before, 1e-12, 'they are those of the list without it');
   await page.getByRole('checkbox', { name: `Measure pose ${id}`, exact: true }).check();
+  await page.locator(`.rows li[data-id="${id}"] .preview`).click();
   await page.getByRole('button', { name: 'Put it back' }).click();
   near(await value(page, 'efficiency'), 1, 1e-9, 'a pose that is put back tells what it told');
 }

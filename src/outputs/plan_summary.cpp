@@ -40,9 +40,10 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
-std::string workspace_text(const Certificate::Workspace& w) {
+std::string workspace_text(const Certificate::Workspace& w, bool parallel) {
   if (w.proved)
-    return fmt::format("Proved over the joint limits, between the candidates too: at least {} of the best.\n",
+    return fmt::format("Proved {}, between the candidates too: at least {} of the best.\n",
+                       parallel ? "within the actuators' travel" : "over the joint limits",
                        proved_percent(w.efficiency));
   const std::string why = w.loose_bound
                               ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)
@@ -72,7 +73,8 @@ std::string certificate_text(const Plan& plan) {
                         plan.minimum_distance.empty() ? "" : " that keeps its poses apart",
                         plan.reserve ? "keeps more when its worst pose is lost: all others are ruled out"
                                      : "is better: every other one is ruled out");
-  return c.workspace ? text + workspace_text(*c.workspace) : text;
+  const bool parallel = !plan.poses.empty() && !plan.poses.front().actuators.empty();
+  return c.workspace ? text + workspace_text(*c.workspace, parallel) : text;
 }
 
 std::string variants_text(const Plan& plan) {

@@ -156,10 +156,10 @@ class TaylorJudge : public BoxJudge {
 
   void leave_unknown(SearchBox& box, double before) const {
     box.bound = before;
-    double widest = -1;
+    double most = -1;
     for (std::size_t a = 0; a < box.lower.size(); ++a)
-      if (const double width = (box.upper[a] - box.lower[a]) / widths_[a]; width > widest) {
-        widest = width;
+      if (const double width = (box.upper[a] - box.lower[a]) / widths_[a]; width > most) {
+        most = width;
         box.longest = int(a);
       }
   }

@@ -26,8 +26,8 @@ constexpr double nearly = 1.02;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
 
-// Boxes that are looked into for what searches miss: some seconds.
-constexpr long boxes_of_a_look = 1500;
+// Boxes that are looked into for what searches miss: a second or two.
+constexpr long boxes_of_a_look = 300;
 
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {

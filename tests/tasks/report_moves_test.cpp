@@ -146,8 +146,9 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
     const int reason = study.first().workspace->violation(list[moved]);
     EXPECT_EQ(verdict < 0, reason < 0);
     feasible += reason < 0;
-    if (reason >= 0)
+    if (reason >= 0) {
       EXPECT_EQ(n["reasons"][std::size_t(verdict)], study.first().workspace->reasons()[std::size_t(reason)]);
+    }
     if (study.cell->collision != nullptr) {
       const auto nearest = study.cell->collision->nearest(list[moved]);
       ASSERT_TRUE(nearest.has_value());

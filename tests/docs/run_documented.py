@@ -57,7 +57,7 @@ BETWEEN = {
     ("README.md", "posewright calibrate"): READINGS.format("measured.csv"),
     ("README.md", "posewright compensate"): "posewright export plan.json --to kuka-krl -o program.src\n",
     ("docs/commands.md", "posewright compensate"): "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n"
-    + "posewright export plan.json --to kuka-krl -o program.src\n",
+    + "posewright export longer.json --to kuka-krl -o program.src\n",
     ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
     ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
     ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),

@@ -6,7 +6,7 @@ from scipy import stats
 
 from criteria_values import Design, Effects, Fitted
 
-UNBOUNDED = ("o2", "o4", "bias")
+UNBOUNDED = ("o2", "bias")  # o2 because every problem here has nuisance columns
 NOISE = 1e-7  # Of a potential.
 CLOSE = 1e-6  # Relative; differences of two derivatives by differences, amplified by what is nearly dependent.
 

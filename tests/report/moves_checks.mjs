@@ -26,11 +26,26 @@ async function save(page, folder) {
   return csv;
 }
 
-/** Places of two coordinates: the first feasible one whose figures are held, and the first that is not feasible.
- * @param {any} neighbours @param {number} id */
-function looks(neighbours, id) {
+/** How far the sliders of a pose go, in steps: not beyond the limits of a coordinate.
+ * @returns {Promise<[number, number][]>} */
+async function reachOf(page, { data, plan }, id) {
+  const { names } = plan.poses[0];
+  const ends = [];
+  for (const { index } of data.neighbours.coordinates) {
+    const one = slider(page, names[index], id);
+    ends.push([Number(await one.getAttribute('min')), Number(await one.getAttribute('max'))]);
+  }
+  return ends;
+}
+
+/** Places of two coordinates that the sliders reach: the first feasible one whose figures are held, and the first that is
+ * not feasible.
+ * @param {any} neighbours @param {number} id @param {[number, number][]} reach */
+function looks(neighbours, id, reach) {
   const pose = neighbours.poses.find((p) => p.id === id);
-  const of = (holds) => neighbours.places.findIndex((k, place) => k.filter((v) => v !== 0).length === 2 && holds(place));
+  const within = (k) => k.every((v, j) => v >= reach[j][0] && v <= reach[j][1]);
+  const of = (holds) =>
+    neighbours.places.findIndex((k, place) => k.filter((v) => v !== 0).length === 2 && within(k) && holds(place));
   return [
     of((place) => pose.verdicts[place] < 0 && pose.told[place] === 1),
     of((place) => pose.verdicts[place] >= 0 && pose.told[place] === 1),
@@ -52,7 +67,7 @@ export async function checkMoves(page, c, program) {
     for (const [j, steps] of k.entries()) await slider(page, names[n.coordinates[j].index], id).fill(String(steps));
   };
   const pose = n.poses.find((p) => p.id === id);
-  for (const place of looks(n, id)) {
+  for (const place of looks(n, id, await reachOf(page, c, id))) {
     await setTo(n.places[place]);
     const words = await page.locator('.verdict').innerText();
     const feasible = pose.verdicts[place] < 0;
@@ -88,11 +103,13 @@ export async function checkMoves(page, c, program) {
 }
 
 /** Where nothing is held. */
-async function checkBeyond(page, { data, plan }, id) {
+async function checkBeyond(page, c, id) {
+  const { data, plan } = c;
+  const reach = await reachOf(page, c, id);
   const { names } = plan.poses[0];
   const { coordinates } = data.neighbours;
   for (const j of [0, 1, 2].filter((k) => k < coordinates.length))
-    await slider(page, names[coordinates[j].index], id).fill('1');
+    await slider(page, names[coordinates[j].index], id).fill(reach[j][1] >= 1 ? '1' : '-1');
   const words = await page.locator('.verdict').innerText();
   check(words.startsWith('Not known here') && words.includes('plan --fixed'), 'three moved coordinates are not known', words);
   check((await page.locator('.side .warn').innerText()).includes(`without pose ${id}`), 'the figures say what they leave out');
@@ -111,7 +128,7 @@ async function checkFixed(page, { data, plan, folder, problem }, id, program) {
   const { index } = data.neighbours.coordinates[0];
   const pose = data.neighbours.poses.find((p) => p.id === id);
   const one = data.neighbours.places.findIndex(
-    (k, place) => k[0] !== 0 && k.filter((v) => v !== 0).length === 1 && pose.verdicts[place] < 0,
+    (k, place) => k[0] !== 0 && k.filter((v) => v !== 0).length === 1 && pose.verdicts[place] < 0 && pose.told[place] === 1,
   );
   const steps = data.neighbours.places[one]?.[0] ?? 0;
   await slider(page, names[index], id).fill(String(steps));

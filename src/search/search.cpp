@@ -104,7 +104,7 @@ BlockArray blocks_at(const std::vector<std::vector<double>>& configurations, con
 }
 
 std::vector<double> without_each(const Joined& joined, const Design& design, const BlockArray& added,
-                                 const InformationFunction& function, int threads) {
+                                 const InformationFunction& function, double degree, int threads) {
   const auto n = joined.blocks.count();
   BlockArray chosen(design.members.size(), joined.blocks.rows(), joined.blocks.columns());
   for (std::size_t i = 0; i < chosen.count(); ++i) {
@@ -113,11 +113,11 @@ std::vector<double> without_each(const Joined& joined, const Design& design, con
   }
   Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
   if (joined.prior.size() > 0) M += joined.prior;
-  const double whole = function.value(M), degree = function.degree() > 0 ? function.degree() : 1.0;
+  const double whole = function.value(M), share = degree > 0 ? degree : 1.0;
   std::vector<double> result(chosen.count());
   parallel_for(chosen.count(), thread_count(threads), [&](std::size_t i, int) {
     const auto block = chosen.block(i);
-    result[i] = std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / degree));
+    result[i] = std::min(1.0, std::exp((function.value(M - block.transpose() * block) - whole) / share));
   });
   return result;
 }
@@ -369,7 +369,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
                                  ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / share))
                                  : std::nullopt,
                              stage.seconds});
-  result.without = without_each(joined, result.design, added, function, request.planner.threads);
+  result.without = without_each(joined, result.design, added, function, result.degree, request.planner.threads);
   result.chosen = raw_blocks(joined, shapes, result.design);
   return result;
 }

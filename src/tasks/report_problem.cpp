@@ -210,6 +210,9 @@ class ReportBuilder {
     std::vector<TestPlace> places;
     const std::vector<TestPoint> points = test_points_at_candidates(problem_, study_.configurations, variant, places);
     predicted_error(points, judgement.evaluations.front().covariance, report_.position_errors);
+    // Where only the instrument is estimated (a camera and its board) nothing is said of where the tip goes.
+    std::vector<double>& errors = report_.position_errors;
+    if (std::none_of(errors.begin(), errors.end(), [](double e) { return e > 0; })) errors.clear();
   }
 
   void fill_candidates() {

@@ -205,7 +205,7 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
         error.what(),
         "bad.yaml:36: unknown key 'candidate'; allowed: variant, variants, truth, criterion, method, poses, "
         "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
-        "test_poses");
+        "fixed, test_poses");
   }
 }
 

@@ -72,7 +72,8 @@ export async function checkMoves(page, c, program) {
     const words = await page.locator('.verdict').innerText();
     const feasible = pose.verdicts[place] < 0;
     check(words.startsWith(feasible ? 'Feasible here' : 'Not feasible here'), 'the verdict is the program’s', words);
-    const judged = evaluate(await save(page, folder));
+    const csv = await save(page, folder);
+    const judged = evaluate(csv);
     check(Boolean(judged.failed) !== feasible, 'evaluate refuses exactly what the page calls not feasible', judged.failed);
     if (judged.failed) continue;
     const interest = data.columns.filter((column) => column.role === 'interest').length;
@@ -80,7 +81,9 @@ export async function checkMoves(page, c, program) {
     check(off <= 1.001 * n.errors.efficiency + 1e-9, 'log det of the moved list is evaluate’s, as near as the page says', off);
     if (plan.accuracy.rho0 !== null)
       near(await value(page, 'rho0'), judged.accuracy.rho0, 1.001 * n.errors.rho0 + 1e-9, 'so is the position error');
-    const there = judged.poses.at(-1);
+    // The list is in measuring order, where there is a route.
+    const order = readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => Number(line.split(',')[0]));
+    const there = judged.poses[order.indexOf(id)];
     if (there.nearest)
       check(
         Math.abs(pose.clearance[place] * 1e-4 - there.nearest.distance) <= 0.51e-4 && words.includes(there.nearest.between[0]),

@@ -78,7 +78,7 @@ export async function checkOverview(page, { data, plan, route }) {
 }
 
 /** Every plot has its points. */
-export async function checkPlots(page, { data, plan }) {
+export async function checkPlots(page, { data, plan, name }) {
   const points = (id) =>
     page.locator(`#${id}`).evaluate((f) => f.plot.data.map((s) => s.filter((v) => v !== null).length));
   const [, contributions, losses] = await points('plot-contribution');
@@ -117,13 +117,16 @@ export async function checkPlots(page, { data, plan }) {
   );
   if (tests > 0) check((await points('plot-test-poses'))[1] === tests, 'one dot a test pose');
   const errors = data.position_errors;
-  const places = Math.min(200, data.candidates.sensitivity.length);
+  // What moves the tip is estimated everywhere but with the camera in the hand, where it is the camera's place alone.
+  const places = name === 'camera' ? 0 : Math.min(200, data.candidates.sensitivity.length);
   check(errors.length === places && errors.every((e) => e > 0), 'errors are predicted all over the workspace', errors.length);
-  const [, drawn] = await page.locator('#plot-workspace').evaluate((f) => f.plot.data);
-  check(
-    drawn.every((v, k) => k === 0 || v >= drawn[k - 1]) && Math.abs(drawn.at(-1) - 1e3 * Math.max(...errors)) < 1e-9,
-    'their curve rises to the largest',
-  );
+  if (errors.length > 0) {
+    const [, drawn] = await page.locator('#plot-workspace').evaluate((f) => f.plot.data);
+    check(
+      drawn.every((v, k) => k === 0 || v >= drawn[k - 1]) && Math.abs(drawn.at(-1) - 1e3 * Math.max(...errors)) < 1e-9,
+      'their curve rises to the largest',
+    );
+  }
   const rows = await page.locator('.parameters tbody tr').count();
   check(rows === plan.parameters.filter((p) => p.identifiable).length, 'one row a parameter', rows);
 }

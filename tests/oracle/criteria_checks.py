@@ -154,7 +154,8 @@ def check_shares(name, result, meaning, chosen, among, check):
         potential = lambda which: meaning.design.potential(name, meaning.value(name, which, among), which)
         left = np.exp((potential(without) - potential(sets)) / meaning.design.degree(name))
         for pose, mine in zip(result["poses"], left):
-            check.same("efficiency_without", mine if np.isfinite(mine) else 0.0, pose["efficiency_without"])
+            # O4 may grow with a pose less: then nothing of it is lost.
+            check.same("efficiency_without", min(mine, 1.0) if np.isfinite(mine) else 0.0, pose["efficiency_without"])
     candidates = sets_of(len(among), len(chosen), meaning.arm.problem["design"].get("repeats", "forbid"))
     for variant, fit in zip(meaning.several, meaning.design.fits):
         own, bound = fit.log_det(sets)[0], variant["log_det_bound"]

@@ -16,8 +16,10 @@
 namespace posewright {
 namespace {
 
-// Steps to either side of a pose, and where among them the interpolation is exact.
-constexpr int reach = 3, node = 2;
+// Steps to either side of a pose at most, and where the interpolation is exact.
+constexpr int most_reach = 3, node = 2;
+// In a cell every place is checked against bodies: beside meshes some milliseconds each. Of all poses so many at most.
+constexpr std::size_t most_checked = 6'000;
 // A step is a fiftieth of the range, at most this: rad, m.
 constexpr double share_of_range = 0.02, most_turn = std::numbers::pi / 90, most_slide = 0.01;
 // Where fewer places are told, half as long steps are tried, so often.
@@ -56,9 +58,9 @@ std::vector<ReportNeighbours::Coordinate> moving_coordinates(const std::vector<C
 }
 
 /// No step, then all of one coordinate, then all of two.
-std::vector<std::vector<int>> places_of(std::size_t coordinates) {
+std::vector<std::vector<int>> places_of(std::size_t coordinates, int reach) {
   std::vector<std::vector<int>> places(1, std::vector<int>(coordinates, 0));
-  const auto each = [](auto&& use) {
+  const auto each = [reach](auto&& use) {
     for (int k = -reach; k <= reach; ++k)
       if (k != 0) use(k);
   };
@@ -99,7 +101,6 @@ class Neighbourhood {
  public:
   Neighbourhood(const Report& report, const Study& study, const Drawing& drawing)
       : report_(report), study_(study), drawing_(drawing), reasons_(study), figures_(report.information) {
-    result_.reach = reach;
     result_.coordinates = moving_coordinates(study.first().workspace->coordinates(), moving_);
     result_.reasons = reasons_.names();
   }
@@ -120,7 +121,11 @@ class Neighbourhood {
 
   std::optional<ReportNeighbours> make(const std::vector<std::pair<int, std::vector<double>>>& poses, int threads,
                                        const Monitor& monitor) {
-    result_.places = places_of(moving_.size());
+    result_.reach = most_reach;
+    do result_.places = places_of(moving_.size(), result_.reach);
+    while (study_.cell->collision != nullptr && result_.places.size() * poses.size() > most_checked &&
+           --result_.reach > 0);
+    result_.reach = std::max(result_.reach, 1);
     result_.poses.resize(poses.size());
     std::vector<std::vector<std::optional<Separation>>> nearest(poses.size());
     std::vector<NeighbourErrors> errors(poses.size());
@@ -223,7 +228,7 @@ class Neighbourhood {
   void draw(const std::vector<double>& q, ReportNeighbours::Pose& pose) const {
     for (std::size_t j = 0; !report_.chain && j < moving_.size(); ++j) {
       std::vector<int> k(moving_.size(), 0);
-      k[j] = reach;
+      k[j] = result_.reach;
       pose.drawn.push_back(keyframe_at(drawing_, moved(q, pose.steps, k)));
     }
   }

@@ -19,7 +19,7 @@ namespace {
 // Steps to either side of a pose at most, and where the interpolation is exact.
 constexpr int most_reach = 3, node = 2;
 // In a cell every place is checked against bodies: beside meshes some milliseconds each. Of all poses so many at most.
-constexpr std::size_t most_checked = 6'000;
+constexpr std::size_t most_checked = 3'000;
 // A step is a fiftieth of the range, at most this: rad, m.
 constexpr double share_of_range = 0.02, most_turn = std::numbers::pi / 90, most_slide = 0.01;
 // Where fewer places are told, half as long steps are tried, so often.

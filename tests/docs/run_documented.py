@@ -52,12 +52,14 @@ BEFORE = {
 }
 # In front of every command that begins so, on all pages: ways to each of the candidates of nine places take minutes.
 FIRST = {"posewright stations examples/cell": "sed -i 's/reachable: true/reachable: false/' examples/cell/problem.yaml\n"}
+# A program whose poses no time limit chose: where they are, all of them can be compensated.
+TAUGHT = f"{KR270} -o taught.json --poses-csv - --force\nposewright export taught.json --to kuka-krl -o program.src\n"
 # What a page's reader has only by then: in front of the command that begins so.
 BETWEEN = {
     ("README.md", "posewright calibrate"): READINGS.format("measured.csv"),
-    ("README.md", "posewright compensate"): "posewright export plan.json --to kuka-krl -o program.src\n",
+    ("README.md", "posewright compensate"): TAUGHT,
     ("docs/commands.md", "posewright compensate"): "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n"
-    + "posewright export longer.json --to kuka-krl -o program.src\n",
+    + TAUGHT,
     ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
     ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
     ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),

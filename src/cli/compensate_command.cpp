@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <numbers>
 
 #include "command.hpp"
@@ -55,15 +54,6 @@ po::options_description compensate_command_options() {
   return options;
 }
 
-double number_of(const po::variables_map& values, const std::string& option, double lower, double upper) {
-  const std::string text = text_of(values, option);
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
-    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
-  return value;
-}
-
 /// The robot that was calibrated, with its parameters.
 Problem calibrated_problem(const po::variables_map& values, const fs::path& parameters) {
   const std::string given = text_of(values, "problem");
@@ -78,10 +68,9 @@ CompensateOptions compensation_options(const po::variables_map& values, const Co
   options.solver.with_tool = values.count("without-tool") == 0;
   options.solver.position_only = values.count("position-only") > 0;
   options.elastic_target = values.count("elastic-target") > 0;
-  if (values.count("most") > 0) {
-    const double most = number_of(values, "most", 0.01, 180);
-    options.solver.most_angle = most * std::numbers::pi / 180;
-    options.solver.most_length = most * 0.01;
+  if (const auto most = number_between(values, "most", 0.01, 180)) {
+    options.solver.most_angle = *most * std::numbers::pi / 180;
+    options.solver.most_length = *most * 0.01;
   }
   options.threads = common.threads;
   return options;
@@ -93,7 +82,7 @@ DocumentOptions document_options(const po::variables_map& values) {
   if (!options.format.empty() && !JointTargets::reads(options.format)) find_readable_format(options.format);
   if (const std::string name = text_of(values, "controller"); !name.empty())
     options.controller = controller_settings(name);
-  if (values.count("coupling") > 0) options.coupling = number_of(values, "coupling", -10, 10);
+  if (const auto coupling = number_between(values, "coupling", -10, 10)) options.coupling = *coupling;
   return options;
 }
 

@@ -192,7 +192,8 @@ class Run {
       Random random(options_.seed, i);
       // Rounded weights first, then draws by them.
       const auto state = task.criterion->start(
-          task.candidates, i == 1 && !given.empty() ? given : start_of_restart(task, i == 0 ? 0 : 2 * i + 1, random));
+          task.candidates,
+          i == 1 && !given.empty() ? given : start_of_restart(task, i == 0 ? 0 : 2 * i + 1, random, monitor_));
       const long exchanges = settle(*state, monitor_);
       found[i] = outcome_of(*state, exchanges);
     });
@@ -241,7 +242,7 @@ class Run {
     options.restarts = restarts;
     const Design found = run_restarts(extended.task(), options, monitor_, "new candidates",
                                       [&](const DesignTask& task, std::size_t i, Random& random, const Monitor& watch) {
-                                        const auto from = i % 2 == 0 ? start : start_of_restart(task, i, random);
+                                        const auto from = i % 2 == 0 ? start : start_of_restart(task, i, random, watch);
                                         return exchange_search(task, from, kicks, random, watch);
                                       });
     best_.exchanges += found.exchanges;

@@ -27,7 +27,7 @@ Outcome fresh_starts(const DesignTask& task, std::size_t restart, int count, Ran
   for (int i = 0; i <= count && (i == 0 || !monitor.should_stop()); ++i) {
     // The first is the restart's own; weights and uniform draws take turns after it.
     const std::size_t kind = i == 0 ? restart : std::size_t(1 + i % 4 / 3);
-    Outcome found = exchange_search(task, start_of_restart(task, kind, random), 0, random, monitor);
+    Outcome found = exchange_search(task, start_of_restart(task, kind, random, monitor), 0, random, monitor);
     found.exchanges += best.exchanges;
     if (!best.done || found.value > best.value + smallest_gain) best = std::move(found);
     else best.exchanges = found.exchanges;
@@ -39,15 +39,18 @@ Outcome fresh_starts(const DesignTask& task, std::size_t restart, int count, Ran
 
 Outcome exchange_restart(const DesignTask& task, std::size_t restart, int kicks, Random& random,
                          const Monitor& monitor) {
-  if (restart % 2 == 1) return fresh_starts(task, restart, kicks, random, monitor);
-  return exchange_search(task, start_of_restart(task, restart, random), kicks, random, monitor);
+  // A start that settles under smoother criteria first takes the time of so many.
+  constexpr int smooth_cost = 12;
+  const int fresh = task.criterion->smoother() == nullptr ? kicks : kicks / smooth_cost;
+  if (restart % 2 == 1) return fresh_starts(task, restart, fresh, random, monitor);
+  return exchange_search(task, start_of_restart(task, restart, random, monitor), kicks, random, monitor);
 }
 
 Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(task, options, monitor, "exchange",
                       [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-                        return exchange_search(part, start_of_restart(part, i, random), affordable_kicks(part, options),
-                                               random, watch);
+                        return exchange_search(part, start_of_restart(part, i, random, watch),
+                                               affordable_kicks(part, options), random, watch);
                       });
 }
 

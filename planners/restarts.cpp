@@ -73,11 +73,28 @@ int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
   return int(std::clamp(most_products / (passes * pass * options.restarts), 0.0, double(options.kicks)));
 }
 
-std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random) {
+namespace {
+
+std::vector<int> raw_start(const DesignTask& task, std::size_t index, Random& random) {
   const bool weights = task.approximate != nullptr && !task.approximate->support.empty();
   if (weights && index == 0) return rounded_start(task);
   if (weights && index % 2 == 1) return weighted_start(task, random);
   return uniform_start(task, random);
+}
+
+std::vector<int> settle_smoothly(const Criterion& criterion, const CandidateView& candidates, std::vector<int> members,
+                                 const Monitor& monitor) {
+  if (criterion.smoother() == nullptr || monitor.should_stop()) return members;
+  members = settle_smoothly(*criterion.smoother(), candidates, std::move(members), monitor);
+  const auto state = criterion.smoother()->start(candidates, std::move(members));
+  settle(*state, monitor);
+  return state->members();
+}
+
+}  // namespace
+
+std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random, const Monitor& monitor) {
+  return settle_smoothly(*task.criterion, task.candidates, raw_start(task, index, random), monitor);
 }
 
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,

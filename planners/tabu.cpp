@@ -108,7 +108,7 @@ Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Ra
 Design TabuPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(
       task, options, monitor, "tabu", [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-        return tabu_search(part, start_of_restart(part, i, random), tabu_patience(part, options), random, watch);
+        return tabu_search(part, start_of_restart(part, i, random, watch), tabu_patience(part, options), random, watch);
       });
 }
 

@@ -21,6 +21,8 @@ constexpr double safely_eliminated = 1e-5;
 
 // o3 is curved by the mean (Σ λ⁻ᵖ)^{−1/p} in place of the least eigenvalue: larger is nearer and harder to solve.
 constexpr double smoothing = 60.0;
+// Under which o3 is settled first, the last of them at the beginning.
+constexpr std::array<double, 3> smooth_powers = {16, 4, 1};
 // Pairs of eigenvectors whose products are held at a time.
 constexpr Eigen::Index pairs_at_once = 4096;
 
@@ -29,14 +31,15 @@ constexpr Eigen::Index pairs_at_once = 4096;
 class SpectralExpansion : public Expansion {
  public:
   /// @param left  C W V: columns that the eigenvalues are squares of;  @param inside  L_nn⁻ᵀ of the nuisance columns
-  SpectralExpansion(SpectralIndex index, const Eigen::VectorXd& lambda, Eigen::MatrixXd left, Eigen::MatrixXd inside)
-      : p_(index == SpectralIndex::o5 ? 0.5 : smoothing), least_(lambda[0]), inside_(std::move(inside)) {
+  SpectralExpansion(bool of_all, double power, const Eigen::VectorXd& lambda, Eigen::MatrixXd left,
+                    Eigen::MatrixXd inside)
+      : p_(of_all ? power : smoothing), least_(lambda[0]), inside_(std::move(inside)) {
     mu_ = lambda / least_;
     sum_ = mu_.array().pow(-p_).sum();
     left_ = left / std::sqrt(least_);
     const Eigen::ArrayXd weight = mu_.array().pow(-p_ - 1);
-    share_ = 0.5 * weight / (index == SpectralIndex::o5 ? sum_ : weight.sum());
-    value = index == SpectralIndex::o5 ? 0.5 * std::log(least_) - std::log(sum_) : 0.5 * std::log(least_);
+    share_ = 0.5 * weight / (of_all ? sum_ : weight.sum());
+    value = 0.5 * std::log(least_) - (of_all ? std::log(sum_) / (2 * p_) : 0.0);
     factor = upper_factor(left_ * share_.cwiseSqrt().asDiagonal());
   }
 
@@ -107,7 +110,7 @@ std::unique_ptr<Expansion> SpectralFunction::expand(const Eigen::MatrixXd& infor
   const Spectrum s = spectrum(information, true);
   Eigen::MatrixXd within;
   if (!s.regular || !inside(information, within)) return nullptr;
-  return std::make_unique<SpectralExpansion>(index_, s.lambda, directions(s), std::move(within));
+  return std::make_unique<SpectralExpansion>(of_all(), power_, s.lambda, directions(s), std::move(within));
 }
 
 bool SpectralFunction::inside(const Eigen::MatrixXd& information, Eigen::MatrixXd& result) const {
@@ -155,11 +158,19 @@ double SpectralFunction::of(const Eigen::VectorXd& lambda) const {
   if (index_ == SpectralIndex::o2) return 0.5 * std::log(least / most);
   if (index_ == SpectralIndex::o3) return 0.5 * std::log(least);
   if (index_ == SpectralIndex::o4) return std::log(least / std::sqrt(most));
-  return -std::log(lambda.cwiseSqrt().cwiseInverse().sum());
+  return mean(lambda);
+}
+
+double SpectralFunction::mean(const Eigen::VectorXd& lambda) const {
+  const double least = lambda.minCoeff();
+  return 0.5 * std::log(least) - std::log((lambda / least).array().pow(-power_).sum()) / (2 * power_);
 }
 
 Eigen::VectorXd SpectralFunction::by_eigenvalue(const Eigen::VectorXd& lambda) const {
-  if (index_ == SpectralIndex::o5) return 0.5 * std::exp(of(lambda)) * lambda.array().pow(-1.5);
+  if (of_all()) {
+    const Eigen::ArrayXd weight = (lambda / lambda[0]).array().pow(-power_);
+    return 0.5 * weight / (lambda.array() * weight.sum());
+  }
   const Eigen::Index last = lambda.size() - 1;
   Eigen::VectorXd d = Eigen::VectorXd::Zero(lambda.size());
   d[0] += (index_ == SpectralIndex::o4 ? 1.0 : 0.5) / lambda[0];
@@ -172,16 +183,27 @@ namespace {
 class SpectralCriterion : public Criterion {
  public:
   SpectralCriterion(std::string name, SpectralIndex index, const CriterionData& data)
-      : name_(std::move(name)), function_(std::make_shared<SpectralFunction>(index, data)) {}
+      : name_(std::move(name)), function_(std::make_shared<SpectralFunction>(index, data)) {
+    if (index == SpectralIndex::o3) smoother_.reset(new SpectralCriterion(data, 0));
+  }
   std::string name() const override { return name_; }
   const InformationFunction& function() const override { return *function_; }
+  const Criterion* smoother() const override { return smoother_.get(); }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
     return start_spectral(view, std::move(members), function_);
   }
 
  private:
+  /// Of the means that lead to o3, and the smoother ones behind it.
+  SpectralCriterion(const CriterionData& data, std::size_t step)
+      : name_("o3 smoothed"),
+        function_(std::make_shared<SpectralFunction>(SpectralIndex::mean, data, smooth_powers[step])) {
+    if (step + 1 < smooth_powers.size()) smoother_.reset(new SpectralCriterion(data, step + 1));
+  }
+
   std::string name_;
   std::shared_ptr<const SpectralFunction> function_;
+  std::unique_ptr<SpectralCriterion> smoother_;
 };
 
 }  // namespace

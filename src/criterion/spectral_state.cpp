@@ -23,8 +23,8 @@ constexpr Eigen::Index first_look = 4;
 /// Exact swaps of functions of eigenvalues. Where nuisance columns are eliminated too, what is left without the leaving
 /// member, diag(λ) in its own eigenvectors, changes by Yᵀ Y, Y = (I + D_n)^{-1/2} J C W V, D_n = J_n M_nn⁻¹ J_nᵀ. Of
 /// what that can gain there are bounds, each dearer and tighter (theory.md eq. (46)):
-///   - concavity in M: λ_min' ≤ λ_min + ‖J_j z‖² − ‖J_k z‖² with z of the eigenvector before (o2, o3, o4); o5² is
-///     concave as a whole;
+///   - concavity in M: λ_min' ≤ λ_min + ‖J_j z‖² − ‖J_k z‖² with z of the eigenvector before (o2, o3, o4); the
+///     square of o5, and of any mean of powers, is concave as a whole;
 ///   - interlacing (Weyl): a change of rank r lifts λ_min to λ_{r+1} at most;
 ///   - diagonal entries λ_i + ‖Y_i‖²: none is below λ_min' or above λ_max', and they are majorised by the eigenvalues;
 ///   - Sylvester's law of inertia: λ_min' > t exactly if I + Y (Λ − t)⁻¹ Yᵀ has as many negative eigenvalues as Λ − t;
@@ -61,8 +61,6 @@ class SpectralState : public DesignState {
   }
 
  private:
-  bool harmonic() const { return function_.index() == SpectralIndex::o5; }
-
   Swap do_best_swap(int position, double min_gain) override {
     return best_of(members()[std::size_t(position)], min_gain);
   }
@@ -84,8 +82,8 @@ class SpectralState : public DesignState {
     const auto count = Eigen::Index(blocks().count()), r = Eigen::Index(blocks().rows());
     d_.resize(count);
     pull_.resize(count);
-    if (harmonic()) {
-      const Eigen::VectorXd share = 0.5 * std::exp(value_) * s.lambda.array().pow(-1.5);
+    if (function_.of_all()) {
+      const Eigen::VectorXd share = function_.by_eigenvalue(s.lambda);
       projected_.noalias() = blocks().all() * Eigen::MatrixXd(all * share.cwiseSqrt().asDiagonal());
       for (Eigen::Index j = 0; j < count; ++j) d_[j] = projected_.middleRows(j * r, r).squaredNorm();
       pull_ = d_;
@@ -106,7 +104,7 @@ class SpectralState : public DesignState {
   /// The pull less that of the leaving member from which on Φ may exceed value_ + gain; infinite: nowhere.
   double wanted_pull(double gain, double most_at_least) const {
     if (!std::isfinite(gain)) return -infinity;
-    if (harmonic()) return 0.5 * std::expm1(2 * (gain - eigenvalue_rounding));
+    if (function_.of_all()) return 0.5 * std::expm1(2 * (gain - eigenvalue_rounding));
     return least_wanted(gain, most_at_least) - least_;
   }
 
@@ -150,7 +148,7 @@ class SpectralState : public DesignState {
   /// By interlacing.
   bool attainable(double gain) const {
     const Eigen::Index r = blocks().rows(), s = lambda_.size();
-    return harmonic() || r >= s || !std::isfinite(gain) || lambda_[r] > least_wanted(gain, lambda_[s - 1]);
+    return function_.of_all() || r >= s || !std::isfinite(gain) || lambda_[r] > least_wanted(gain, lambda_[s - 1]);
   }
 
   /// Exact, or −∞ as soon as it is clear that it is no more than `wanted`.
@@ -163,12 +161,13 @@ class SpectralState : public DesignState {
       factor_.compute(D_);
     }
     const Eigen::Index s = lambda_.size(), few = blocks().rows() + first_look;
-    if (std::isfinite(wanted) && !harmonic() && 2 * few < s) {
+    if (std::isfinite(wanted) && !function_.of_all() && 2 * few < s) {
       project(J, few);
       if (!promising_ends(wanted, std::max(diagonal_.maxCoeff(), lambda_[s - 1]))) return -infinity;
     }
     project(J, s);
-    if (std::isfinite(wanted) && !(harmonic() ? promising_sum(wanted) : promising_ends(wanted, diagonal_.maxCoeff())))
+    if (std::isfinite(wanted) &&
+        !(function_.of_all() ? promising_sum(wanted) : promising_ends(wanted, diagonal_.maxCoeff())))
       return -infinity;
     changed_.noalias() = Y_.transpose() * Y_;
     changed_.diagonal() += lambda_;
@@ -184,9 +183,7 @@ class SpectralState : public DesignState {
     diagonal_ = lambda_.head(count) + Y_.colwise().squaredNorm().transpose();
   }
 
-  bool promising_sum(double wanted) const {
-    return -std::log(diagonal_.array().rsqrt().sum()) > value_ + wanted - eigenvalue_rounding;
-  }
+  bool promising_sum(double wanted) const { return function_.mean(diagonal_) > value_ + wanted - eigenvalue_rounding; }
 
   /// @param most  λ_max' or less
   bool promising_ends(double wanted, double most) {

@@ -93,6 +93,9 @@ class Criterion {
   virtual bool of_information_alone() const { return true; }
   /// A state that starts from `members` (indices into the view's blocks), maybe none.
   virtual std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const = 0;
+  /// A smoother criterion, maybe with a smoother one of its own, whose local optimum is the better start: where Φ has
+  /// kinks, hardly any swap of one member gains. Null: none.
+  virtual const Criterion* smoother() const { return nullptr; }
 };
 
 }  // namespace posewright

@@ -15,13 +15,15 @@ namespace posewright {
 /// The search maximises the logarithm. They depend on the scale of the columns. ln o3 and ln o5 are concave in M and
 /// bounded (squared, both are matrix means of degree 1: Pukelsheim 2006, Optimal Design of Experiments, 6.7); o2 and o4
 /// are not.
-enum class SpectralIndex { o2, o3, o4, o5 };
+/// `mean` stands between: (Σ λᵢ⁻ᵖ)^{−1/2p}, o5 at p = ½ and o3 for p → ∞. It is what o3 is settled under first.
+enum class SpectralIndex { o2, o3, o4, o5, mean };
 
 /// Φ of the eigenvalues λ = σ², ascending, of the scaled information with nuisance eliminated.
 class SpectralFunction : public InformationFunction {
  public:
-  SpectralFunction(SpectralIndex index, const CriterionData& data)
-      : index_(index), nuisance_(data.nuisance), C_(data.to_scaled()) {}
+  /// @param power  p of `mean`; of no account elsewhere
+  SpectralFunction(SpectralIndex index, const CriterionData& data, double power = 0.5)
+      : index_(index), power_(power), nuisance_(data.nuisance), C_(data.to_scaled()) {}
 
   double value(const Eigen::MatrixXd& information) const override;
   /// ∂Φ/∂M = C W (Σ_i ∂Φ/∂λ_i v_i v_iᵀ) Wᵀ Cᵀ: the Schur complement is Wᵀ M_s W with W = [−M_nn⁻¹ M_ni; I], and W's own
@@ -45,17 +47,22 @@ class SpectralFunction : public InformationFunction {
   bool inside(const Eigen::MatrixXd& information, Eigen::MatrixXd& result) const;
   /// ln of o2 … o5; −∞ where singular.
   double of(const Eigen::VectorXd& lambda) const;
+  /// −ln(Σ λ⁻ᵖ)/2p of positive λ in any order.
+  double mean(const Eigen::VectorXd& lambda) const;
+  /// ∂Φ/∂λ_i, λ ascending.
+  Eigen::VectorXd by_eigenvalue(const Eigen::VectorXd& lambda) const;
   SpectralIndex index() const { return index_; }
+  /// Whether every eigenvalue counts: Φ = −ln(Σ λ⁻ᵖ)/2p.
+  bool of_all() const { return index_ == SpectralIndex::o5 || index_ == SpectralIndex::mean; }
   /// Blocks times this are in units of the scale.
   const Eigen::MatrixXd& to_scaled() const { return C_; }
   int nuisance() const { return nuisance_; }
 
  private:
-  bool has_bound() const { return index_ == SpectralIndex::o3 || index_ == SpectralIndex::o5; }
-  /// ∂Φ/∂λ_i.
-  Eigen::VectorXd by_eigenvalue(const Eigen::VectorXd& lambda) const;
+  bool has_bound() const { return index_ == SpectralIndex::o3 || of_all(); }
 
   SpectralIndex index_;
+  double power_;
   int nuisance_;
   Eigen::MatrixXd C_;
 };

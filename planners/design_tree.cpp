@@ -5,7 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "posewright/support/parallel.hpp"
+#include "posewright/support/bytes.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright {
 namespace {
@@ -38,15 +39,23 @@ bool DesignTree::run() {
       start[std::size_t(task_.approximate->support[k])] = task_.poses * task_.approximate->weights[k];
   }
   if (auto root = look_into(std::move(whole), std::move(start), *relaxations_[0], best_)) push(std::move(root));
+  bool stopped = false;
   while (!open_.empty()) {
     best_.bound = std::max(best_.value, -open_.begin()->first.first);
-    if (monitor_.should_stop()) return false;
+    if (stopped) return false;
     monitor_.report({"branch and bound", double(nodes_), 0, best_.value, best_.bound, {}});
     auto round = next_round();
     std::vector<Split> splits(round.size());
-    for (Split& each : splits) each.best = best_;
-    parallel_for(round.size(), threads_,
-                 [&](std::size_t k, int worker) { split(*round[k], *relaxations_[std::size_t(worker)], splits[k]); });
+    for (Split& each : splits) {
+      each.best = best_;
+      each.left_out = true;
+    }
+    stopped = run_tasks(
+        {"nodes", round.size(), threads_, [](std::size_t, std::string_view) {}},
+        [&](std::size_t k, int worker) {
+          return bytes_of(split(*round[k], *relaxations_[std::size_t(worker)], best_));
+        },
+        [&](std::size_t k, std::string_view bytes) { splits[k] = split_in(bytes); }, monitor_);
     merge(round, splits);
   }
   best_.bound = best_.value;
@@ -77,7 +86,7 @@ void DesignTree::merge(std::vector<std::unique_ptr<Node>>& round, std::vector<Sp
       best_.members = each.best.members;
     }
   for (std::size_t k = 0; k < round.size(); ++k) {
-    if (splits[k].stopped) push(std::move(round[k]));
+    if (splits[k].left_out) push(std::move(round[k]));
     for (auto& child : splits[k].children)
       if (child->relaxed.bound > best_.value + proof_tolerance) push(std::move(child));
   }
@@ -89,12 +98,10 @@ void DesignTree::push(std::unique_ptr<Node> node) {
   open_[{key, nodes_++}] = std::move(node);
 }
 
-void DesignTree::split(const Node& node, NodeRelaxation& relaxation, Split& result) const {
-  if (node.relaxed.bound <= result.best.value + proof_tolerance) return;
-  if (monitor_.should_stop()) {
-    result.stopped = true;
-    return;
-  }
+DesignTree::Split DesignTree::split(const Node& node, NodeRelaxation& relaxation, const Design& best) const {
+  Split result;
+  result.best = best;
+  if (node.relaxed.bound <= best.value + proof_tolerance) return result;
   auto c = std::size_t(std::max(node.relaxed.branch, 0));
   if (node.relaxed.branch < 0)
     while (node.box.most[c] == node.box.least[c]) ++c;
@@ -107,6 +114,39 @@ void DesignTree::split(const Node& node, NodeRelaxation& relaxation, Split& resu
       child->relaxed.bound = std::min(child->relaxed.bound, node.relaxed.bound);
       result.children.push_back(std::move(child));
     }
+  return result;
+}
+
+std::string DesignTree::bytes_of(const Split& split) {
+  ByteWriter bytes;
+  bytes.put(split.best.value);
+  bytes.put(split.best.members);
+  bytes.put(split.children.size());
+  for (const auto& child : split.children) {
+    bytes.put(child->box.least);
+    bytes.put(child->box.most);
+    bytes.put(child->relaxed.bound);
+    bytes.put(child->relaxed.numbers);
+    bytes.put(child->relaxed.branch);
+  }
+  return bytes.take();
+}
+
+DesignTree::Split DesignTree::split_in(std::string_view from) {
+  ByteReader bytes(from);
+  Split split;
+  bytes.get(split.best.value);
+  bytes.get(split.best.members);
+  for (auto count = bytes.get<std::size_t>(); count > 0; --count) {
+    auto child = std::make_unique<Node>();
+    bytes.get(child->box.least);
+    bytes.get(child->box.most);
+    bytes.get(child->relaxed.bound);
+    bytes.get(child->relaxed.numbers);
+    bytes.get(child->relaxed.branch);
+    split.children.push_back(std::move(child));
+  }
+  return split;
 }
 
 std::unique_ptr<DesignTree::Node> DesignTree::look_into(ChoiceBox box, std::vector<double> numbers,

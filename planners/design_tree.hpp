@@ -2,6 +2,8 @@
 
 #include <map>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,7 +12,7 @@
 namespace posewright {
 
 /// Branch and bound over the sets of N candidates, best bound first. Nodes are split in rounds of a fixed number, each
-/// by itself and merged in order, so that the tree is the same on any number of threads.
+/// by itself and merged in order, so that the tree is the same on any number of threads and processes.
 class DesignTree {
  public:
   /// @param best  a design to begin with; whatever is better replaces it
@@ -26,10 +28,12 @@ class DesignTree {
   struct Split {
     std::vector<std::unique_ptr<Node>> children;
     Design best;
-    bool stopped = false;
+    bool left_out = false;  ///< by a stop: its node stays open
   };
 
-  void split(const Node& node, NodeRelaxation& relaxation, Split& result) const;
+  Split split(const Node& node, NodeRelaxation& relaxation, const Design& best) const;
+  static std::string bytes_of(const Split& split);
+  static Split split_in(std::string_view bytes);
   /// Null if nothing in the box is better than `best`.
   std::unique_ptr<Node> look_into(ChoiceBox box, std::vector<double> numbers, NodeRelaxation& relaxation,
                                   Design& best) const;

@@ -5,7 +5,9 @@
 #include <mutex>
 #include <utility>
 
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
 #include "reduced_task.hpp"
 #include "starts.hpp"
 
@@ -51,6 +53,25 @@ class BestOutcomes {
   int count_ = 0;
   long exchanges_ = 0;
 };
+
+std::string bytes_of(const Outcome& outcome) {
+  ByteWriter bytes;
+  bytes.put(outcome.members);
+  bytes.put(outcome.value);
+  bytes.put(outcome.exchanges);
+  bytes.put(outcome.done);
+  return bytes.take();
+}
+
+Outcome outcome_in(std::string_view from) {
+  ByteReader bytes(from);
+  Outcome outcome;
+  bytes.get(outcome.members);
+  bytes.get(outcome.value);
+  bytes.get(outcome.exchanges);
+  bytes.get(outcome.done);
+  return outcome;
+}
 
 /// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
 /// whole task.
@@ -107,17 +128,32 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
   const bool all_time = options.use_all_time && !options.restarts_stated && monitor.deadline;
   const int starts = all_time ? std::max(options.restarts, most_starts) : options.restarts;
   Progress progress{stage, 0, all_time ? 0.0 : double(starts), {}, task.bound, {}};
-  parallel_for(std::size_t(starts), thread_count(options.threads), [&](std::size_t i, int) {
-    if (i > 0 && monitor.should_stop()) return;
-    Random random(options.seed, i);
-    Outcome outcome = search(reduced.task(), i, random, monitor);
-    const std::scoped_lock lock(mutex);
+  const auto tell = [&](const Outcome& outcome) {
     progress.done += 1;
     progress.best = std::max(progress.best.value_or(outcome.value), outcome.value);
-    best.add(i, std::move(outcome));
     if (progress.bound && degree > 0) progress.efficiency = std::exp((*progress.best - *progress.bound) / degree);
     monitor.report(progress);
-  });
+  };
+  const auto carry_out = [&](std::size_t i) {
+    Random random(options.seed, i);
+    return search(reduced.task(), i, random, monitor);
+  };
+  if (all_time) {
+    parallel_for(std::size_t(starts), thread_count(options.threads), [&](std::size_t i, int) {
+      if (i > 0 && monitor.should_stop()) return;
+      Outcome outcome = carry_out(i);
+      const std::scoped_lock lock(mutex);
+      tell(outcome);
+      best.add(i, std::move(outcome));
+    });
+  } else {
+    TaskGroup group{stage, std::size_t(starts), options.threads};
+    group.finished = [&](std::size_t, std::string_view bytes) { tell(outcome_in(bytes)); };
+    group.first_always = true;
+    run_tasks(
+        group, [&](std::size_t i, int) { return bytes_of(carry_out(i)); },
+        [&](std::size_t i, std::string_view bytes) { best.add(i, outcome_in(bytes)); }, monitor);
+  }
   Design design;
   design.restarts = best.count();
   design.exchanges = best.exchanges();

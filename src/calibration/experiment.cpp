@@ -1,13 +1,13 @@
 #include "posewright/calibration/experiment.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/model/rotation_vector.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright {
 namespace {
@@ -83,23 +83,42 @@ VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
   return result;
 }
 
+std::string bytes_of(const VirtualCalibration& c) {
+  ByteWriter bytes;
+  bytes.put(c.end);
+  bytes.put(c.why);
+  bytes.put(c.error);
+  bytes.put(c.sigma);
+  for (const double value : {c.interval, c.chi_square, c.mean_square, c.largest}) bytes.put(value);
+  bytes.put(c.freedom);
+  return bytes.take();
+}
+
+VirtualCalibration calibration_in(std::string_view from) {
+  ByteReader bytes(from);
+  VirtualCalibration c;
+  bytes.get(c.end);
+  bytes.get(c.why);
+  bytes.get(c.error);
+  bytes.get(c.sigma);
+  for (double* value : {&c.interval, &c.chi_square, &c.mean_square, &c.largest}) bytes.get(*value);
+  bytes.get(c.freedom);
+  return c;
+}
+
 }  // namespace
 
 std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experiment, const Monitor& monitor) {
   const int draws = experiment.options.draws, step = std::max(1, draws / reports);
   std::vector<VirtualCalibration> results(static_cast<std::size_t>(draws));
-  std::atomic<int> done{0};
-  parallel_for(results.size(), thread_count(experiment.options.threads), [&](std::size_t draw, int) {
-    if (monitor.should_stop()) return;
-    results[draw] = calibrate(experiment, int(draw));
-    const int now = ++done;
-    if (now % step != 0) return;
-    Progress progress;
-    progress.stage = "draws";
-    progress.done = now;
-    progress.total = draws;
-    monitor.report(progress);
-  });
+  int done = 0;
+  TaskGroup group{"draws", results.size(), experiment.options.threads};
+  group.finished = [&](std::size_t, std::string_view) {
+    if (++done % step == 0) monitor.report({"draws", double(done), double(draws), {}, {}, {}});
+  };
+  run_tasks(
+      group, [&](std::size_t draw, int) { return bytes_of(calibrate(experiment, int(draw))); },
+      [&](std::size_t draw, std::string_view bytes) { results[draw] = calibration_in(bytes); }, monitor);
   return results;
 }
 

@@ -28,6 +28,7 @@ struct Command {
   po::options_description (*options)();
   std::string example;
   int (*run)(const po::variables_map& values, const Words& positional);
+  bool shares_tasks = false;  ///< among the processes that the program was started as
 };
 
 const std::vector<Command>& commands();
@@ -44,6 +45,8 @@ Command route_command();
 Command stations_command();
 Command export_command();
 Command report_command();
+Command fleet_command();
+Command merge_command();
 
 /// Options that every command has.
 struct CommonOptions {

@@ -8,7 +8,9 @@
 
 #include "command.hpp"
 #include "help.hpp"
+#include "posewright/support/tasks.hpp"
 #include "posewright/version.hpp"
+#include "processes.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -55,6 +57,8 @@ int run_command(const Command& command, const Words& words) {
     return done;
   }
   po::notify(values);
+  if (!command.shares_tasks && started_workers()->processes() > 1)
+    throw InputError({}, command.name + " runs in one process", "start it without mpirun");
   return command.run(values, values.count("positional") > 0 ? values["positional"].as<Words>() : Words{});
 }
 
@@ -88,16 +92,25 @@ int run_program(const Words& words) {
 int main(int count, char** arguments) {
   using namespace posewright;
   cli::prepare_process();
-  const auto complain = [](const std::string& text, int code) {
-    cli::print_error(text);
+  const auto end = [](int code) {
+    cli::leave(code);
     return code;
+  };
+  const auto complain = [&](const std::string& text, int code) {
+    cli::print_error(text);
+    return end(code);
   };
   try {
     const int code = cli::run_program(cli::Words(arguments + 1, arguments + count));
     if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
-    return code;
+    return end(code);
   } catch (const cli::Interrupted&) {
-    return cli::interrupted;
+    return end(cli::interrupted);
+  } catch (const cli::AnotherWrites&) {
+    return end(cli::done);
+  } catch (const ShardDone& shard) {
+    fmt::print("{} of {} {} are in the log; the rest is for the other shares.\n", shard.done, shard.of, shard.group);
+    return end(cli::done);
   } catch (const InputError& error) {
     return complain(error.what(), cli::bad_input);
   } catch (const CannotDo& error) {

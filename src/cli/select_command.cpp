@@ -4,6 +4,7 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/tasks/select_blocks.hpp"
+#include "task_options.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -22,7 +23,7 @@ po::options_description select_command_options() {
       ("augment", text("ROWS"), "blocks that are measured already: N more come to them")         //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
           "reserve", "maximise what is left when the block that hurts most is lost");
-  options.add(output_options(false));
+  options.add(output_options(false)).add(task_options());
   return options;
 }
 
@@ -62,9 +63,11 @@ int run_select(const po::variables_map& values, const Words& positional) {
   select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;
   select.threads = common.threads;
+  const auto engine = engine_of(values, "select");
   const Outputs outputs(values, {file}, false);
-  return outputs.search_and_write(common, time_limit(values),
-                                  [&](const Monitor& monitor) { return select_blocks(file, select, monitor); });
+  return outputs.search_and_write(
+      common, time_limit(values), [&](const Monitor& monitor) { return select_blocks(file, select, monitor); }, {},
+      engine.get());
 }
 
 }  // namespace
@@ -75,7 +78,8 @@ Command select_command() {
           "The same search on your own whitened Jacobian blocks (.npy n×r×m, or CSV of n·r rows × m columns).",
           select_command_options,
           "posewright select blocks.npy --poses 20 -o plan.json",
-          run_select};
+          run_select,
+          true};
 }
 
 }  // namespace posewright::cli

@@ -7,13 +7,15 @@
 #include <cmath>
 
 #include "signals.hpp"
+#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
-Watch::Watch(const CommonOptions& common, double seconds)
+Watch::Watch(const CommonOptions& common, double seconds, TaskEngine* engine)
     : begin_(Monitor::Clock::now()), last_(begin_), stage_begin_(begin_) {
   begin_stage(SignalStage::searching);
   monitor_.interrupted = &interrupted_flag();
+  monitor_.engine = engine;
   if (seconds > 0)
     monitor_.deadline =
         begin_ + std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(seconds));
@@ -48,6 +50,11 @@ void Watch::show(const Progress& progress) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   print_aside(fmt::format("{}{}{}", terminal ? "\r\x1b[K" : "", line, terminal ? "" : "\n"));
   shown_ = terminal;
+}
+
+void after_tasks(TaskEngine& engine, const CommonOptions& common) {
+  tell_of_tasks(engine, common);
+  if (!engine.writes()) throw AnotherWrites{};
 }
 
 void print_notes(const std::vector<std::string>& notes) {

@@ -15,7 +15,8 @@ namespace posewright::cli {
 class Watch {
  public:
   /// @param seconds  time limit, 0 = none
-  Watch(const CommonOptions& common, double seconds);
+  /// @param engine   who does the tasks of the computation; null: this process's threads
+  Watch(const CommonOptions& common, double seconds, TaskEngine* engine = nullptr);
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -41,14 +42,22 @@ struct Watched {
 /// Ends the program with exit code `interrupted`: Ctrl-C came before there was anything to show.
 struct Interrupted {};
 
-/// Runs work(monitor) under a Watch. Throws Interrupted where the work gave up because of Ctrl-C.
+/// Ends a process that is not the one that writes.
+struct AnotherWrites {};
+
+/// What --verbose tells of tasks; throws AnotherWrites.
+void after_tasks(TaskEngine& engine, const CommonOptions& common);
+
+/// Runs work(monitor) under a Watch. Throws Interrupted where the work gave up because of Ctrl-C, AnotherWrites on all
+/// processes but the first.
 /// @param seconds  time limit, 0 = none
 template <class Work>
-auto watched(const CommonOptions& common, double seconds, const Work& work)
+auto watched(const CommonOptions& common, double seconds, const Work& work, TaskEngine* engine = nullptr)
     -> Watched<decltype(work(std::declval<const Monitor&>()))> {
-  const Watch watch(common, seconds);
+  const Watch watch(common, seconds, engine);
   try {
     auto result = work(watch.monitor());
+    if (engine != nullptr) after_tasks(*engine, common);
     return {std::move(result), watch.was_interrupted()};
   } catch (const CannotDo&) {
     if (watch.was_interrupted()) throw Interrupted{};

@@ -12,6 +12,7 @@
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
+#include "task_options.hpp"
 #include "terminal.hpp"
 #include "weighting.hpp"
 #include "write_result.hpp"
@@ -41,7 +42,7 @@ po::options_description simulate_command_options() {
       ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                      //
       ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                        //
       ("force", "replace a file that posewright did not write");
-  options.add(problem_options());
+  options.add(task_options()).add(problem_options());
   return options;
 }
 
@@ -115,9 +116,11 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
   std::vector<std::filesystem::path> inputs = files_of(problem);
   inputs.emplace_back(positional[1]);
   check_output_files(values, {data}, inputs);
+  const auto engine = engine_of(values, "simulate");
   const PoseList poses = read_poses(positional[1], pose_coordinates(problem, simulate.variant), from);
-  const auto [result, was_interrupted] =
-      watched(common, 0, [&](const Monitor& monitor) { return simulate_problem(problem, poses, simulate, monitor); });
+  const auto [result, was_interrupted] = watched(
+      common, 0, [&](const Monitor& monitor) { return simulate_problem(problem, poses, simulate, monitor); },
+      engine.get());
   print_notes(result.notes);
   if (!data.empty()) write_results({{data, result.first_readings}});
   if (common.json) fmt::print("{}", json_text(simulation_json(problem, simulate, result)));
@@ -134,7 +137,8 @@ Command simulate_command() {
       "Virtual experiment: measures a plan on drawn robots, calibrates, compares with the truth and the prediction.",
       simulate_command_options,
       "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000",
-      run_simulate};
+      run_simulate,
+      true};
 }
 
 }  // namespace posewright::cli

@@ -7,6 +7,7 @@
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
+#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
@@ -14,17 +15,18 @@ namespace {
 
 po::options_description stations_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                     //
-      ("choose", text("k"), "how many stations are used (workspace: stations: choose, 1)")  //
-      ("full", text("n"), "how many of the best are planned in full (3)")                   //
-      ("poses", text("N"), "number of poses (design: poses)")                               //
-      ("variant", text("V"), "model variant (design: variant, else the first)")             //
+  options.add_options()                                                                                               //
+      ("choose", text("k"), "how many stations are used (workspace: stations: choose, 1)")                            //
+      ("pairs", "every pair of places, however many (without: the best one gets the best second from 100 pairs on)")  //
+      ("full", text("n"), "how many of the best are planned in full (3)")                                             //
+      ("poses", text("N"), "number of poses (design: poses)")                                                         //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                                       //
       ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())(
           "candidates", text("n"),
           help_with_default("feasible configurations of the full plans", default_candidates).c_str())  //
       ("restarts", text("k"), "starts of the search of the full plans (10)")                           //
       ("time-limit", text("S"), "give up after S seconds");
-  options.add(problem_options());
+  options.add(task_options()).add(problem_options());
   return options;
 }
 
@@ -40,10 +42,18 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   stations.plan.restarts = whole_number(values, "restarts", 1, 1000000);
   stations.plan.seed = common.seed;
   stations.plan.threads = common.threads;
+  stations.every_set = values.count("pairs") > 0;
+  if (stations.every_set) {
+    if (stations.choose) throw InputError({}, "--choose stands beside --pairs", "one of them");
+    stations.choose = 2;
+  }
+  const auto engine = engine_of(values, "stations");
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
-  const std::vector<StationRank> ranks = watched(common, time_limit(values), [&](const Monitor& monitor) {
-                                           return place_stations(problem, stations, monitor);
-                                         }).result;
+  const std::vector<StationRank> ranks =
+      watched(
+          common, time_limit(values),
+          [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); }, engine.get())
+          .result;
   if (common.json) fmt::print("{}", json_text(stations_json(ranks)));
   else print_report(stations_text(ranks));
   return done;
@@ -57,7 +67,8 @@ Command stations_command() {
           "Ranks places for the instrument by the plan that each of them allows.",
           stations_command_options,
           "posewright stations examples/cell/problem.yaml --choose 1",
-          run_stations};
+          run_stations,
+          true};
 }
 
 }  // namespace posewright::cli

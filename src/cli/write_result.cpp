@@ -88,8 +88,9 @@ std::string Outputs::write(const Plan& plan, const std::filesystem::path& json, 
 
 int Outputs::search_and_write(const CommonOptions& common, double seconds,
                               const std::function<Plan(const Monitor&)>& search,
-                              const std::function<Plan(const Plan&, const Monitor&)>& validation) const {
-  const auto [plan, was_interrupted] = watched(common, seconds, search);
+                              const std::function<Plan(const Plan&, const Monitor&)>& validation,
+                              TaskEngine* engine) const {
+  const auto [plan, was_interrupted] = watched(common, seconds, search, engine);
   const auto show = [&, &found = plan](const std::string& json, const std::string& written) {
     if (common.json) fmt::print("{}", json);
     else print_report(plan_summary(found) + written);

@@ -33,7 +33,8 @@ class Outputs {
           bool validation = false);
   /// Runs the search under a Watch, writes everything, returns the exit code.
   int search_and_write(const CommonOptions& common, double seconds, const std::function<Plan(const Monitor&)>& search,
-                       const std::function<Plan(const Plan&, const Monitor&)>& validation = {}) const;
+                       const std::function<Plan(const Plan&, const Monitor&)>& validation = {},
+                       TaskEngine* engine = nullptr) const;
 
  private:
   /// Returns the plan as JSON.

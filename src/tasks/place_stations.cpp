@@ -1,7 +1,6 @@
 #include "posewright/tasks/place_stations.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -9,9 +8,11 @@
 
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
 #include "posewright/workspace/candidates.hpp"
 #include "without_roadmap.hpp"
 
@@ -78,6 +79,31 @@ Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
   return problem;
 }
 
+/// All but the stations, which whoever asks for it knows.
+std::string bytes_of(const StationRank& rank) {
+  ByteWriter bytes;
+  bytes.put(rank.why_not);
+  bytes.put(rank.main_rejection);
+  bytes.put(rank.parameters);
+  bytes.put(rank.rho0.has_value());
+  for (const double value : {rank.phi, rank.criterion_value, rank.feasible_share, rank.rho0.value_or(0.0)})
+    bytes.put(value);
+  return bytes.take();
+}
+
+StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
+  ByteReader bytes(from);
+  StationRank rank;
+  rank.stations = std::move(stations);
+  bytes.get(rank.why_not);
+  bytes.get(rank.main_rejection);
+  bytes.get(rank.parameters);
+  const bool has_rho0 = bytes.get<bool>();
+  for (double* value : {&rank.phi, &rank.criterion_value, &rank.feasible_share}) bytes.get(*value);
+  if (has_rho0) rank.rho0 = bytes.get<double>();
+  return rank;
+}
+
 class Ranking {
  public:
   Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
@@ -104,12 +130,18 @@ class Ranking {
     sort(ranks);
     PlanOptions full = options_.plan;
     full.proof.seconds = 0.0;  // places are held against each other, not against what is possible
-    for (std::size_t i = 0; i < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))); ++i) {
-      if (!ranks[i].why_not.empty() || monitor_.should_stop()) break;
-      monitor_.report({"full plans", double(i), double(options_.full), {}, {}, {}});
-      ranks[i] = judge(problem_, ranks[i].stations, full);
-      ranks[i].in_full = true;
-    }
+    std::size_t in_full = 0;
+    while (in_full < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))) && ranks[in_full].why_not.empty())
+      ++in_full;
+    // One at a time in each process: the parts of a whole plan keep its threads busy.
+    run_tasks(
+        {"full plans", in_full, 1},
+        [&](std::size_t i, int) { return bytes_of(judge(problem_, ranks[i].stations, full)); },
+        [&](std::size_t i, std::string_view bytes) {
+          ranks[i] = rank_in(bytes, ranks[i].stations);
+          ranks[i].in_full = true;
+        },
+        monitor_);
     sort(ranks);
     compare(ranks);
     if (!ranks.front().why_not.empty())
@@ -130,7 +162,7 @@ class Ranking {
   std::vector<StationRank> quick(std::size_t choose) {
     double sets = 1;
     for (std::size_t i = 0; i < choose; ++i) sets *= double(places_.size() - i) / double(i + 1);
-    if (choose == 1 || sets <= double(most_sets)) return quick_of(all_sets(choose));
+    if (choose == 1 || options_.every_set || sets <= double(most_sets)) return quick_of(all_sets(choose));
     Set chosen;
     std::vector<StationRank> ranks;
     while (chosen.size() < choose) {
@@ -173,15 +205,16 @@ class Ranking {
     const int threads = thread_count(options_.plan.threads), at_once = std::min(threads, int(sets.size()));
     quick.threads = std::max(1, threads / std::max(1, at_once));
     std::vector<StationRank> ranks(sets.size());
-    std::atomic<int> done = 0;
-    parallel_for(sets.size(), at_once, [&](std::size_t s, int) {
-      if (monitor_.should_stop()) return;
+    const auto stations_at = [&](std::size_t s) {
       std::vector<StationSpec> stations;
       for (const std::size_t i : sets[s]) stations.push_back(places_[i]);
-      ranks[s] = judge(unconnected_, stations, quick);
-      monitor_.report({"places", double(++done), double(sets.size()), {}, {}, {}});
-    });
-    if (monitor_.should_stop()) throw CannotDo("stopped before every place was looked at");
+      return stations;
+    };
+    const bool stopped = run_tasks(
+        {"places", sets.size(), at_once},
+        [&](std::size_t s, int) { return bytes_of(judge(unconnected_, stations_at(s), quick)); },
+        [&](std::size_t s, std::string_view bytes) { ranks[s] = rank_in(bytes, stations_at(s)); }, monitor_);
+    if (stopped) throw CannotDo("stopped before every place was looked at");
     return ranks;
   }
 

@@ -9,6 +9,8 @@
 
 namespace posewright {
 
+class TaskEngine;
+
 /// Progress of a long computation.
 struct Progress {
   std::string stage;                 ///< "candidates", "certificate", "exchange", …
@@ -18,7 +20,8 @@ struct Progress {
   std::optional<double> efficiency;  ///< lower bound of what `best` reaches of the optimum, in (0, 1]
 };
 
-/// The one channel between a long computation and its caller: progress out, stop in. Safe from several threads.
+/// The one channel between a long computation and its caller: progress out, stop and helping hands in. Safe from
+/// several threads.
 class Monitor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -26,6 +29,9 @@ class Monitor {
   std::function<void(const Progress&)> on_progress;  ///< may be empty; calls are serialised
   const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler or another thread
   std::optional<Clock::time_point> deadline;
+  /// Who does the tasks of run_tasks(); null: this process's threads. A computation inside a task has a monitor of its
+  /// own, without one.
+  TaskEngine* engine = nullptr;
 
   bool was_interrupted() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
   bool should_stop() const { return was_interrupted() || (deadline && Clock::now() >= *deadline); }

@@ -28,10 +28,11 @@ struct StationOptions {
   PlanOptions plan;
   std::optional<int> choose;  ///< how many stations; else what the problem says
   int full = 3;               ///< how many of the best are planned in full
+  bool every_set = false;     ///< every set of so many stations is tried, however many there are
 };
 
 /// Chooses among the places of workspace.stations: a quick plan from each, full ones from the best. All sets of so many
-/// stations are tried if they are at most 100; else the best one gets the best second, and so on.
+/// stations are tried if they are at most 100 or all are asked for; else the best one gets the best second, and so on.
 /// Best first. Throws InputError if the problem names no places or its instrument has no stations, CannotDo if
 /// none of them gives a plan, and where the search is stopped.
 std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posewright/tasks/plan_problem.hpp"
+
+namespace posewright {
+
+/// The plan of one robot of a fleet.
+struct FleetPlan {
+  std::string why_not;  ///< why there is none; empty: there is one
+  std::string variant;
+  int poses = 0;
+  double log_det = 0.0;
+  std::optional<double> efficiency;  ///< at least, of the best plan of its candidates; none: no bound
+  std::optional<double> rho0;        ///< predicted position error at the test poses, m
+  double seconds = 0.0;
+  std::string rendered;  ///< what `render` made of the plan
+};
+
+/// Plans every problem by itself, each in one process with all its threads (run_tasks).
+/// @param render  makes of a plan what its caller keeps: files
+std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const PlanOptions& options,
+                                  const std::function<std::string(const Plan&, std::size_t index)>& render,
+                                  const Monitor& monitor);
+
+}  // namespace posewright

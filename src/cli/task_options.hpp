@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "command.hpp"
+#include "posewright/support/tasks.hpp"
+
+namespace posewright::cli {
+
+/// --resume LOG and --shard i/n, of commands whose work splits into tasks.
+po::options_description task_options();
+
+/// Who does the tasks of a command: the processes that the program was started as, with the log and the share that the
+/// options name. Throws InputError for a share that is none or without a log, and for --time-limit with several
+/// processes: they would stop at different places.
+std::unique_ptr<TaskEngine> engine_of(const po::variables_map& values, const std::string& command);
+
+/// What --verbose tells of the tasks: how many were known, and what went between processes.
+void tell_of_tasks(TaskEngine& engine, const CommonOptions& common);
+
+}  // namespace posewright::cli

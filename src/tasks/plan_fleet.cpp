@@ -1,0 +1,74 @@
+#include "posewright/tasks/plan_fleet.hpp"
+
+#include "posewright/support/bytes.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/tasks.hpp"
+
+namespace posewright {
+namespace {
+
+std::string bytes_of(const FleetPlan& plan) {
+  ByteWriter bytes;
+  bytes.put(plan.why_not);
+  bytes.put(plan.variant);
+  bytes.put(plan.poses);
+  bytes.put(plan.efficiency.has_value());
+  bytes.put(plan.rho0.has_value());
+  for (const double value : {plan.log_det, plan.efficiency.value_or(0.0), plan.rho0.value_or(0.0), plan.seconds})
+    bytes.put(value);
+  bytes.put(plan.rendered);
+  return bytes.take();
+}
+
+FleetPlan fleet_plan_in(std::string_view from) {
+  ByteReader bytes(from);
+  FleetPlan plan;
+  bytes.get(plan.why_not);
+  bytes.get(plan.variant);
+  bytes.get(plan.poses);
+  const bool has_efficiency = bytes.get<bool>(), has_rho0 = bytes.get<bool>();
+  bytes.get(plan.log_det);
+  const auto efficiency = bytes.get<double>(), rho0 = bytes.get<double>();
+  if (has_efficiency) plan.efficiency = efficiency;
+  if (has_rho0) plan.rho0 = rho0;
+  bytes.get(plan.seconds);
+  bytes.get(plan.rendered);
+  return plan;
+}
+
+}  // namespace
+
+std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const PlanOptions& options,
+                                  const std::function<std::string(const Plan&, std::size_t index)>& render,
+                                  const Monitor& monitor) {
+  std::vector<FleetPlan> fleet(problems.size());
+  for (FleetPlan& plan : fleet) plan.why_not = "not planned: stopped";
+  const auto plan_one = [&](std::size_t i) {
+    FleetPlan result;
+    Monitor quiet;  // the stages of one plan would hide how many are done
+    quiet.interrupted = monitor.interrupted;
+    quiet.deadline = monitor.deadline;
+    try {
+      const Plan plan = plan_problem(problems[i], options, quiet);
+      result.variant = plan.variant;
+      result.poses = int(plan.poses.size());
+      result.log_det = plan.log_det;
+      if (plan.certificate.proved) result.efficiency = plan.certificate.efficiency;
+      result.rho0 = plan.rho0;
+      result.seconds = plan.statistics.seconds;
+      result.rendered = render(plan, i);
+    } catch (const InputError& error) {
+      result.why_not = error.what();
+    } catch (const CannotDo& error) {
+      result.why_not = error.what();
+    }
+    return result;
+  };
+  // One at a time in each process: the parts of a plan keep its threads busy.
+  run_tasks(
+      {"plans", problems.size(), 1}, [&](std::size_t i, int) { return bytes_of(plan_one(i)); },
+      [&](std::size_t i, std::string_view bytes) { fleet[i] = fleet_plan_in(bytes); }, monitor);
+  return fleet;
+}
+
+}  // namespace posewright

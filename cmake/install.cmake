@@ -18,4 +18,10 @@ set(package_files ${PROJECT_BINARY_DIR}/posewright-config.cmake ${PROJECT_BINARY
   ${PROJECT_SOURCE_DIR}/cmake/dependencies.cmake)
 install(FILES ${package_files} DESTINATION ${package_dir} COMPONENT development)
 
+# ROS 2 finds packages by the ament index: an empty file of the package's name.
+file(WRITE ${PROJECT_BINARY_DIR}/ament_index/posewright "")
+install(FILES ${PROJECT_BINARY_DIR}/ament_index/posewright COMPONENT development
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/ament_index/resource_index/packages)
+install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT development)
+
 include(cmake/package.cmake)

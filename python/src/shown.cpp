@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "bindings.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/file.hpp"
 
 namespace posewright::python {

@@ -105,6 +105,10 @@ __all__ = [
     "stations",
 ]
 
+from . import _display as _display_of_results
+
+_display_of_results.install()
+
 # Where users find them, and what tracebacks show.
 for _public in [value for value in vars().values() if isinstance(value, type)]:
     _public.__module__ = __name__

@@ -195,8 +195,7 @@ void bind_plan_class(py::module_& m) {
            "Writes plan.json, or poses.csv where the name ends in .csv. FileExistsError where there is a file, unless "
            "overwrite.")
       .def("__len__", [](const Plan& p) { return p.poses.size(); })
-      .def("__repr__", [](const Plan& p) { return "<Plan: " + plan_line(p) + ">"; })
-      .def("_repr_html_", &plan_html);
+      .def("__repr__", [](const Plan& p) { return "<Plan: " + plan_line(p) + ">"; });
 }
 
 }  // namespace

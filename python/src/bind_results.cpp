@@ -101,8 +101,7 @@ void bind_evaluation(py::module_& m) {
       .def("summary", &evaluation_text, "The table that the command line prints.")
       .def("to_json", [](const E& e) { return json_text(evaluation_json(e)); })
       .def("to_dict", [](const E& e) { return parsed(json_text(evaluation_json(e), JsonLayout::one_line)); })
-      .def("__repr__", [](const E& e) { return "<Evaluation: " + plan_line(e.plan) + ">"; })
-      .def("_repr_html_", [](const E& e) { return plan_html(e.plan); });
+      .def("__repr__", [](const E& e) { return "<Evaluation: " + plan_line(e.plan) + ">"; });
 }
 
 void bind_observation(py::module_& m) {

@@ -71,8 +71,7 @@ void save_text(const py::object& path, const std::string& text, bool overwrite);
 /// {"o1": …, …}
 py::dict indices_dict(const ObservabilityIndices& indices);
 /// What a notebook shows of a plan.
-std::string plan_html(const Plan& plan);
-/// The same in one line.
+/// A plan in one line.
 std::string plan_line(const Plan& plan);
 
 void bind_errors(py::module_& m);

@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/table.hpp"
 #include "posewright/version.hpp"
 
 namespace posewright::python {
@@ -24,6 +25,7 @@ void bind_criteria(py::module_& m) {
         return names;
       },
       "Names of the planners, each with what it does.");
+  m.def("_shown", &shown_value, py::arg("value"), py::arg("unit"), "A value in SI as tables show it.");
 }
 
 }  // namespace posewright::python

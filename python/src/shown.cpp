@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "bindings.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/file.hpp"
 
 namespace posewright::python {
@@ -14,22 +13,6 @@ namespace {
 
 /// Rounded down: what is stated as reached must be.
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(1e4 * share) / 100); }
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '&') result += "&amp;";
-    else result += c;
-  return result;
-}
-
-std::string row(const std::vector<std::string>& cells, const char* tag) {
-  std::string text = "<tr>";
-  for (const std::string& cell : cells) text += fmt::format("<{0}>{1}</{0}>", tag, escaped(cell));
-  return text + "</tr>";
-}
 
 }  // namespace
 
@@ -42,22 +25,6 @@ std::string plan_line(const Plan& plan) {
     text += fmt::format(", at least {} of the best of {} candidates", percent(plan.certificate.efficiency),
                         plan.certificate.count);
   return text + (plan.interrupted ? ", interrupted" : "");
-}
-
-std::string plan_html(const Plan& plan) {
-  std::string text = "<p>" + escaped(plan_line(plan)) + "</p><table><thead>" +
-                     row({"parameter", "nominal", "tolerance", "σ after calibration", ""}, "th") + "</thead><tbody>";
-  for (const PlannedParameter& p : plan.parameters) {
-    const std::string& unit = p.label.unit;
-    const std::string note = !p.sigma                         ? p.dropped_because
-                             : p.label.role == Role::nuisance ? "nuisance"
-                             : *p.sigma >= p.label.tolerance  ? "not worth identifying"
-                                                              : "";
-    text += row({(p.variant.empty() ? "" : p.variant + ": ") + p.label.name, shown_value(p.label.nominal, unit),
-                 shown_value(p.label.tolerance, unit), p.sigma ? shown_value(*p.sigma, unit) : "", note},
-                "td");
-  }
-  return text + "</tbody></table>";
 }
 
 py::object parsed(const std::string& json) { return py::module_::import("json").attr("loads")(json); }

@@ -163,6 +163,5 @@ def test_files_are_written_whole_and_never_over_others(small_plan, tmp_path):
 def test_a_plan_shows_itself(small_plan):
     assert repr(small_plan).startswith("<Plan: 18 poses for ")
     assert "px1" in small_plan.summary() and "px1" in small_plan._repr_html_()
-    assert small_plan._repr_html_().count("<tr>") == 1 + len(small_plan.parameters)
     for shown in (small_plan.poses[0], small_plan.parameters[0], small_plan.certificate):
         assert repr(shown).startswith("<" + type(shown).__name__)

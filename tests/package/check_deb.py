@@ -1,4 +1,5 @@
-"""The Debian package is whole and its program runs where it is unpacked: check_deb.py CPACK BUILD_FOLDER."""
+"""The Debian packages hold what belongs to them, depend on what they need, and lintian has nothing to say:
+check_deb.py FOLDER SOURCE, FOLDER with the packages."""
 import pathlib
 import re
 import shutil
@@ -6,46 +7,80 @@ import subprocess
 import sys
 import tempfile
 
-NEEDED = [
-    "usr/bin/posewright", "usr/share/bash-completion/completions/posewright", "usr/share/zsh/site-functions/_posewright",
-    "usr/share/man/man1/posewright.1.gz", "usr/share/posewright/schemas/problem.schema.json",
-    "usr/share/posewright/schemas/plan.schema.json", "usr/share/posewright/examples/telescope/problem.yaml",
-    "usr/share/posewright/examples/kr270/kr270.urdf", "usr/share/doc/posewright/copyright",
-    "usr/share/doc/posewright/changelog.gz", "usr/share/doc/posewright/changelog.Debian.gz",
-    "usr/share/doc/posewright/README.md", "usr/share/doc/posewright/report-licenses.txt", "usr/share/doc/posewright/docs/problem-file.md"]
+from debian import packages, run
+
+HELD = {
+    "posewright": [
+        "usr/bin/posewright", "usr/share/bash-completion/completions/posewright", "usr/share/zsh/site-functions/_posewright",
+        "usr/share/man/man1/posewright.1.gz", "usr/share/posewright/schemas/problem.schema.json",
+        "usr/share/posewright/schemas/plan.schema.json", "usr/share/posewright/examples/telescope/problem.yaml",
+        "usr/share/posewright/examples/kr270/kr270.urdf", "usr/share/doc/posewright/README.md",
+        "usr/share/doc/posewright/report-licenses.txt", "usr/share/doc/posewright/docs/problem-file.md"],
+    "libposewright-dev": [
+        "usr/include/posewright/version.hpp", "usr/include/posewright/planners/registry.hpp",
+        "usr/lib/ARCH/libposewright.a", "usr/lib/ARCH/cmake/posewright/posewright-config.cmake",
+        "usr/lib/ARCH/cmake/posewright/posewright-targets.cmake", "usr/lib/ARCH/cmake/posewright/dependencies.cmake"],
+    "python3-posewright": ["usr/lib/python3/dist-packages/posewright/__init__.py", "usr/lib/python3/dist-packages/posewright/py.typed"]}
+LIBRARIES = ("libc6", "libompl16", "libfcl0.7", "libnlopt0", "libyaml-cpp0.7")
 
 
-def run(*words, cwd):
-    done = subprocess.run([str(w) for w in words], cwd=cwd, capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(map(str, words))}: {done.stdout}{done.stderr}")
-    return done.stdout
+def depends(file):
+    return [part.strip() for part in run("dpkg-deb", "-f", file, "Depends").split(",")]
 
 
-def main(cpack, build):
-    for program, package in (("dpkg-shlibdeps", "dpkg-dev"), ("file", "file")):
-        if shutil.which(program) is None:
-            print(f"skipped: {program} is missing (Debian: {package})")
-            sys.exit(77)
+def check_contents(made, source):
+    architecture = run("dpkg-architecture", "-qDEB_HOST_MULTIARCH").strip()
+    seen = {}
+    for package, file in made.items():
+        entries = [line.split(maxsplit=5) for line in run("dpkg-deb", "-c", file).splitlines()]
+        paths = {entry[5].removeprefix("./") for entry in entries if not entry[0].startswith("d")}
+        for name in ("copyright", "changelog.gz", "changelog.Debian.gz"):
+            assert f"usr/share/doc/{package}/{name}" in paths, f"{package} has no {name}"
+        for path in HELD[package]:
+            assert path.replace("ARCH", architecture) in paths, f"{path} is not in {package}"
+        for path in paths:
+            assert seen.setdefault(path, package) == package, f"{path} is in {seen[path]} and in {package}"
+    # Sources have headers and Python files of two packages; all of them must have come along.
+    headers = {str(f.relative_to(source / "include")) for f in (source / "include").rglob("*.hpp")}
+    assert {f"usr/include/{h}" for h in headers} <= {p for p, owner in seen.items() if owner == "libposewright-dev"}
+    modules = {str(f.relative_to(source / "python")) for f in (source / "python/posewright").rglob("*.py")}
+    assert {f"usr/lib/python3/dist-packages/{m}" for m in modules} <= set(seen)
+
+
+def check_dependencies(made, source):
+    for package in ("posewright", "python3-posewright"):
+        for library in LIBRARIES:
+            assert any(re.match(rf"{library} \(>= ", part) for part in depends(made[package])), f"{package}: {library}"
+    needed = depends(made["python3-posewright"])
+    assert "python3-numpy" in needed and any(part.startswith("python3 (<< 3.") for part in needed), needed
+    # A consumer finds what the library itself was built with.
+    setup = (source / "scripts/setup").read_text()
+    built_with = {name for name in re.search(r"packages='(.*?)'", setup, re.S).group(1).split() if name.endswith("-dev")}
+    assert set(depends(made["libposewright-dev"])) == built_with, set(depends(made["libposewright-dev"])) ^ built_with
+
+
+def check_stripped(made):
     with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        run(cpack, "-G", "DEB", "-B", folder, cwd=build)
-        [package] = folder.glob("posewright_*.deb")
-        listed = run("dpkg-deb", "-c", package, cwd=folder)
-        for path in NEEDED:
-            assert f" ./{path}\n" in listed, f"{path} is not in the package"
-        control = run("dpkg-deb", "-f", package, cwd=folder)
-        for library in ("libc6", "libompl16", "libfcl0.7", "libnlopt0", "libyaml-cpp0.7"):
-            assert re.search(rf"^Depends: .*\b{library} \(>= ", control, re.M), f"no dependency on {library}"
-        run("dpkg-deb", "-x", package, folder / "root", cwd=folder)
-        program = folder / "root/usr/bin/posewright"
-        assert run(program, "--version", cwd=folder).startswith("posewright 0.")
-        examples = folder / "root/usr/share/posewright/examples"
-        run(program, "plan", examples / "delta/problem.yaml", "--candidates", 100, "--method", "greedy", cwd=folder)
-        assert len((folder / "poses.csv").read_text().splitlines()) == 21
-        schema = (examples / "delta/problem.yaml").read_text().split("\n")[0].split("$schema=")[1]
-        assert (examples / "delta" / schema).resolve().is_file(), "the example's schema is not installed"
+        for package in ("posewright", "python3-posewright"):
+            run("dpkg-deb", "-x", made[package], name)
+        root = pathlib.Path(name)
+        for file in (root / "usr/bin/posewright", *root.rglob("_core*.so")):
+            assert ", stripped" in run("file", file), file
+
+
+def check_lintian(made):
+    """Not one error, warning or override."""
+    if shutil.which("lintian") is None:
+        print("lintian is missing: the packages were not checked by it")
+        return
+    done = subprocess.run(["lintian", "--allow-root", "--show-overrides", "--fail-on", "error,warning,override", *map(str, made.values())],
+                          capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stdout, done.stdout + done.stderr
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    made, source = packages(pathlib.Path(sys.argv[1])), pathlib.Path(sys.argv[2])
+    check_contents(made, source)
+    check_dependencies(made, source)
+    check_stripped(made)
+    check_lintian(made)

@@ -1,0 +1,3 @@
+class LaunchConfiguration:
+    def __init__(self, variable_name: str) -> None:
+        self.name = variable_name

@@ -150,11 +150,18 @@ UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
       tip_(tip_of(*model_, with_group(*model_, arm, place), place)),
       joints_(path(*model_, base_, tip_, place)) {}
 
-UrdfDocument::UrdfDocument(const std::filesystem::path& file)
-    : text_(read_xml_text(file, largest_urdf)),
-      lines_(text_, file.string()),
-      model_(parse(text_, file.string())),
+UrdfDocument::UrdfDocument(std::string text, const std::string& name)
+    : text_(std::move(text)),
+      lines_(text_, name),
+      model_(parse(text_, name)),
       base_(model_->getRoot()->name),
       tip_(base_) {}
+
+UrdfDocument::UrdfDocument(const std::filesystem::path& file)
+    : UrdfDocument(read_xml_text(file, largest_urdf), file.string()) {}
+
+UrdfDocument UrdfDocument::whole(const SerialArmSpec& arm) {
+  return {arm.expanded ? *arm.expanded : read_xml_text(arm.urdf, largest_urdf), name_of_text(arm)};
+}
 
 }  // namespace posewright

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "posewright/model/srdf.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text_file.hpp"
 
 namespace posewright {
@@ -94,7 +95,8 @@ std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, 
   if (arm.tip) {
     if (model.links_.count(arm.tip->value) == 0)
       throw InputError({place.file, arm.tip->line},
-                       "tip '" + arm.tip->value + "' is not a link of " + arm.urdf.filename().string(),
+                       "tip '" + arm.tip->value + "' is not a link of " + arm.urdf.filename().string() +
+                           meant_instead(arm.tip->value, links),
                        "links: " + names_of(links));
     return arm.tip->value;
   }
@@ -110,7 +112,8 @@ std::string base_of(const urdf::ModelInterface& model, const SerialArmSpec& arm,
     std::vector<std::string> links;
     for (const auto& entry : model.links_) links.push_back(entry.first);
     throw InputError({place.file, arm.base->line},
-                     "base '" + arm.base->value + "' is not a link of " + arm.urdf.filename().string(),
+                     "base '" + arm.base->value + "' is not a link of " + arm.urdf.filename().string() +
+                         meant_instead(arm.base->value, links),
                      "links: " + names_of(links));
   }
   return arm.base->value;

@@ -5,6 +5,7 @@
 
 #include "posewright/model/srdf.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/random.hpp"
 #include "scene.hpp"
 
@@ -51,7 +52,9 @@ class SceneBuilder {
       if (names.count(name.value) > 0) continue;
       std::string list;
       for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-      throw InputError(problem_.at(name.line), "'" + name.value + "' is not a link, tool part or obstacle with a shape",
+      throw InputError(problem_.at(name.line),
+                       "'" + name.value + "' is not a link, tool part or obstacle with a shape" +
+                           meant_instead(name.value, {names.begin(), names.end()}),
                        list.empty() ? "there is none" : "allowed: " + list);
     }
   }

@@ -9,6 +9,7 @@
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright {
 namespace {
@@ -122,8 +123,10 @@ void LineOfSight::add_normals(const Problem& problem) {
       }
     if (!found) {
       std::string names;
-      for (const Target& target : targets_) names += ", " + target.name;
-      throw InputError(problem.at(name.line), "'" + name.value + "' is not a target", "allowed: *" + names);
+      std::vector<std::string> words;
+      for (const Target& target : targets_) names += ", " + target.name, words.push_back(target.name);
+      throw InputError(problem.at(name.line), "'" + name.value + "' is not a target" + meant_instead(name.value, words),
+                       "allowed: *" + names);
     }
   }
 }

@@ -33,6 +33,7 @@ struct Command {
 
 const std::vector<Command>& commands();
 
+Command init_command();
 Command plan_command();
 Command observe_command();
 Command select_command();

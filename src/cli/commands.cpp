@@ -4,14 +4,16 @@
 #include <charconv>
 
 #include "command.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
-      observe_command(),  plan_command(),      select_command(),     evaluate_command(), compare_command(),
-      simulate_command(), calibrate_command(), compensate_command(), route_command(),    stations_command(),
-      export_command(),   report_command(),    fleet_command(),      merge_command()};
+      init_command(),     observe_command(),  plan_command(),      select_command(),     evaluate_command(),
+      compare_command(),  simulate_command(), calibrate_command(), compensate_command(), route_command(),
+      stations_command(), export_command(),   report_command(),
+      fleet_command(),    merge_command()};
   return table;
 }
 
@@ -21,6 +23,7 @@ po::options_description common_options() {
       ("seed", text("S"), "seed of everything random (0)")             //
       ("threads", text("T"), "threads (all); never changes a result")  //
       ("json", "result as JSON on stdout, nothing else there")         //
+      ("markdown", "tables as Markdown")                               //
       ("quiet", "no progress")                                         //
       ("verbose", "progress also if stderr is not a terminal")         //
       ("help", "this text");
@@ -78,7 +81,8 @@ std::string choice_of(const po::variables_map& values, const std::string& option
   if (values.count(option) == 0) return {};
   const std::string text = text_of(values, option);
   if (std::find(allowed.begin(), allowed.end(), text) != allowed.end()) return text;
-  throw InputError({}, "--" + option + " " + text, fmt::format("allowed: {}", fmt::join(allowed, ", ")));
+  throw InputError({}, "--" + option + " " + text + meant_instead(text, {allowed.begin(), allowed.end()}),
+                   fmt::format("allowed: {}", fmt::join(allowed, ", ")));
 }
 
 }  // namespace posewright::cli

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "posewright/support/near_words.hpp"
+
 namespace posewright::cli {
 namespace {
 
@@ -41,8 +43,11 @@ std::string command_help(const Command& command) {
 const Command& find_command(const std::string& name) {
   const auto found =
       std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
+  std::vector<std::string> names = {"help", "completion"};
+  for (const Command& command : commands()) names.push_back(command.name);
   if (found == commands().end())
-    throw InputError({}, "unknown command '" + name + "'", "commands of this version: " + command_names());
+    throw InputError({}, "unknown command '" + name + "'" + meant_instead(name, names),
+                     "commands of this version: " + command_names());
   return *found;
 }
 

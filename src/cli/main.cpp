@@ -8,29 +8,29 @@
 
 #include "command.hpp"
 #include "help.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/tasks.hpp"
 #include "posewright/version.hpp"
 #include "processes.hpp"
 #include "session.hpp"
 #include "signals.hpp"
+#include "source_excerpt.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
 namespace {
 
-/// " (--NAME?)" where an option differs by one letter or begins so; else nothing.
-std::string meant(const std::string& written, const po::options_description& options) {
+/// What was meant by an option that there is not: a name that begins so, or the nearest one.
+std::string meant_option(const std::string& written, const po::options_description& options) {
   const std::string word = written.substr(std::min(written.find_first_not_of('-'), written.size()));
+  std::vector<std::string> names;
   for (const auto& option : options.options()) {
-    const std::string& name = option->long_name();
-    const auto [front, rest] = std::mismatch(name.begin(), name.end(), word.begin(), word.end());
-    const bool begins = word.size() > 2 && name.starts_with(word);
-    const bool one_letter =
-        word.size() > 2 && (std::equal(front + (front != name.end()), name.end(), rest, word.end()) ||
-                            std::equal(front, name.end(), rest + (rest != word.end()), word.end()));
-    if (begins || one_letter) return " (--" + name + "?)";
+    names.push_back(option->long_name());
+    if (word.size() > 2 && names.back().starts_with(word)) return " (did you mean '--" + names.back() + "'?)";
   }
-  return {};
+  const std::string near = nearest_word(word, names);
+  return near.empty() ? near : " (did you mean '--" + near + "'?)";
 }
 
 int run_command(const Command& command, const Words& words) {
@@ -49,7 +49,7 @@ int run_command(const Command& command, const Words& words) {
     po::store(po::command_line_parser(words).options(everything).positional(positional).style(style).run(), values);
   } catch (const po::error& error) {
     const auto* unknown = dynamic_cast<const po::unknown_option*>(&error);
-    throw InputError({}, error.what() + (unknown == nullptr ? "" : meant(unknown->get_option_name(), all)),
+    throw InputError({}, error.what() + (unknown == nullptr ? "" : meant_option(unknown->get_option_name(), all)),
                      "see posewright help " + command.name);
   }
   if (values.count("help") > 0) {
@@ -59,6 +59,10 @@ int run_command(const Command& command, const Words& words) {
   po::notify(values);
   if (!command.shares_tasks && started_workers()->processes() > 1)
     throw InputError({}, command.name + " runs in one process", "start it without mpirun");
+  if (values.count("markdown") > 0) {
+    if (values.count("json") > 0) throw InputError({}, "--markdown and --json", "one of both is allowed");
+    set_table_layout(TableLayout::markdown);
+  }
   return command.run(values, values.count("positional") > 0 ? values["positional"].as<Words>() : Words{});
 }
 
@@ -112,7 +116,9 @@ int main(int count, char** arguments) {
     fmt::print("{} of {} {} are in the log; the rest is for the other shares.\n", shard.done, shard.of, shard.group);
     return end(cli::done);
   } catch (const InputError& error) {
-    return complain(error.what(), cli::bad_input);
+    const int code = complain(error.what(), cli::bad_input);
+    cli::print_aside(cli::source_excerpt(error));
+    return code;
   } catch (const CannotDo& error) {
     return complain(error.what(), cli::cannot_do);
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/tasks/known_cameras.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -30,8 +31,13 @@ std::vector<std::string> names_of(const Registry& registry) {
 
 Expected expected_of(const std::string& value) {
   static const std::map<std::string, std::vector<std::string>> files = {
-      {"PROBLEM", {"yaml", "yml"}},   {"PLAN", {"json"}}, {"POSES", {"csv", "json"}},
-      {"BLOCKS", {"npy", "csv"}},     {"FILE", {"*"}},    {"FILE|DIR", {"*"}},
+      {"PROBLEM", {"yaml", "yml"}},
+      {"PLAN", {"json"}},
+      {"POSES", {"csv", "json"}},
+      {"BLOCKS", {"npy", "csv"}},
+      {"FILE", {"*"}},
+      {"FILE|DIR", {"*"}},
+      {"ROBOT", {"urdf", "xacro"}},
       {"[PLAN...]", {"json", "csv"}},
   };
   Expected expected;
@@ -56,6 +62,10 @@ OptionFacts facts_of(const po::option_description& option) {
   if (facts.name == "to" || facts.name == "from")
     for (const PoseFormat& format : pose_formats())
       if (facts.name == "to" || format.read != nullptr) facts.expected.words.push_back(format.name);
+  if (facts.name == "camera") {
+    facts.expected.words = names_of(known_cameras());
+    facts.expected.words.push_back("list");
+  }
   if (facts.name == "method") facts.expected.words = names_of(planner_registry());
   return facts;
 }

@@ -9,6 +9,18 @@
 namespace posewright::cli {
 namespace {
 
+void add_package_option(po::options_description& options) {
+  options.add_options()(
+      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
+      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
+}
+
+void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
+  print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
+}
+
+}  // namespace
+
 Packages packages_of(const po::variables_map& values) {
   Packages packages;
   if (values.count("package") == 0) return packages;
@@ -25,18 +37,6 @@ Packages packages_of(const po::variables_map& values) {
   }
   return packages;
 }
-
-void add_package_option(po::options_description& options) {
-  options.add_options()(
-      "package", po::value<Words>()->value_name("NAME=DIR")->composing(),
-      "folder of package://NAME/ and model://NAME/ (else ROS's and Gazebo's paths, and around the URDF)");
-}
-
-void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
-  print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
-}
-
-}  // namespace
 
 po::options_description package_options() {
   po::options_description options("Robot");

@@ -15,7 +15,7 @@ namespace posewright::cli {
 namespace {
 
 // They change how a result is made, shown or kept, and not the result.
-constexpr std::array<const char*, 13> of_no_account = {"threads",    "json",      "quiet",     "verbose", "output",
+constexpr std::array<const char*, 14> of_no_account = {"threads",    "json",      "quiet",     "verbose", "output",
                                                        "output-dir", "poses-csv", "force",     "resume",  "shard",
                                                        "time-limit", "data",      "positional"};
 

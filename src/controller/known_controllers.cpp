@@ -6,6 +6,7 @@
 
 #include "known_settings.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "posewright/support/text_file.hpp"
 
@@ -37,7 +38,9 @@ ControllerSettings controller_settings(const std::string& name_or_file, const st
   }
   for (const KnownSettings& known : known_settings)
     if (name_or_file == known.name) return parse_controller_settings(known.text, name_or_file);
-  throw InputError({}, "controller " + in_quotes(name_or_file) + " is neither a file nor a known one",
+  throw InputError({},
+                   "controller " + in_quotes(name_or_file) + " is neither a file nor a known one" +
+                       meant_instead(name_or_file, known_controllers()),
                    fmt::format("known: {}", fmt::join(known_controllers(), ", ")));
 }
 

@@ -9,6 +9,7 @@
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright {
 namespace {
@@ -42,7 +43,8 @@ void require_names(const Problem& problem, const VariantSpec& variant, const Cal
     const int i = names.index_of(entry.name.value);
     if (i < 0)
       throw InputError(parameters.at(entry.name.line),
-                       "'" + entry.name.value + "' is not a parameter of variant '" + variant.name + "'",
+                       "'" + entry.name.value + "' is not a parameter of variant '" + variant.name + "'" +
+                           meant_instead(entry.name.value, names.all()),
                        names.allowed(entry.name.value));
     const std::string& unit = model->parameters()[std::size_t(i)].unit;
     if (!entry.unit.empty() && entry.unit != unit)

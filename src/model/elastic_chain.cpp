@@ -9,6 +9,7 @@
 
 #include "displacement.hpp"
 #include "posewright/model/gravity_compensator.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright {
 namespace {
@@ -42,8 +43,12 @@ int coordinate_named(const std::vector<Coordinate>& coordinates, const Located<s
                      const SourcePlace& place) {
   for (int i = 0; i < int(coordinates.size()); ++i)
     if (coordinates[std::size_t(i)].name == name.value) return i;
-  throw InputError({place.file, name.line}, "'" + name.value + "' is not a joint of this arm that moves by itself",
-                   joint_names(coordinates));
+  std::vector<std::string> words;
+  for (const Coordinate& c : coordinates) words.push_back(c.name);
+  throw InputError(
+      {place.file, name.line},
+      "'" + name.value + "' is not a joint of this arm that moves by itself" + meant_instead(name.value, words),
+      joint_names(coordinates));
 }
 
 Quantity quantity_of(const Coordinate& c) { return c.unit == "m" ? Quantity::length : Quantity::angle; }

@@ -8,6 +8,7 @@
 
 #include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/pair_names.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright {
 namespace {
@@ -23,9 +24,13 @@ void require_size(std::size_t given, std::size_t expected, const char* what) {
 void throw_unknown_coordinate(const SourcePlace& place, const std::string& name,
                               const std::vector<Coordinate>& coordinates) {
   std::string names;
+  std::vector<std::string> words;
   for (const Coordinate& c : coordinates)
-    if (!c.choice() && !is_second(c.name)) names += (names.empty() ? "allowed: " : ", ") + c.name;
-  throw InputError(place, "'" + name + "' is not a coordinate of this robot", names);
+    if (!c.choice() && !is_second(c.name)) {
+      names += (names.empty() ? "allowed: " : ", ") + c.name;
+      words.push_back(c.name);
+    }
+  throw InputError(place, "'" + name + "' is not a coordinate of this robot" + meant_instead(name, words), names);
 }
 
 Coordinate make_choice(const std::string& name, const std::vector<std::string>& labels) {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "posewright/model/elastic_chain.hpp"
+#include "posewright/support/near_words.hpp"
 
 namespace posewright {
 
@@ -37,7 +38,9 @@ ParameterNames::ParameterNames(const IdentificationModel& model, const Problem& 
     const auto& all = model.parameters();
     const auto at = std::find_if(all.begin(), all.end(), [&, &t = theirs](const auto& p) { return p.name == t.value; });
     if (at == all.end())
-      throw InputError(problem.at(theirs.line), "'" + theirs.value + "' matches no parameter of this robot", allowed());
+      throw InputError(
+          problem.at(theirs.line),
+          "'" + theirs.value + "' matches no parameter of this robot" + meant_instead(theirs.value, shown_), allowed());
     shown_[std::size_t(at - all.begin())] = mine;
   }
 }
@@ -48,8 +51,10 @@ std::vector<int> ParameterNames::find(const Located<std::string>& pattern) const
     if (matches(pattern.value, shown(i)) || matches(pattern.value, model_.parameters()[std::size_t(i)].name))
       found.push_back(i);
   if (found.empty())
-    throw InputError(problem_.at(pattern.line), "'" + pattern.value + "' matches no parameter of this robot",
-                     allowed(pattern.value));
+    throw InputError(
+        problem_.at(pattern.line),
+        "'" + pattern.value + "' matches no parameter of this robot" + meant_instead(pattern.value, shown_),
+        allowed(pattern.value));
   return found;
 }
 

@@ -15,6 +15,7 @@ class ParameterNames {
 
   /// The user's name if there is one.
   const std::string& shown(int index) const { return shown_[std::size_t(index)]; }
+  const std::vector<std::string>& all() const { return shown_; }
   /// Indices matched by a shell-style pattern with * and ?, in the model's order; InputError if there are none.
   std::vector<int> find(const Located<std::string>& pattern) const;
   /// The parameter of exactly that name; −1 if there is none.

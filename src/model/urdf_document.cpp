@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "posewright/model/srdf.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text_file.hpp"
 
 namespace posewright {
@@ -94,7 +95,8 @@ std::string tip_of(const urdf::ModelInterface& model, const SerialArmSpec& arm, 
   if (arm.tip) {
     if (model.links_.count(arm.tip->value) == 0)
       throw InputError({place.file, arm.tip->line},
-                       "tip '" + arm.tip->value + "' is not a link of " + arm.urdf.filename().string(),
+                       "tip '" + arm.tip->value + "' is not a link of " + arm.urdf.filename().string() +
+                           meant_instead(arm.tip->value, links),
                        "links: " + names_of(links));
     return arm.tip->value;
   }
@@ -110,7 +112,8 @@ std::string base_of(const urdf::ModelInterface& model, const SerialArmSpec& arm,
     std::vector<std::string> links;
     for (const auto& entry : model.links_) links.push_back(entry.first);
     throw InputError({place.file, arm.base->line},
-                     "base '" + arm.base->value + "' is not a link of " + arm.urdf.filename().string(),
+                     "base '" + arm.base->value + "' is not a link of " + arm.urdf.filename().string() +
+                         meant_instead(arm.base->value, links),
                      "links: " + names_of(links));
   }
   return arm.base->value;
@@ -150,11 +153,18 @@ UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
       tip_(tip_of(*model_, with_group(*model_, arm, place), place)),
       joints_(path(*model_, base_, tip_, place)) {}
 
-UrdfDocument::UrdfDocument(const std::filesystem::path& file)
-    : text_(read_xml_text(file, largest_urdf)),
-      lines_(text_, file.string()),
-      model_(parse(text_, file.string())),
+UrdfDocument::UrdfDocument(std::string text, const std::string& name)
+    : text_(std::move(text)),
+      lines_(text_, name),
+      model_(parse(text_, name)),
       base_(model_->getRoot()->name),
       tip_(base_) {}
+
+UrdfDocument::UrdfDocument(const std::filesystem::path& file)
+    : UrdfDocument(read_xml_text(file, largest_urdf), file.string()) {}
+
+UrdfDocument UrdfDocument::whole(const SerialArmSpec& arm) {
+  return {arm.expanded ? *arm.expanded : read_xml_text(arm.urdf, largest_urdf), name_of_text(arm)};
+}
 
 }  // namespace posewright

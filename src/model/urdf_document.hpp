@@ -21,6 +21,8 @@ class UrdfDocument {
   UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place);
   /// All of a file that is no robot: base and tip are its root.
   explicit UrdfDocument(const std::filesystem::path& file);
+  /// All of an arm's file whatever its base and tip are: both are its root.
+  static UrdfDocument whole(const SerialArmSpec& arm);
 
   const std::string& text() const { return text_; }
   const UrdfLines& lines() const { return lines_; }
@@ -31,6 +33,8 @@ class UrdfDocument {
   const std::vector<urdf::JointConstSharedPtr>& joints() const { return joints_; }
 
  private:
+  UrdfDocument(std::string text, const std::string& name);
+
   std::string text_;
   UrdfLines lines_;
   urdf::ModelInterfaceSharedPtr model_;

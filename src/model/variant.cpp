@@ -6,6 +6,7 @@
 
 #include "parameter_names.hpp"
 #include "posewright/model/apply_parameters.hpp"
+#include "posewright/support/near_words.hpp"
 namespace posewright {
 namespace {
 
@@ -180,12 +181,14 @@ const VariantSpec& find_variant(const Problem& problem, const std::string& name)
   const std::string wanted = !name.empty() ? name : problem.design.variant ? problem.design.variant->value : "";
   if (wanted.empty()) return problem.variants.front();
   std::string allowed;
+  std::vector<std::string> words;
   for (const VariantSpec& variant : problem.variants) {
     if (variant.name == wanted) return variant;
+    words.push_back(variant.name);
     allowed += (allowed.empty() ? "variants: " : ", ") + variant.name;
   }
   const int line = name.empty() && problem.design.variant ? problem.design.variant->line : 0;
-  throw InputError(problem.at(line), "has no variant '" + wanted + "'", allowed);
+  throw InputError(problem.at(line), "has no variant '" + wanted + "'" + meant_instead(wanted, words), allowed);
 }
 
 }  // namespace posewright

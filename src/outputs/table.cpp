@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
 namespace posewright {
 namespace {
+
+std::atomic<TableLayout> layout_of_all{TableLayout::aligned};
 
 std::size_t width(const std::string& text) {
   return std::size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
@@ -46,7 +49,30 @@ Table::Table(std::vector<std::string> header, std::vector<Align> align) : align_
 
 void Table::row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
-std::string Table::text() const {
+void set_table_layout(TableLayout layout) { layout_of_all = layout; }
+
+std::string Table::text() const { return layout_of_all == TableLayout::markdown ? markdown() : aligned(); }
+
+std::string Table::markdown() const {
+  std::string text;
+  for (const auto& row : rows_) {
+    text += text.empty() ? "\n|" : "|";
+    for (std::size_t c = 0; c < align_.size(); ++c) {
+      text += ' ';
+      for (const char letter : c < row.size() ? row[c] : std::string())
+        text += letter == '|' ? "\\|" : std::string(1, letter);
+      text += " |";
+    }
+    text += '\n';
+    if (&row != &rows_.front()) continue;
+    text += '|';
+    for (const Align align : align_) text += align == Align::left ? " --- |" : " ---: |";
+    text += '\n';
+  }
+  return text + '\n';
+}
+
+std::string Table::aligned() const {
   std::vector<std::size_t> widths(align_.size(), 0);
   for (const auto& row : rows_)
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "posewright/support/dense.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "sections.hpp"
 
@@ -22,7 +23,8 @@ Components read_components(const Value& value, std::span<const std::string_view>
   for (const Value& item : value.items("a list is expected, " + expected)) {
     const std::string name = item.text(expected);
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) item.fail("is " + in_quotes(name), expected);
+    if (found == names.end())
+      item.fail("is " + in_quotes(name) + meant_instead(name, {names.begin(), names.end()}), expected);
     const int index = static_cast<int>(found - names.begin());
     if (std::find(components.begin(), components.end(), index) != components.end())
       item.fail("is " + in_quotes(name), "it is already in the list");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "sections.hpp"
 
@@ -127,11 +128,13 @@ constexpr ModelReader models[] = {
 
 RobotSpec read_model(const Value& model, const Section& robot) {
   std::string names;
+  std::vector<std::string> words;
+  for (const ModelReader& reader : models) words.emplace_back(reader.name);
   for (const ModelReader& reader : models) names += (names.empty() ? "allowed: " : ", ") + std::string(reader.name);
   const std::string wanted = model.text(names);
   for (const ModelReader& reader : models)
     if (reader.name == wanted) return reader.read(robot);
-  model.fail("is " + in_quotes(wanted), names);
+  model.fail("is " + in_quotes(wanted) + meant_instead(wanted, words), names);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "posewright/controller/known_controllers.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "sections.hpp"
 
@@ -33,7 +34,7 @@ CoupledLimits read_coupled(const Value& value) {
 /// Known ones without ranges would not help.
 [[noreturn]] void refuse_controller(const Value& controller, const std::string& name, std::vector<std::string> known) {
   std::erase_if(known, [](const std::string& each) { return controller_settings(each).range_deg.empty(); });
-  controller.fail("is " + in_quotes(name) + ", neither a file nor a known controller",
+  controller.fail("is " + in_quotes(name) + meant_instead(name, known) + ", neither a file nor a known controller",
                   fmt::format("known: {}", fmt::join(known, ", ")));
 }
 

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "posewright/problem/read_robot_file.hpp"
 #include "posewright/support/run_program.hpp"
 #include "posewright/support/text.hpp"
 #include "posewright/support/text_file.hpp"
@@ -23,7 +24,7 @@ void list_needed(const tinyxml2::XMLElement& element, std::set<std::string>& nee
 std::string example(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name + ": VALUE";
-  return "robot: xacro: {" + text + "}";
+  return "robot: xacro: {" + text + "}, or posewright init --xacro NAME=VALUE";
 }
 
 void require_arguments(const SerialArmSpec& arm, const yaml::Value& urdf) {
@@ -70,6 +71,20 @@ std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf) {
         "is not expanded, xacro ended with status " + std::to_string(output->status) + ": " + last_line(output->error),
         shown);
   return output->out;
+}
+
+SerialArmSpec read_robot_file(const std::filesystem::path& file,
+                              const std::vector<std::pair<std::string, std::string>>& arguments) {
+  SerialArmSpec arm;
+  arm.urdf = file;
+  for (const auto& [name, value] : arguments) arm.xacro.push_back({{name, 0}, value});
+  if (is_xacro(file)) {
+    const std::string name = file.string();
+    arm.expanded = std::make_shared<const std::string>(expanded_xacro(arm, yaml::Value(YAML::Node(), 0, "", name)));
+  } else if (!arguments.empty()) {
+    throw InputError({file.string(), 0}, "is no xacro file, and has no arguments", "a file that ends in .xacro");
+  }
+  return arm;
 }
 
 }  // namespace posewright

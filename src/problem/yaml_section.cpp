@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 
 namespace posewright::yaml {
@@ -42,14 +43,16 @@ void Section::read_entries() {
   std::map<std::string, int> first_line;
   entries_.reserve(value_.node_.size());
   for (const auto& pair : value_.node_) {
-    const int line = std::max(pair.first.Mark().line + 1, 0);
-    const Value key(pair.first, line, "a key of " + (value_.name_.empty() ? "the file" : value_.name_), *value_.file_);
+    const int line = std::max(pair.first.Mark().line + 1, 0), column = std::max(pair.first.Mark().column + 1, 0);
+    const Value key(pair.first, line, "a key of " + (value_.name_.empty() ? "the file" : value_.name_), *value_.file_,
+                    column);
     const std::string name = key.text();
     const auto [first, added] = first_line.emplace(name, key.line());
     if (!added)
-      throw InputError({*value_.file_, key.line()}, "duplicate key " + in_quotes(name),
+      throw InputError(key.place(), "duplicate key " + in_quotes(name),
                        fmt::format("first given on line {}", first->second));
-    entries_.push_back({{name, key.line()}, Value(pair.second, key.line(), child_name(name), *value_.file_)});
+    entries_.push_back(
+        {{name, key.line(), column}, Value(pair.second, key.line(), child_name(name), *value_.file_, column)});
   }
 }
 
@@ -62,8 +65,10 @@ std::string Section::child_name(const std::string& key) const {
 void Section::allow(std::initializer_list<std::string_view> keys) const {
   for (const Entry& entry : entries_)
     if (std::find(keys.begin(), keys.end(), entry.key.value) == keys.end())
-      throw InputError({*value_.file_, entry.key.line}, "unknown key " + in_quotes(entry.key.value),
-                       fmt::format("allowed: {}", fmt::join(keys, ", ")));
+      throw InputError(
+          {*value_.file_, entry.key.line, entry.key.column},
+          "unknown key " + in_quotes(entry.key.value) + meant_instead(entry.key.value, {keys.begin(), keys.end()}),
+          fmt::format("allowed: {}", fmt::join(keys, ", ")));
 }
 
 const Value* Section::find(std::string_view key) const {
@@ -93,7 +98,8 @@ YAML::Node load_document(const std::string& text, const std::string& file) {
   } catch (const YAML::Exception& error) {
     std::string what = in_quotes(error.msg);
     what = what.substr(1, what.size() - 2);
-    throw InputError({file, std::max(error.mark.line + 1, 0)}, "is not valid YAML: " + what, "");
+    throw InputError({file, std::max(error.mark.line + 1, 0), std::max(error.mark.column + 1, 0)},
+                     "is not valid YAML: " + what, "");
   }
 }
 

@@ -22,10 +22,11 @@ enum class Sign { any, positive, not_negative };
 /// One value of the file together with its name (`measurement.device.noise`) and line.
 class Value {
  public:
-  /// `line` is that of the key or list entry; a scalar's own line is taken where it has one.
-  Value(const YAML::Node& node, int line, std::string name, const std::string& file);
+  /// `line` and `column` are those of the key or list entry; a scalar's own are taken where it has some.
+  Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column = 0);
 
   int line() const { return line_; }
+  SourcePlace place() const { return {*file_, line_, column_}; }
   const std::string& name() const { return name_; }
   bool is_list() const { return node_.IsSequence(); }
   bool is_mapping() const { return node_.IsMap(); }
@@ -36,7 +37,7 @@ class Value {
   std::string text(const std::string& expected = "a text is expected") const;
   /// The same where nothing may be meant, too: prefix: "".
   std::string text_or_nothing() const;
-  Located<std::string> located_text() const { return {text(), line_}; }
+  Located<std::string> located_text() const { return {text(), line_, column_}; }
   /// Text that names one thing: no `*` or `?`.
   Located<std::string> exact_name() const;
   std::string choice(std::initializer_list<std::string_view> allowed) const {
@@ -59,7 +60,7 @@ class Value {
   std::string scalar(const std::string& expected) const;
 
   const YAML::Node node_;  // assigning to a YAML::Node would change the tree
-  int line_;
+  int line_, column_;
   std::string name_;
   const std::string* file_;
 };

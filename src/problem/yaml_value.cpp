@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "yaml_section.hpp"
 
@@ -18,14 +19,14 @@ std::string kind(const YAML::Node& node) {
 
 }  // namespace
 
-Value::Value(const YAML::Node& node, int line, std::string name, const std::string& file)
-    : node_(node), line_(line), name_(std::move(name)), file_(&file) {
+Value::Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column)
+    : node_(node), line_(line), column_(column), name_(std::move(name)), file_(&file) {
   // yaml-cpp marks an empty value where the next token begins and a block mapping at its first key.
-  if (node.IsScalar() && node.Mark().line >= 0) line_ = node.Mark().line + 1;
+  if (node.IsScalar() && node.Mark().line >= 0) line_ = node.Mark().line + 1, column_ = node.Mark().column + 1;
 }
 
 void Value::fail(const std::string& what, const std::string& allowed) const {
-  throw InputError({*file_, line_}, (name_.empty() ? "the file" : name_) + " " + what, allowed);
+  throw InputError(place(), (name_.empty() ? "the file" : name_) + " " + what, allowed);
 }
 
 std::string Value::scalar(const std::string& expected) const {
@@ -49,13 +50,14 @@ Located<std::string> Value::exact_name() const {
   std::string result = text("a name is expected");
   if (result.find_first_of("*?") != std::string::npos)
     fail("is " + in_quotes(result), "* and ? are not allowed in a name");
-  return {std::move(result), line_};
+  return {std::move(result), line_, column_};
 }
 
 std::string Value::choice(const std::vector<std::string_view>& allowed) const {
   const std::string list = fmt::format("allowed: {}", fmt::join(allowed, ", "));
   std::string result = scalar(list);
-  if (std::find(allowed.begin(), allowed.end(), result) == allowed.end()) fail("is " + in_quotes(result), list);
+  if (std::find(allowed.begin(), allowed.end(), result) == allowed.end())
+    fail("is " + in_quotes(result) + meant_instead(result, {allowed.begin(), allowed.end()}), list);
   return result;
 }
 
@@ -97,8 +99,10 @@ std::vector<Value> Value::items(const std::string& expected) const {
   std::vector<Value> result;
   result.reserve(node_.size());
   for (const YAML::Node& item : node_) {
-    const int line = item.IsNull() ? line_ : std::max(item.Mark().line + 1, 0);
-    result.emplace_back(item, line, fmt::format("{}[{}]", name_, result.size() + 1), *file_);
+    const bool here = !item.IsNull();
+    const int line = here ? std::max(item.Mark().line + 1, 0) : line_;
+    const int column = here ? std::max(item.Mark().column + 1, 0) : column_;
+    result.emplace_back(item, line, fmt::format("{}[{}]", name_, result.size() + 1), *file_, column);
   }
   return result;
 }

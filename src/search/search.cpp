@@ -15,6 +15,7 @@
 #include "posewright/planning/workspace_proof.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/near_words.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/repeats.hpp"
 
@@ -187,14 +188,25 @@ std::shared_ptr<const DesignMeasure> measure(const Joined& joined, const Criteri
   return std::make_shared<DesignMeasure>(std::move(criterion), joined.R, joined.prior, offset_of(joined, entry));
 }
 
+template <class Registry>
+std::vector<std::string> names_in(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const auto& entry : registry) names.push_back(entry.name);
+  return names;
+}
+
 }  // namespace
 
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
                    const SourcePlace& method_place) {
   if (find_criterion(criterion) == nullptr)
-    throw InputError(criterion_place, "unknown criterion '" + criterion + "'", "available: " + criterion_names());
+    throw InputError(criterion_place,
+                     "unknown criterion '" + criterion + "'" + meant_instead(criterion, names_in(criterion_registry())),
+                     "available: " + criterion_names());
   if (make_planner(method) == nullptr)
-    throw InputError(method_place, "unknown method '" + method + "'", "available: " + planner_names());
+    throw InputError(method_place,
+                     "unknown method '" + method + "'" + meant_instead(method, names_in(planner_registry())),
+                     "available: " + planner_names());
 }
 
 std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,

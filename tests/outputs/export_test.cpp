@@ -89,7 +89,7 @@ TEST(ExportCommand, ReplacesItsOwnFilesAndNoOthers) {
 
 TEST(ExportCommand, KeepsWhatWasMeasuredAndPutIntoAFile) {
   const TemporaryFolder folder;
-  for (const char* format : {"figaroh-csv", "industrial-calibration", "pybotics-csv", "delmia"}) {
+  for (const char* format : {"figaroh-csv", "industrial-calibration", "pybotics-csv", "delmia", "easy-handeye2"}) {
     const std::vector<std::string> words = {"export", plan, "--to",
                                             format,   "-o", "m" + find_pose_format(format).extension};
     ASSERT_EQ(run_program(folder.path(), words).exit_code, 0) << format;

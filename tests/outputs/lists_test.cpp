@@ -148,6 +148,54 @@ TEST(PoseLists, MeasurementCsvSaysThatPositionsArePredictedAndHidesHiddenOnes) {
   EXPECT_THAT(text_in("figaroh-csv", bare), HasSubstr("\nto be measured,nan,nan,nan,"));
 }
 
+Eigen::Isometry3d transform_of(const YAML::Node& p, const YAML::Node& q) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.linear() = Eigen::Quaterniond(q["w"].as<double>(), q["x"].as<double>(), q["y"].as<double>(), q["z"].as<double>())
+                   .toRotationMatrix();
+  X.translation() = Eigen::Vector3d(p["x"].as<double>(), p["y"].as<double>(), p["z"].as<double>());
+  return X;
+}
+
+TEST(PoseLists, HandEyeSamplesHaveTheRobotAsTheirToolWritesItAndWaitForWhatIsTracked) {
+  const PoseSequence sequence = random_sequence(6, 5, 3);
+  for (const bool in_hand : {true, false}) {
+    const YAML::Node root = YAML::Load(text_in(in_hand ? "easy-handeye2" : "easy-handeye2-on-base", sequence));
+    EXPECT_EQ(root["parameters"]["calibration_type"].as<std::string>(), in_hand ? "eye_in_hand" : "eye_on_base");
+    EXPECT_EQ(root["parameters"].size(), 9U) << "the fields of HandeyeCalibrationParameters";
+    ASSERT_EQ(root["samples"].size(), sequence.poses.size());
+    for (std::size_t k = 0; k < sequence.poses.size(); ++k) {
+      const YAML::Node sample = root["samples"][k];
+      const Eigen::Isometry3d robot = transform_of(sample["robot"]["translation"], sample["robot"]["rotation"]);
+      // Of a camera at the base the tool looks up the base in the effector's frame.
+      const Eigen::Isometry3d product = in_hand ? robot.inverse() * *sequence.poses[k].tool_pose
+                                                : robot * *sequence.poses[k].tool_pose;
+      EXPECT_TRUE(product.isApprox(Eigen::Isometry3d::Identity(), 1e-9)) << k;
+      EXPECT_TRUE(std::isnan(sample["tracking"]["translation"]["x"].as<double>()));
+      EXPECT_TRUE(std::isnan(sample["tracking"]["rotation"]["w"].as<double>()));
+    }
+  }
+}
+
+TEST(PoseLists, HandEyeDataAreAListAndAFileAPose) {
+  const PoseSequence sequence = random_sequence(6, 5, 4);
+  const Exported exported = find_pose_format("industrial-calibration-hand-eye").write(sequence, {});
+  ASSERT_EQ(exported.files.size(), sequence.poses.size() + 1);
+  const YAML::Node list = YAML::Load(exported.files.front().bytes)["data"];
+  for (std::size_t k = 0; k < sequence.poses.size(); ++k) {
+    const ExportedFile& file = exported.files[k + 1];
+    EXPECT_EQ(list[k]["pose"].as<std::string>(), file.name);
+    EXPECT_THAT(list[k]["image"].as<std::string>(), testing::StartsWith("images/"));
+    const YAML::Node pose = YAML::Load(file.bytes);
+    YAML::Node quaternion;
+    for (const char* axis : {"x", "y", "z", "w"}) quaternion[axis] = pose[std::string("q") + axis];
+    EXPECT_TRUE(transform_of(pose, quaternion).isApprox(*sequence.poses[k].tool_pose, 1e-9));
+  }
+  PoseSequence bare = sequence;
+  bare.poses[2].tool_pose.reset();
+  EXPECT_THROW(find_pose_format("industrial-calibration-hand-eye").write(bare, {}), CannotDo);
+  EXPECT_THROW(find_pose_format("easy-handeye2").write(bare, {}), CannotDo);
+}
+
 TEST(PoseLists, TagPosesAreThoseOfThePlan) {
   const PoseSequence sequence = random_sequence(6, 6, 2);
   const Rows rows = readers::table(text_in("delmia", sequence), '\t', 1, 1);

@@ -5,15 +5,24 @@
 
 namespace posewright {
 
+/// How all tables of the process are written: aligned, or as Markdown (GitHub Flavored Markdown 4.10) with an empty line
+/// before and after. A program sets it before it prints anything; the library never does.
+enum class TableLayout { aligned, markdown };
+void set_table_layout(TableLayout layout);
+
 /// Aligned text table; widths count characters, not bytes, so that σ and µ line up.
 class Table {
  public:
   enum class Align { left, right };
   Table(std::vector<std::string> header, std::vector<Align> align);
   void row(std::vector<std::string> cells);
+  /// In the layout of the process.
   std::string text() const;
 
  private:
+  std::string aligned() const;
+  std::string markdown() const;
+
   std::vector<std::vector<std::string>> rows_;
   std::vector<Align> align_;
 };

@@ -6,10 +6,12 @@
 
 namespace posewright {
 
-/// Where a value was written; line is 1-based, 0 means the file as a whole.
+/// Where a value was written; line is 1-based, 0 means the file as a whole. Column is that of a character, 1-based; 0:
+/// it is not known.
 struct SourcePlace {
   std::string file;
   int line = 0;
+  int column = 0;
 };
 
 /// Input that is wrong in itself. The text reads `file:line: what; allowed` (without the parts that are unknown).
@@ -30,11 +32,12 @@ class CannotDo : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A value together with the line it was written on, for stages that can judge it only later.
+/// A value together with the line (and column, if known) it was written on, for stages that can judge it only later.
 template <class T>
 struct Located {
   T value{};
   int line = 0;
+  int column = 0;
 };
 
 }  // namespace posewright

@@ -4,6 +4,7 @@
 
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/near_words.hpp"
 #include "text.hpp"
 
 namespace posewright {
@@ -24,6 +25,9 @@ const std::vector<PoseFormat>& pose_formats() {
                                                 figaroh(),
                                                 figaroh_csv(),
                                                 industrial_calibration(),
+                                                industrial_hand_eye(),
+                                                easy_handeye2(),
+                                                easy_handeye2_on_base(),
                                                 caljob(),
                                                 pybotics_npy(),
                                                 pybotics_csv(),
@@ -43,14 +47,17 @@ namespace {
 
 const PoseFormat& find(const std::string& name, bool readable) {
   std::string names;
+  std::vector<std::string> words;
   for (const PoseFormat& format : pose_formats()) {
     if (readable && format.read == nullptr) continue;
     if (format.name == name) return format;
+    words.push_back(format.name);
     names += (names.empty() ? "" : ", ") + format.name;
   }
-  throw InputError(
-      {}, fmt::format("{} is not a format that is {}", formats::in_quotes(name), readable ? "read" : "written"),
-      "allowed: " + names);
+  throw InputError({},
+                   fmt::format("{} is not a format that is {}{}", formats::in_quotes(name),
+                               readable ? "read" : "written", meant_instead(name, words)),
+                   "allowed: " + names);
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewright/problem/package_search.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/tasks/known_cameras.hpp"
+
+namespace posewright {
+
+/// A chessboard or grid of points.
+struct BoardFacts {
+  int rows = 6, columns = 9;  ///< of points: inner corners of a chessboard
+  double spacing = 0.025;     ///< m
+};
+
+/// Reads ROWSxCOLUMNSxSPACING, "6x9x25mm". Throws InputError.
+BoardFacts parse_board(const std::string& text);
+
+/// What a first problem file is made from. What is empty is found or chosen, and the file says so.
+struct InitFacts {
+  std::filesystem::path robot;  ///< URDF or .xacro
+  std::vector<std::pair<std::string, std::string>> xacro;
+  Packages packages;
+  std::string base, tip;
+  bool camera = false;  ///< else a laser tracker
+  KnownCamera lens;
+  BoardFacts board;
+  bool on_hand = true;                   ///< the camera; else the board is
+  bool arm = false;                      ///< of a camera: whether the arm's parameters are planned for too
+  std::optional<Eigen::Vector3d> place;  ///< m, base frame: tracker, board of a camera on the hand, or fixed camera
+  bool no_floor = false;
+  std::optional<double> floor;     ///< m, height of floor or table in the base frame; none: under the robot's foot
+  std::optional<int> poses;        ///< none: the number that reaches the accuracy, else a default
+  std::optional<double> accuracy;  ///< m
+  std::string schema;              ///< what the modeline for editors names; empty: no modeline
+};
+
+struct InitResult {
+  std::string text;  ///< of the problem file
+  std::string base, tip;
+  int joints = 0;
+  std::vector<std::string> notes;  ///< what was chosen because nobody said it
+};
+
+/// The problem file, tried before it is returned: it is read, the cell is made, and a small pool of configurations
+/// identifies what is planned for. Where the instrument, or what it looks at, may stand anywhere, the first of some
+/// places from which that holds is taken. Meshes that are not found leave out the cell, with a comment.
+/// @param file  where the text will be: paths in it are relative to its folder
+/// Throws InputError as propose_chain() and for numbers out of range; CannotDo where no pose is feasible from any
+/// place.
+InitResult init_problem(const InitFacts& facts, const std::filesystem::path& file, const Monitor& monitor);
+
+}  // namespace posewright

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace posewright::cli {
+
+/// Whether there is somebody to ask: a terminal to read from and one to write to.
+bool can_ask();
+
+/// Asks on stderr until `take` accepts the answer, which is `standard` where nothing but Enter is typed. What `take`
+/// throws as InputError is shown before the next try. Throws InputError where the input ends.
+void ask(const std::string& question, const std::string& standard, const std::function<void(const std::string&)>& take);
+
+}  // namespace posewright::cli

@@ -1,0 +1,116 @@
+#include "posewright/tasks/init_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "init_text.hpp"
+#include "posewright/cell/cell.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/support/text.hpp"
+#include "posewright/tasks/observe_problem.hpp"
+
+namespace posewright {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int tried_configurations = 60;
+constexpr double to_grid = 20;  // places are on a grid of 50 mm
+
+/// Where it may stand, best first; one if it is given. Shares of the reach.
+std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& robot) {
+  if (facts.place) return {*facts.place};
+  const double floor = floor_of(facts, robot).value_or(robot.lowest);
+  std::vector<Eigen::Vector3d> shares = {{1.8, -0.6, 0.4}, {1.8, 0, 0.6}, {2.5, -0.8, 0.4}};
+  if (facts.camera && facts.on_hand)
+    shares = {{0.5, 0, 0}, {0.4, 0.2, 0}, {0.6, 0, 0.1}, {0.5, 0, 0.2}, {0.3, 0.3, 0}, {0.6, 0, 0.4}, {-0.5, 0, 0}};
+  if (facts.camera && !facts.on_hand) shares = {{1.1, 0, 0.5}, {0.9, 0, 0.6}, {1.3, 0, 0.4}, {0, 1.1, 0.5}};
+  std::vector<Eigen::Vector3d> result;
+  for (const Eigen::Vector3d& share : shares) {
+    Eigen::Vector3d place = (robot.reach * share * to_grid).array().round() / to_grid;
+    place.z() += floor;
+    // A board lies on what is there.
+    if (facts.camera && facts.on_hand && share.z() == 0) place.z() = floor + 0.01;
+    result.push_back(place);
+  }
+  return result;
+}
+
+/// Whether a plan can be made of it: throws as observe_problem().
+void try_out(const std::string& text, const fs::path& file, const InitFacts& facts, const Monitor& monitor) {
+  const Problem problem = parse_problem(text, file, facts.packages);
+  ObserveOptions options;
+  if (problem.design.variant) options.variant = problem.design.variant->value;
+  options.candidates = tried_configurations;
+  options.poses = facts.poses.value_or(default_poses(facts));
+  const std::vector<Observation> found = observe_problem(problem, options, monitor);
+  if (!found.front().practical) throw CannotDo("what is planned for cannot be identified");
+}
+
+/// Looks at the bodies of the robot, if its meshes are there; why not, else nothing. A tracker that stands far away is
+/// inside none of them.
+std::string look_at_bodies(InitFacts facts, InitRobot& robot, const fs::path& file) {
+  facts.camera = false;
+  facts.no_floor = true;
+  const InitPlace far_away{{3 * robot.reach, 0, 0}, true, {}};
+  try {
+    add_bodies(robot, parse_problem(init_text(facts, robot, far_away), file, facts.packages));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+BoardFacts parse_board(const std::string& text) {
+  const auto refuse = [&](const std::string& why) -> BoardFacts {
+    throw InputError({}, "board " + in_quotes(text) + why, "ROWSxCOLUMNSxSPACING of its points, 6x9x25mm");
+  };
+  BoardFacts board;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%dx%dx%n", &board.rows, &board.columns, &end) != 2 || end == 0) refuse("");
+  try {
+    const Measured spacing = parse_measured(text.substr(std::size_t(end)), {Quantity::length});
+    if (spacing.quantity == Quantity::number) refuse(" has a spacing without unit");
+    board.spacing = spacing.value;
+  } catch (const InputError& error) {
+    if (std::string(error.what()).starts_with("board")) throw;
+    refuse(": " + std::string(error.what()));
+  }
+  if (board.rows < 2 || board.columns < 2 || board.rows > 100 || board.columns > 100 ||
+      board.rows * board.columns > 500)
+    refuse(" has too few or too many points");
+  if (!(board.spacing >= 1e-3 && board.spacing <= 1)) refuse(" has a spacing that is not between 1 mm and 1 m");
+  return board;
+}
+
+InitResult init_problem(const InitFacts& facts, const fs::path& file, const Monitor& monitor) {
+  InitRobot robot = look_at_robot(facts, file);
+  InitResult result;
+  result.base = robot.links.base;
+  result.tip = robot.links.tip;
+  result.joints = int(robot.chain.coordinates.size());
+  InitPlace place;
+  place.no_cell = look_at_bodies(facts, robot, file);
+  place.cell = place.no_cell.empty();
+  if (!place.cell) result.notes.push_back("no collision is checked: " + place.no_cell);
+  const std::vector<Eigen::Vector3d> candidates = places(facts, robot);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    place.position = candidates[i];
+    result.text = init_text(facts, robot, place);
+    try {
+      try_out(result.text, file, facts, monitor);
+      break;
+    } catch (const StationInside&) {
+      if (i + 1 == candidates.size()) throw;
+    } catch (const CannotDo&) {
+      if (monitor.should_stop() || i + 1 == candidates.size()) throw;
+    }
+  }
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,247 @@
+#include "init_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "posewright/support/json.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double radius_of_targets = 0.1;  // m
+constexpr double in_degrees = 180 / std::numbers::pi;
+
+/// A text that YAML reads back as it is: JSON strings are YAML.
+std::string quoted(const std::string& text) { return json_text(nlohmann::json(text), JsonLayout::one_line); }
+
+/// Rounded to 0.1 mm; in mm below 1 m.
+std::string length(double metres) {
+  const double rounded = std::round(metres * 1e4) / 1e4 + 0.0;
+  if (rounded == 0) return "0";
+  return std::abs(rounded) < 1 ? fmt::format("\"{:g} mm\"", rounded * 1e3) : fmt::format("{:g}", rounded);
+}
+
+std::string vector(const Eigen::Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", length(v.x()), length(v.y()), length(v.z()));
+}
+
+std::string angles(const Eigen::Vector3d& rpy) {
+  const auto one = [](double angle) {
+    const double rounded = std::round(angle * in_degrees * 100) / 100 + 0.0;
+    return rounded == 0 ? std::string("0") : fmt::format("\"{:g} deg\"", rounded);
+  };
+  return fmt::format("[{}, {}, {}]", one(rpy.x()), one(rpy.y()), one(rpy.z()));
+}
+
+/// Roll, pitch, yaw that turn z into an axis of the frame.
+Eigen::Vector3d turn_z_to(const Eigen::Vector3d& axis) {
+  const double quarter = std::numbers::pi / 2;
+  if (axis.x() != 0) return {0, axis.x() > 0 ? quarter : -quarter, 0};
+  if (axis.y() != 0) return {axis.y() > 0 ? -quarter : quarter, 0, 0};
+  return {axis.z() > 0 ? 0 : 2 * quarter, 0, 0};
+}
+
+Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+/// A point before the flange: across it at an angle, and out from it.
+Eigen::Vector3d before_flange(const Eigen::Vector3d& outward, double across, double angle, double out) {
+  const Eigen::Matrix3d R = rotation(turn_z_to(outward));
+  return R * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), out);
+}
+
+std::string schema_line(const std::string& schema) {
+  return schema.empty() ? std::string() : fmt::format("# yaml-language-server: $schema={}\n", schema);
+}
+
+std::string robot_text(const InitFacts& facts, const InitRobot& robot) {
+  std::string joints;
+  for (const Coordinate& c : robot.chain.coordinates) joints += (joints.empty() ? "" : ", ") + c.name;
+  std::string text = fmt::format(
+      "# 1. Robot: the chain from base to tip that is calibrated. The measurement frame is the frame of the base.\n"
+      "# Joints: {}. The tip is at most {:.2f} m from the first one.\n",
+      joints, robot.reach);
+  if (!robot.links.other_tips.empty()) {
+    text += "# Other links behind the last joint:";
+    for (std::size_t i = 0; i < std::min<std::size_t>(robot.links.other_tips.size(), 8); ++i)
+      text += (i == 0 ? " " : ", ") + robot.links.other_tips[i];
+    text += ".\n";
+  }
+  text += fmt::format("robot:\n  urdf: {}\n", quoted(robot.urdf));
+  if (!facts.xacro.empty()) {
+    text += "  xacro: {";
+    for (std::size_t i = 0; i < facts.xacro.size(); ++i)
+      text += fmt::format("{}{}: {}", i == 0 ? "" : ", ", quoted(facts.xacro[i].first), quoted(facts.xacro[i].second));
+    text += "}\n";
+  }
+  return text + fmt::format("  base: {}\n  tip: {}\n", quoted(robot.links.base), quoted(robot.links.tip));
+}
+
+std::string tracker_text(const InitRobot& robot, const InitPlace& place) {
+  std::string text =
+      "\n# 2. Instrument: a laser tracker that reads three reflectors on the flange at every pose. The reflectors are "
+      "not\n"
+      "# in line, so that they show its orientation too. Positions to about 10 mm are enough: where they and the "
+      "tracker\n"
+      "# are is estimated with the rest. Put in those of your own adapter (frame of the tip).\n"
+      "measurement:\n  type: points\n  targets:\n";
+  const double at[] = {0.3, 2.5, 4.4}, across[] = {1, 1.15, 0.9};  // rad; no symmetry that hides a wrong order
+  for (int i = 0; i < 3; ++i)
+    text += fmt::format("    P{}: {}\n", i + 1,
+                        vector(before_flange(robot.outward, across[i] * radius_of_targets, at[i], robot.face + 0.02)));
+  return text +
+         fmt::format(
+             "  # Noise: without a key `noise` that of an interferometer, 2.5 um + 0.075 um/m along the beam, 3.75 "
+             "um + 1.5 um/m across.\n"
+             "  device: {{type: laser_tracker, stations: {{A: {}}}}}   # where it stands, frame of the base\n"
+             "  # What the robot does not repeat, 1 sigma of each axis: a third of the RP of its data sheet (ISO "
+             "9283).\n"
+             "  repeatability: \"30 um\"\n",
+             vector(place.position));
+}
+
+/// The board on the table, its columns across the robot's view; points face up, so the board's z, which goes into it,
+/// points down.
+std::string camera_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+  const BoardFacts& board = facts.board;
+  const Eigen::Vector3d middle(0.5 * (board.columns - 1) * board.spacing, 0.5 * (board.rows - 1) * board.spacing, 0);
+  const Eigen::Vector3d out = turn_z_to(robot.outward), down(std::numbers::pi, 0, 0);
+  std::string text = fmt::format(
+      "\n# 2. Instrument: camera {} and a board of {} x {} points. {}\n# Lens: {}.\n# Angles of view {:.1f} x {:.1f} "
+      "deg. "
+      "The camera's own calibration knows focal length, centre and distortion better.\nmeasurement:\n  type: camera\n",
+      facts.lens.name, board.rows, board.columns,
+      facts.on_hand ? "The camera is on the hand, the board stands in the cell."
+                    : "The camera stands in the cell, the board is on the hand.",
+      facts.lens.source, facts.lens.horizontal_view() * in_degrees, facts.lens.vertical_view() * in_degrees);
+  Eigen::Vector3d camera_at, camera_rpy, board_at, board_rpy;
+  if (facts.on_hand) {
+    camera_at = before_flange(robot.outward, 0.06, std::numbers::pi / 2, robot.face + 0.03), camera_rpy = out;
+    board_at = place.position - rotation(down) * middle, board_rpy = down;
+  } else {
+    // Looks back at the robot, x to the right.
+    const double yaw = std::atan2(-place.position.y(), -place.position.x());
+    camera_at = place.position, camera_rpy = {-std::numbers::pi / 2, 0, yaw - std::numbers::pi / 2};
+    // Points face away from the flange, so the board's z points at it.
+    const Eigen::Vector3d in = turn_z_to(-robot.outward);
+    board_at = before_flange(robot.outward, 0, 0, robot.face + 0.05) - rotation(in) * middle, board_rpy = in;
+  }
+  return text + fmt::format(
+                    "  mount: {}\n  camera:\n    focal: [{}, {}]\n    centre: [{:g}, {:g}]\n    size: [{}, {}]\n"
+                    "    distortion: [0, 0, 0, 0, 0]\n"
+                    "    # {}; to some 10 mm and 5 deg is enough.\n    position: {}\n    rpy: {}\n"
+                    "  # From the board's first point columns go along x, rows along y; {}.\n"
+                    "  board: {{rows: {}, columns: {}, spacing: {}, position: {}, rpy: {}}}\n"
+                    "  device: {{type: isotropic, noise: 0.2}}   # px, 1 sigma of a corner, a usual corner finder\n"
+                    "  # What the robot does not repeat, 1 sigma: a third of the RP of its data sheet (ISO 9283).\n"
+                    "  repeatability: {{position: \"30 um\", rotation: \"0.1 mrad\"}}\n",
+                    facts.on_hand ? "hand" : "fixed", facts.lens.focal, facts.lens.focal, 0.5 * facts.lens.width,
+                    0.5 * facts.lens.height, facts.lens.width, facts.lens.height,
+                    facts.on_hand ? "From the tip, z along the view" : "From the base, z along the view",
+                    vector(camera_at), angles(camera_rpy),
+                    facts.on_hand ? "it lies face up" : "it faces away from the flange", board.rows, board.columns,
+                    length(board.spacing), vector(board_at), angles(board_rpy));
+}
+
+std::string sight_text(const InitFacts& facts) {
+  if (!facts.camera)
+    return "  line_of_sight:\n"
+           "    visible: 2                         # of the three; a hidden one counts for nothing at that pose\n"
+           "    range: [\"0.8 m\", \"30 m\"]\n"
+           "    # If nobody turns the reflectors towards the tracker at each pose, say where they face:\n"
+           "    # acceptance: \"30 deg\"\n    # normals: {\"*\": [0, 0, 1]}\n";
+  // From where the board fills half of the image to where its points are some 12 px apart.
+  const double size = facts.board.spacing * (std::max(facts.board.rows, facts.board.columns) - 1);
+  const double nearest = 1.2 * size * facts.lens.focal / std::min(facts.lens.width, facts.lens.height);
+  const double farthest = std::max(3 * nearest, std::min(facts.board.spacing * facts.lens.focal / 12, 5 * nearest));
+  return fmt::format(
+      "  line_of_sight:\n"
+      "    range: [{}, {}]   # from where the board fills the image to where a corner finder still finds it\n"
+      "    acceptance: \"45 deg\"                # more obliquely corners are hard to find\n"
+      "    normals: {{\"*\": [0, 0, -1]}}          # the side of the board that the points are on\n",
+      length(std::round(nearest * 100) / 100), length(std::round(farthest * 100) / 100));
+}
+
+std::string cell_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+  std::string text =
+      "\n# 3. Cell: what a pose must keep off, and what the instrument must see.\n"
+      "workspace:\n  joints: {margin: \"3 deg\"}            # kept from both ends of the joints\n";
+  if (place.cell) {
+    text +=
+        "  collision:                           # the robot with itself and with what stands around it\n"
+        "    clearance: \"30 mm\"\n"
+        "    hulls: true                        # meshes as their convex hulls: faster, a little larger\n";
+    if (const std::optional<double> floor = floor_of(facts, robot))
+      text += fmt::format(
+          "    obstacles:                         # add tables, walls, fixtures: box, cylinder, sphere, plane, mesh\n"
+          "      - {{name: floor, plane: [0, 0, 1], at: [0, 0, {}]}}\n",
+          length(*floor));
+  } else {
+    text += fmt::format("  # No collision is checked: {}.\n", place.no_cell);
+  }
+  return text + sight_text(facts);
+}
+
+std::string variants_text(const InitFacts& facts) {
+  std::string text = "\n# 4. Plan: what is to be identified, and by how many poses.\nvariants:\n";
+  if (!facts.camera)
+    return text +
+           "  geometric:\n"
+           "    parameters: auto                   # an irreducible set of the arm's geometric parameters\n"
+           "    nuisance: [\"base.*\", \"target.*\"]   # estimated too, but of no interest: tracker and reflectors\n";
+  return text +
+         "  hand_eye:                            # where the camera is; the arm is taken as it is\n"
+         "    parameters: [\"camera.?\", \"camera.r?\"]\n"
+         "    nuisance: [\"board.*\"]\n"
+         "  hand_eye_and_arm:                    # the arm's geometric parameters too: posewright plan --variant\n"
+         "    parameters: auto\n"
+         "    nuisance: [\"board.*\", \"camera.?\", \"camera.r?\"]\n"
+         "    fixed: [\"base.*\", \"camera.fx\", \"camera.fy\", \"camera.c?\", \"camera.k?\", \"camera.p?\"]\n";
+}
+
+std::string design_text(const InitFacts& facts) {
+  const bool hand_eye = facts.camera && !facts.arm;
+  std::string text = "\ndesign:\n";
+  if (facts.camera) text += fmt::format("  variant: {}\n", hand_eye ? "hand_eye" : "hand_eye_and_arm");
+  if (facts.accuracy && !facts.poses) text += "  poses: auto                          # as many as `require` takes\n";
+  else text += fmt::format("  poses: {}\n", facts.poses.value_or(default_poses(facts)));
+  if (facts.accuracy && hand_eye)
+    text += fmt::format("  require: {{sigma: {{\"camera.?\": \"{:g} mm\"}}}}   # 1 sigma of where the camera is\n",
+                        *facts.accuracy * 1e3);
+  else if (facts.accuracy)
+    text += fmt::format("  require: {{accuracy: \"{:g} mm\"}}        # after calibration, at the test poses\n",
+                        *facts.accuracy * 1e3);
+  if (!hand_eye) text += "  test_poses: {random: 20}             # where accuracy after calibration is predicted\n";
+  return text +
+         "  # A first look in seconds. Without the next three lines: 10000 candidates, ten starts, and poses that are "
+         "moved\n"
+         "  # between the candidates; minutes, some per cent better.\n"
+         "  candidates: 500\n  restarts: 2\n  method: exchange\n";
+}
+
+}  // namespace
+
+std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
+  if (facts.no_floor) return std::nullopt;
+  // Rounded down: a plane that cuts the foot of the robot would forbid nothing less.
+  return facts.floor ? facts.floor : std::floor(robot.lowest * 1e3) / 1e3;
+}
+
+int default_poses(const InitFacts& facts) { return facts.camera && !facts.arm ? 15 : 30; }
+
+std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+  return schema_line(facts.schema) +
+         fmt::format(
+             "# Made by posewright init for {}: yours to change. Lengths in m and angles in rad where no unit is "
+             "written.\nposewright: 1\n\n",
+             facts.robot.filename().string()) +
+         robot_text(facts, robot) + (facts.camera ? camera_text(facts, robot, place) : tracker_text(robot, place)) +
+         cell_text(facts, robot, place) + variants_text(facts) + design_text(facts);
+}
+
+}  // namespace posewright

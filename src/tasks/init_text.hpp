@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "posewright/model/propose_chain.hpp"
+#include "posewright/model/serial_chain_kinematics.hpp"
+#include "posewright/tasks/init_problem.hpp"
+
+namespace posewright {
+
+/// What was found out about the robot.
+struct InitRobot {
+  ProposedChain links;
+  ChainDescription chain;
+  double reach = 0.0;                ///< m, no point of the tip is farther from the first joint
+  Eigen::Vector3d outward{0, 0, 1};  ///< tip frame, unit, along an axis: where a tool points
+  std::string urdf;                  ///< as the problem file names it
+  double lowest = 0.0;               ///< m, of the bodies that stand still, base frame; at most 0
+  double face = 0.0;                 ///< m, how far bodies reach beyond the tip along `outward`
+};
+
+/// What the file says. Throws as init_problem().
+InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
+/// Adds `lowest` and `face`. Throws InputError where meshes are missing.
+void add_bodies(InitRobot& robot, const Problem& problem);
+
+/// Where the instrument, or what it looks at, stands, and whether there is a cell.
+struct InitPlace {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  bool cell = true;
+  std::string no_cell;  ///< why there is none
+};
+
+/// The commented file.
+std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place);
+
+/// Height of the floor, m in the base frame: what is said, else under the bodies that stand still; none: no floor.
+std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot);
+
+/// Poses that are asked for if nobody says how many.
+int default_poses(const InitFacts& facts);
+
+}  // namespace posewright

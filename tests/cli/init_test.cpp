@@ -1,0 +1,256 @@
+// `init` as a user meets it: a robot and an instrument in, a file that plans out; questions on a terminal alone.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/tasks/known_cameras.hpp"
+#include "tests/kit/run_program.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kr270 = POSEWRIGHT_SOURCE_DIR "/examples/kr270/kr270.urdf";
+
+ProgramRun init(const TemporaryFolder& folder, std::vector<std::string> words) {
+  words.insert(words.begin(), "init");
+  words.emplace_back("--yes");
+  return run_program(folder.path(), words);
+}
+
+/// Runs `init` with a terminal as its input, output and error; each answer is typed when the program waits for it.
+std::pair<int, std::string> at_a_terminal(const TemporaryFolder& folder, const std::vector<std::string>& words,
+                                          const std::vector<std::string>& answers) {
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    std::vector<std::string> copies = {POSEWRIGHT_PROGRAM, "init"};
+    copies.insert(copies.end(), words.begin(), words.end());
+    std::vector<char*> arguments;
+    for (std::string& word : copies) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::filesystem::current_path(folder.path());
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  std::string shown;
+  std::size_t given = 0, seen = 0;
+  char bytes[4096];
+  for (ssize_t n = 0; (n = ::read(terminal, bytes, sizeof bytes)) > 0;) {
+    shown.append(bytes, std::size_t(n));
+    if (given < answers.size() && shown.find("]: ", seen) != std::string::npos) {
+      seen = shown.size();
+      const std::string line = answers[given++] + "\n";
+      if (::write(terminal, line.data(), line.size()) < 0) break;
+    }
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ::close(terminal);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, shown};
+}
+
+TEST(Init, WritesAFileThatPlansWithoutAnEdit) {
+  const TemporaryFolder folder;
+  const ProgramRun run = init(folder, {kr270, "--tracker", "--poses", "12"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("problem.yaml: 6 joints from base_link to flange, laser tracker"));
+  EXPECT_THAT(run.out, HasSubstr("posewright plan problem.yaml"));
+  const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"});
+  EXPECT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_THAT(plan.out, HasSubstr("12 poses for variant geometric"));
+}
+
+TEST(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435"}).exit_code, 0);
+  const std::string text = read_file(folder / "problem.yaml");
+  std::size_t at = 0;
+  for (const char* part :
+       {"# yaml-language-server: $schema=/", "\n# 1. Robot:", "\nrobot:", "\n# 2. Instrument:", "\nmeasurement:",
+        "\n# 3. Cell:", "\nworkspace:", "\n# 4. Plan:", "\nvariants:", "\ndesign:"}) {
+    const std::size_t found = text.find(part);
+    ASSERT_NE(found, std::string::npos) << part;
+    EXPECT_GE(found, at) << part;
+    at = found;
+  }
+  EXPECT_THAT(text, HasSubstr("data sheet 337029")) << "where the lens is from";
+  const std::string schema = text.substr(text.find('=') + 1, text.find('\n') - text.find('=') - 1);
+  EXPECT_TRUE(std::filesystem::is_regular_file(schema)) << schema;
+}
+
+TEST(Init, PutsTheBoardWhereTheCameraOnTheHandSeesIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(init(folder, {kr270, "--camera", "1920x1200@2300", "--board", "5x7x40mm", "-o", "c.yaml"}).exit_code, 0);
+  const Problem problem = read_problem(folder / "c.yaml");
+  const auto& camera = std::get<CameraMeasurement>(problem.measurement.instrument);
+  EXPECT_EQ(camera.rows, 5);
+  EXPECT_EQ(camera.columns, 7);
+  EXPECT_DOUBLE_EQ(camera.spacing, 0.04);
+  EXPECT_DOUBLE_EQ(camera.fx, 2300);
+  EXPECT_TRUE(camera.on_hand);
+  const ProgramRun seen =
+      run_program(folder.path(), {"observe", "c.yaml", "--candidates", "50", "--variant", "hand_eye"});
+  EXPECT_EQ(seen.exit_code, 0) << seen.err;
+  EXPECT_THAT(seen.out, HasSubstr("6 of 6 parameters can be identified"));
+}
+
+TEST(Init, PlacesAndLinksThatAreSaidAreTaken) {
+  const TemporaryFolder folder;
+  const ProgramRun run = init(folder, {kr270, "--tracker", "--at", "4,-1,500mm", "--base", "link_1", "--tip", "link_6",
+                                       "--accuracy", "0.2mm", "--floor", "none"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Problem problem = read_problem(folder / "problem.yaml");
+  const auto& points = std::get<PointsMeasurement>(problem.measurement.instrument);
+  EXPECT_TRUE(points.stations.front().placement.position.isApprox(Eigen::Vector3d(4, -1, 0.5)));
+  EXPECT_EQ(std::get<SerialArmSpec>(problem.robot).base->value, "link_1");
+  EXPECT_EQ(std::get<SerialArmSpec>(problem.robot).tip->value, "link_6");
+  EXPECT_TRUE(problem.workspace.collision->obstacles.empty());
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("poses: auto"));
+}
+
+TEST(Init, WritesOverNothingThatIsThere) {
+  const TemporaryFolder folder;
+  folder.write("problem.yaml", "mine\n");
+  const ProgramRun refused = init(folder, {kr270, "--tracker"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("problem.yaml exists; --force replaces it"));
+  EXPECT_EQ(read_file(folder / "problem.yaml"), "mine\n");
+  EXPECT_EQ(init(folder, {kr270, "--tracker", "--force"}).exit_code, 0);
+  EXPECT_EQ(init(folder, {kr270, "--tracker"}).exit_code, 1) << "it may have been edited since";
+  folder.write("robot.urdf", read_file(kr270));
+  EXPECT_EQ(init(folder, {"robot.urdf", "--tracker", "-o", "robot.urdf", "--force"}).exit_code, 2);
+  EXPECT_EQ(read_file(folder / "robot.urdf"), read_file(kr270));
+}
+
+TEST(Init, WhatIsMissingOrWrongIsOneLine) {
+  const TemporaryFolder folder;
+  folder.write("two.urdf",
+               "<robot name='t'><link name='b'/><link name='l'/><link name='r'/>"
+               "<joint name='jl' type='continuous'><parent link='b'/><child link='l'/></joint>"
+               "<joint name='jr' type='continuous'><parent link='b'/><child link='r'/></joint></robot>");
+  folder.write("a.urdf.xacro", "<robot name='a' xmlns:xacro='x'><xacro:arg name='prefix'/></robot>");
+  const std::map<std::vector<std::string>, std::string> wrong = {
+      {{kr270}, "no instrument is named; --tracker or --camera NAME"},
+      {{kr270, "--camera", "realsense-d453"}, "camera 'realsense-d453' is not known; known: realsense-d405"},
+      {{kr270, "--camera", "femtobolt"}, "(did you mean 'femto-bolt'?)"},
+      {{kr270, "--camera", "zed", "--board", "6x9"}, "ROWSxCOLUMNSxSPACING"},
+      {{kr270, "--camera", "zed", "--board", "6x9x25"}, "board '6x9x25' has a spacing without unit"},
+      {{kr270, "--tracker", "--camera", "zed"}, "one instrument is allowed"},
+      {{kr270, "--tracker", "--tip", "flnge"}, "has no link 'flnge' (did you mean 'flange'?), --tip"},
+      {{kr270, "--tracker", "--at", "1,2"}, "three lengths X,Y,Z"},
+      {{kr270, "--tracker", "--accuracy", "0.1"}, "accuracy 0.1 has no unit"},
+      {{"two.urdf", "--tracker"}, "has several arms or ends; name one with --tip: l, r"},
+      {{"a.urdf.xacro", "--tracker"}, "needs arguments that have no default: prefix"},
+      {{"none.urdf", "--tracker"}, "none.urdf"},
+  };
+  for (const auto& [words, message] : wrong) {
+    const ProgramRun run = init(folder, words);
+    EXPECT_EQ(run.exit_code, 2) << message;
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "problem.yaml"));
+  }
+}
+
+TEST(Init, AsksOnATerminalAndTakesWhatIsTyped) {
+  const TemporaryFolder folder;
+  const auto [status, shown] = at_a_terminal(folder, {kr270}, {"zde", "zed", "", "", "in front", "0.5 mm", "12"});
+  EXPECT_EQ(status, 0) << shown;
+  EXPECT_THAT(shown, HasSubstr("(did you mean 'zed'?)")) << "a wrong answer is asked for again";
+  EXPECT_THAT(shown, HasSubstr("Board: rows x columns x spacing of its points [6x9x25mm]: "));
+  const Problem problem = read_problem(folder / "problem.yaml");
+  EXPECT_DOUBLE_EQ(std::get<CameraMeasurement>(problem.measurement.instrument).fx, 1400);
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("poses: 12"));
+}
+
+TEST(Init, AsksNothingThatOptionsSayAndNothingAfterYes) {
+  const TemporaryFolder folder;
+  const auto [status, shown] = at_a_terminal(folder, {kr270, "--tracker", "--at", "4,-1,0.5", "--poses", "12"}, {});
+  EXPECT_EQ(status, 0) << shown;
+  EXPECT_THAT(shown, Not(HasSubstr("]: ")));
+  const auto [refused, why] = at_a_terminal(folder, {kr270, "--yes", "-o", "b.yaml"}, {});
+  EXPECT_EQ(refused, 2);
+  EXPECT_THAT(why, HasSubstr("no instrument is named"));
+}
+
+TEST(Init, AFileWhoseMeshesAreMissingPlansWithoutACellAndSaysSo) {
+  const TemporaryFolder folder;
+  std::string text = read_file(kr270);
+  const std::string sphere = "<sphere radius=\"0.13\"/>";
+  text.replace(text.find(sphere), sphere.size(), "<mesh filename=\"package://nowhere/wrist.stl\"/>");
+  folder.write("arm.urdf", text);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("no collision is checked"));
+  EXPECT_THAT(run.err, HasSubstr("package 'nowhere' is not found"));
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("# No collision is checked: "));
+  EXPECT_FALSE(read_problem(folder / "problem.yaml").workspace.collision);
+}
+
+TEST(Init, HandEyeInThreeCommands) {
+  const TemporaryFolder folder;
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435", "--board", "6x9x25mm"}).exit_code, 0);
+  const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--quiet"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const std::map<std::string, std::string> lists = {{"moveit", "calposes.yaml"},
+                                                    {"easy-handeye2", "posewright.samples"},
+                                                    {"industrial-calibration", "measurements.yaml"},
+                                                    {"industrial-calibration-hand-eye", "poses/15.yaml"}};
+  for (const auto& [format, file] : lists) {
+    const ProgramRun run = run_program(folder.path(), {"export", "plan.json", "--to", format});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  RecordProperty("seconds", std::to_string(seconds));
+}
+
+/// What the makers say of whole angles of view, horizontally and vertically, in degrees; the table has focal lengths.
+TEST(KnownCameras, SeeTheAnglesThatTheirMakersState) {
+  const std::map<std::string, std::pair<double, double>> stated = {
+      {"realsense-d405", {87, 58}},
+      {"realsense-d415", {69.4, 42.5}},
+      {"realsense-d435", {69.4, 42.5}},
+      {"realsense-d455", {90, 65}},
+      {"azure-kinect", {90, 59}},
+      {"femto-bolt", {80, 51}},
+      {"zed", {69, 42}},
+      {"oak-d-s2", {66, 54}},
+      // Of the lens alone: sensor width and height over 8 mm.
+      {"imx392-8mm",
+       {2 * std::atan(1920 * 3.45e-3 / 16) * 180 / std::numbers::pi,
+        2 * std::atan(1200 * 3.45e-3 / 16) * 180 / std::numbers::pi}},
+      {"imx250-8mm",
+       {2 * std::atan(2448 * 3.45e-3 / 16) * 180 / std::numbers::pi,
+        2 * std::atan(2048 * 3.45e-3 / 16) * 180 / std::numbers::pi}},
+      {"logitech-c920", {70.4, 43.3}},  // of 78 deg along the diagonal
+  };
+  ASSERT_EQ(known_cameras().size(), stated.size());
+  for (const KnownCamera& camera : known_cameras()) {
+    const auto& [horizontal, vertical] = stated.at(camera.name);
+    EXPECT_NEAR(camera.horizontal_view() * 180 / std::numbers::pi, horizontal, 1) << camera.name;
+    EXPECT_NEAR(camera.vertical_view() * 180 / std::numbers::pi, vertical, 3.5) << camera.name;
+    EXPECT_FALSE(camera.source.empty());
+    EXPECT_EQ(find_camera(camera.name).focal, camera.focal);
+  }
+}
+
+}  // namespace
+}  // namespace posewright

@@ -193,6 +193,9 @@ Json next_json(const Problem& problem, const NextOptions& options, const NextPos
   json["history"] = points_json(history);
   json["poses"] = Json::array();
   for (const PlannedPose& pose : r.poses) json["poses"].push_back(pose_json(pose));
+  json["estimates"] = Json::array();
+  for (const EstimatedValue& e : r.estimates)
+    json["estimates"].push_back({{"name", e.value.name}, {"unit", e.value.unit}, {"value", e.value.value}, {"sigma", *e.sigma}});
   json["candidates"] = r.candidates;
   json["notes"] = r.notes;
   json["interrupted"] = r.interrupted;

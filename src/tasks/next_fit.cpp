@@ -101,6 +101,8 @@ class FitSoFar {
     if (!found.fit.converged) throw CannotDo("the estimate did not converge");
     if (found.fit.scale > suspicious) look_for_another_robot();
     result_.effect = found.counted;
+    for (const EstimatedValue& value : found.values)
+      if (value.sigma) result_.estimates.push_back(value);
     result_.noise = {options_.prior, found.fit.noise_factor, found.fit.scale, found.fit.left};
     result_.problem = at_values(std::move(counting), spec_.name, found, options_.data);
     allow(variant_in(result_.problem, spec_.name).unmodelled, found);

@@ -20,6 +20,7 @@ struct NextFit {
   bool fitted = false;          ///< else at nominal values
   ForecastNoise noise;
   std::optional<CalibratedEffect> effect{};
+  std::vector<EstimatedValue> estimates{};
   std::vector<std::string> notes{};
 };
 

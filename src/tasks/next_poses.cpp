@@ -22,12 +22,13 @@ namespace {
 // As in a plan: from so many times the smallest number of poses on there is enough to choose by what is predicted.
 constexpr double enough_to_predict = 1.5;
 constexpr const char* method = "exchange";
-constexpr int starts = 4;
+// One pose is found by looking at all; of more, the better of two local optima.
+constexpr int starts = 2;
 
 PlanOptions plan_options(const NextOptions& options, const PoseList& measured) {
   PlanOptions plan;
   plan.variant = options.variant;
-  plan.criterion = options.criterion;
+  plan.criterion = "o1";  // until it is chosen: what it needs is known then
   plan.method = method;
   plan.poses = options.poses;
   plan.restarts = starts;
@@ -79,6 +80,10 @@ class NextRun {
     measured.name = options_.data.string();
     for (const MeasuredPose& pose : fit_.poses) measured.configurations.push_back(pose.q);
     settings_ = settings_of(fit_.problem, plan_options(options_, measured));
+    const DesignSpec& design = nominal_.design;
+    settings_.criterion_stated = !options_.criterion.empty() || design.criterion.line > 0;
+    settings_.criterion = options_.criterion.empty() ? design.criterion.value : options_.criterion;
+    require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
     if (find_criterion(settings_.criterion)->several_variants || find_criterion(settings_.criterion)->needs_truth)
       throw CannotDo("next estimates one variant and asks no other: criterion '" + settings_.criterion +
                      "' needs several (--criterion names another)");
@@ -134,7 +139,9 @@ class NextRun {
     Variant& variant = study_.first();
     result_.places_stated = !variant.test_points.empty();
     if (!result_.places_stated) {
-      const Configurations& all = kept_ ? kept_->configurations : study_.configurations;
+      Configurations all;
+      if (kept_) all = kept_->configurations;
+      else all = with_measured(study_, study_.configurations);  // of a list: those that were taken from it, too
       try {
         variant.test_places.clear();
         variant.test_points = test_points_at_candidates(fit_.problem, all, variant, variant.test_places);
@@ -173,6 +180,7 @@ class NextRun {
     result_.noise = fit_.noise.scale;
     result_.freedom = fit_.fitted ? fit_.noise.freedom : 0;
     result_.effect = fit_.effect;
+    if (fit_.fitted) result_.estimates = fit_.estimates;
     result_.kept = kept_;
     result_.smallest = smallest_number_of_poses(*variant.model, study_.configurations, variant.columns,
                                                 settings_.planner.threads);
@@ -207,6 +215,7 @@ class NextRun {
     request.criterion = criterion;
     request.certify = false;
     request.planner.kicks = 0;
+    if (poses == 1) request.planner.restarts = 1;
     const SearchResult found = search(copied_parts(parts), request, monitor_);
     Configurations chosen;
     chosen.dimension = study_.configurations.dimension;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/outputs/plan.hpp"
 #include "posewright/problem/calibrated_parameters.hpp"
@@ -63,6 +64,7 @@ struct NextPoses {
   bool fitted = false;               ///< what follows is at calibrated values; else at nominal ones
   double noise = 1.0, freedom = 0;   ///< of the residuals, in units of the stated noise; their degrees of freedom
   std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
+  std::vector<EstimatedValue> estimates;  ///< of the parameters, if there was a fit
   int places = 0;                    ///< where accuracy counts
   bool places_stated = false;        ///< test poses of the problem; else places through the workspace
   std::vector<NextPoint> curve;      ///< of the measured poses, by what is known today; the last: all

@@ -133,7 +133,10 @@ def main():
     parser.add_argument("--robots", type=int, default=1000)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--noise-factor", type=float, default=1.0, help="the true noise in units of the stated one")
+    parser.add_argument("--anew", action="store_true", help="what was done before does not count")
     options = parser.parse_args()
+    if options.anew:
+        options.out.unlink(missing_ok=True)
     rows = known(options.out)
     left = sorted(set(range(options.robots)) - {row["robot"] for row in rows})
     with tempfile.TemporaryDirectory() as scratch, open(options.out, "a") as out:

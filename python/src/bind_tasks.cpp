@@ -69,9 +69,7 @@ std::string text_of(const MadeStations& m) { return stations_text(m.value); }
 auto json_of(const MadeCalibration& m) { return calibration_json(m.problem->problem, m.options, m.value); }
 auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
 auto json_of(const MadeCompensation& m) { return compensation_json(m.problem->problem, m.value); }
-auto json_of(const MadeNext& m) {
-  return next_json(m.problem->problem, m.options, m.value.next, m.value.history);
-}
+auto json_of(const MadeNext& m) { return next_json(m.problem->problem, m.options, m.value.next, m.value.history); }
 auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
 auto json_of(const MadeStations& m) { return stations_json(m.value); }
 

@@ -8,10 +8,10 @@
 namespace posewright::cli {
 
 const std::vector<Command>& commands() {
-  static const std::vector<Command> table = {observe_command(),   plan_command(),       select_command(),
-                                             evaluate_command(),  compare_command(),    simulate_command(),
-                                             calibrate_command(), next_command(),       compensate_command(), route_command(),
-                                             stations_command(),  export_command(),     report_command()};
+  static const std::vector<Command> table = {
+      observe_command(),  plan_command(),      select_command(), evaluate_command(),   compare_command(),
+      simulate_command(), calibrate_command(), next_command(),   compensate_command(), route_command(),
+      stations_command(), export_command(),    report_command()};
   return table;
 }
 

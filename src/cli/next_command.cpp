@@ -22,23 +22,25 @@ namespace {
 
 po::options_description next_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                        //
-      ("data", text("FILE"), "readings so far, CSV; more may come at its end (none: nothing is measured)")     //
-      ("poses,k", text("k"), "how many next poses (1)")                                                        //
-      ("required", text("LENGTH"), "error at the test poses that suffices (design: require: accuracy)")        //
-      ("watch", "go on while the file grows, until poses suffice, the curve is flat, or Ctrl-C")               //
-      ("variant", text("V"), "model variant that is fitted (design: variant, else the first)")                 //
+  options.add_options()                                                                                     //
+      ("data", text("FILE"), "readings so far, CSV; more may come at its end (none: nothing is measured)")  //
+      ("poses,k", text("k"), "how many next poses (1)")                                                     //
+      ("required", text("LENGTH"), "error at the test poses that suffices (design: require: accuracy)")     //
+      ("watch", "go on while the file grows, until poses suffice, the curve is flat, or Ctrl-C")            //
+      ("variant", text("V"), "model variant that is fitted (design: variant, else the first)")              //
       ("criterion", text("NAME"),
        ("what the next poses maximise: " + criterion_names() + " (the problem's; else o1, later test_pose)").c_str())(
           "no-prior", "tolerances of what was manufactured do not count in the fit")(
           "candidates", text("n"),
           help_with_default("feasible configurations to choose from", default_candidates).c_str())(
-          "candidates-from", text("POSES"), "choose among these configurations instead (CSV, plan.json, measured data)");
-  options.add_options()                                                                                            //
-      ("state", text("FILE"), "what is remembered from call to call (DATA.next-state.json beside the data; - for none)")(
-          "restart", "forget the state: another problem, another file of readings")                                //
-      ("output,o", text("FILE"), "next poses as CSV")                                                              //
-      ("result", text("FILE"), "what --json prints, as a file that is written anew at every step")                 //
+          "candidates-from", text("POSES"),
+          "choose among these configurations instead (CSV, plan.json, measured data)");
+  options.add_options()  //
+      ("state", text("FILE"),
+       "what is remembered from call to call (DATA.next-state.json beside the data; - for none)")(
+          "restart", "forget the state: another problem, another file of readings")                 //
+      ("output,o", text("FILE"), "next poses as CSV")                                               //
+      ("result", text("FILE"), "what --json prints, as a file that is written anew at every step")  //
       ("force", "replace files that posewright did not write");
   options.add(problem_options());
   return options;
@@ -71,8 +73,7 @@ NextOptions options_of(const po::variables_map& values, const CommonOptions& com
   next.candidates = whole_number(values, "candidates", 1, 10000000);
   next.seed = common.seed;
   next.threads = common.threads;
-  if (values.count("watch") > 0 && next.data.empty())
-    throw InputError({}, "--watch follows a file", "--data FILE");
+  if (values.count("watch") > 0 && next.data.empty()) throw InputError({}, "--watch follows a file", "--data FILE");
   return next;
 }
 
@@ -107,9 +108,8 @@ class NextSession {
     options_.text.reset();
     if (lines.has_rows) options_.text = lines.text;
     if (state_) reuse(*state_, problem_, options_);
-    NextPoses result = watched(common_, 0, [&](const Monitor& monitor) {
-                         return next_poses(problem_, options_, monitor);
-                       }).result;
+    NextPoses result =
+        watched(common_, 0, [&](const Monitor& monitor) { return next_poses(problem_, options_, monitor); }).result;
     if (!lines.rest.empty() && !watch_)
       result.notes.push_back(fmt::format("{}:{}: has no line end yet and is left out: it may be half a line",
                                          options_.data.string(), lines.next_line));

@@ -34,7 +34,7 @@ std::string shown_coordinate(const NamedValue& v) {
 std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : unit == "m" ? "mm" : unit; }
 
 std::string now_text(const NextPoint& now, const NextPoses& r) {
-  std::string text = fmt::format("predicted error at the {} {}", where(r), length(*now.expected));
+  std::string text = fmt::format("the predicted error at the {} is {}", where(r), length(*now.expected));
   if (now.upper) text += fmt::format(", below {} with 95 % confidence", length(*now.upper));
   return text;
 }
@@ -47,24 +47,24 @@ std::string not_determined_text(const NextPoses& r) {
                                                 poses_text(*r.smallest), r.parameters)
                                   : "Poses are chosen at nominal values, tolerances as prior knowledge.");
   if (r.told < r.parameters)
-    return fmt::format("Go on: {} too few for a fit, {} of {} parameters are told. Poses are chosen at nominal values, "
-                       "tolerances as prior knowledge.",
-                       r.measured == 1 ? "1 pose is" : poses_text(r.measured) + " are", r.told, r.parameters);
+    return fmt::format(
+        "Go on: {} too few for a fit, {} of {} parameters are told. Poses are chosen at nominal values, "
+        "tolerances as prior knowledge.",
+        r.measured == 1 ? "1 pose is" : poses_text(r.measured) + " are", r.told, r.parameters);
   return "Go on: there is no estimate from these poses. Poses are chosen at nominal values.";
 }
 
 std::string gain_text(const NextPoses& r) {
   if (r.ahead.empty() || !r.ahead.back().expected || r.curve.empty()) return {};
   const int more = int(r.ahead.size());
-  const std::string subject = more == 1 ? fmt::format("Pose {} lowers", r.measured + 1)
-                                        : fmt::format("Poses {} to {} lower", r.measured + 1, r.measured + more);
+  const std::string ids =
+      more == 1 ? fmt::format("ose {}", r.measured + 1)
+                : fmt::format("oses {} {} {}", r.measured + 1, more == 2 ? "and" : "to", r.measured + more);
+  const std::string then = length(*r.ahead.back().expected);
   if (!r.curve.back().expected)
-    return fmt::format(" With {} the predicted error is {}.",
-                       more == 1 ? fmt::format("pose {}", r.measured + 1)
-                                 : fmt::format("poses {} to {}", r.measured + 1, r.measured + more),
-                       length(*r.ahead.back().expected));
-  return fmt::format(" {} it from {} to {}.", subject, length(*r.curve.back().expected),
-                     length(*r.ahead.back().expected));
+    return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), then);
+  return fmt::format(" P{} lower{} it from {} to {}.", ids, more == 1 ? "s" : "", length(*r.curve.back().expected),
+                     then);
 }
 
 Json point_json(const NextPoint& p) {
@@ -138,14 +138,14 @@ std::string next_reason(const NextPoses& r) {
   const NextPoint& now = r.curve.back();
   const std::string required = r.required ? fmt::format("required {}", length(*r.required)) : "";
   if (r.verdict == NextVerdict::reached) return fmt::format("Stop: {}; {}.", now_text(now, r), required);
-  const std::string three = r.with_three && r.with_three->expected
-                                ? fmt::format("{} more would bring it to {}",
-                                              poses_text(r.with_three->poses - r.measured),
-                                              length(*r.with_three->expected))
-                                : "";
+  const std::string three =
+      r.with_three && r.with_three->expected
+          ? fmt::format("{} more would bring it to {}", poses_text(r.with_three->poses - r.measured),
+                        length(*r.with_three->expected))
+          : "";
   if (r.verdict == NextVerdict::flat)
     return fmt::format("Stop: the curve is flat, {}, less than {:.0f} % lower. {}{}{}.", three, 100 * least_gain,
-                       "P" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required,
+                       "T" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required,
                        required.empty() || (now.expected && *now.expected <= *r.required)
                            ? ""
                            : ", which more poses like these do not reach: a better instrument, more readings a pose, "
@@ -165,7 +165,9 @@ std::string next_text(const NextPoses& r) {
   if (r.effect)
     text += fmt::format("The residuals hold a smooth effect of {} that no parameter describes; it is allowed for.\n",
                         length(r.effect->size));
-  text += fmt::format("Next, by criterion {} among {}:\n{}", r.criterion, r.candidates, table_of(r.poses));
+  const bool stop = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
+  text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "Whoever goes on all the same" : "Next", r.criterion,
+                      r.candidates, table_of(r.poses));
   return text;
 }
 
@@ -195,7 +197,8 @@ Json next_json(const Problem& problem, const NextOptions& options, const NextPos
   for (const PlannedPose& pose : r.poses) json["poses"].push_back(pose_json(pose));
   json["estimates"] = Json::array();
   for (const EstimatedValue& e : r.estimates)
-    json["estimates"].push_back({{"name", e.value.name}, {"unit", e.value.unit}, {"value", e.value.value}, {"sigma", *e.sigma}});
+    json["estimates"].push_back(
+        {{"name", e.value.name}, {"unit", e.value.unit}, {"value", e.value.value}, {"sigma", *e.sigma}});
   json["candidates"] = r.candidates;
   json["notes"] = r.notes;
   json["interrupted"] = r.interrupted;

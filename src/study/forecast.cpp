@@ -202,7 +202,8 @@ class ForecastOfError::Sum {
       for (std::size_t k = 0; k < along.size(); ++k)
         Y_.block(first_[k], 3 * t, along[k].rows(), 3) = between(effect, along[k], places[k], moved[u], there[u]);
       for (Eigen::Index s = 0; s <= t; ++s) {
-        K_.block<3, 3>(3 * t, 3 * s) = between(effect, moved[u], there[u], moved[std::size_t(s)], there[std::size_t(s)]);
+        K_.block<3, 3>(3 * t, 3 * s) =
+            between(effect, moved[u], there[u], moved[std::size_t(s)], there[std::size_t(s)]);
         K_.block<3, 3>(3 * s, 3 * t) = K_.block<3, 3>(3 * t, 3 * s).transpose().eval();
       }
     }

@@ -163,8 +163,8 @@ class FitSoFar {
     if (!(farthest > another_robot * expected)) return;
     const std::string& unit = model->readings()[worst].unit;
     throw InputError({options_.data.string(), result_.lines[k]},
-                     fmt::format("{} is {} from where the {} poses before it put this robot", model->readings()[worst].name,
-                                 shown_value(farthest, unit), k),
+                     fmt::format("{} is {} from where the {} poses before it put this robot",
+                                 model->readings()[worst].name, shown_value(farthest, unit), k),
                      fmt::format("within some {} is expected; a row of another robot, or was something moved?",
                                  shown_value(2 * expected, unit)));
   }

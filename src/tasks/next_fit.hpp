@@ -15,9 +15,9 @@ namespace posewright {
 struct NextFit {
   Problem problem;  ///< at the estimated values, with the effect that the residuals show
   std::vector<MeasuredPose> poses;
-  std::vector<int> lines;       ///< of the file, of each pose
-  int readings = 0;             ///< single ones that were read
-  bool fitted = false;          ///< else at nominal values
+  std::vector<int> lines;  ///< of the file, of each pose
+  int readings = 0;        ///< single ones that were read
+  bool fitted = false;     ///< else at nominal values
   ForecastNoise noise;
   std::optional<CalibratedEffect> effect{};
   std::vector<EstimatedValue> estimates{};

@@ -27,9 +27,9 @@ StateJson candidates_json(const NextState& state) {
   const Configurations& all = state.kept->configurations;
   StateJson rejected = StateJson::array();
   for (const auto& [reason, count] : all.rejected) rejected.push_back({reason, count});
-  return {{"variant", state.variant},  {"seed", state.seed},
+  return {{"variant", state.variant},   {"seed", state.seed},
           {"asked", state.kept->asked}, {"calibrated", state.kept->calibrated},
-          {"drawn", all.drawn},        {"rejected", rejected},
+          {"drawn", all.drawn},         {"rejected", rejected},
           {"dimension", all.dimension}, {"values", all.values}};
 }
 
@@ -112,10 +112,10 @@ void require_continues(const NextState& state, const std::filesystem::path& file
                                  text.size(), state.data_bytes),
                      "a file that grows at its end" + restart);
   if (sha256_hex(std::string_view(text).substr(0, state.data_bytes)) != state.data_sha256)
-    throw InputError({data.string(), 0},
-                     fmt::format("is another file than {} saw: its first {} bytes have changed", file.string(),
-                                 state.data_bytes),
-                     "a file that grows at its end" + restart);
+    throw InputError(
+        {data.string(), 0},
+        fmt::format("is another file than {} saw: its first {} bytes have changed", file.string(), state.data_bytes),
+        "a file that grows at its end" + restart);
 }
 
 void reuse(const NextState& state, const Problem& problem, NextOptions& options) {

@@ -1,7 +1,7 @@
 // The next pose to measure and when to stop. The second road is a planar arm by definition: its derivatives, all
 // candidates one by one, and calibrations that are drawn.
 
-#include "posewright/tasks/next_poses.hpp"
+#include "posewright/results/next.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,7 +13,6 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/problem/read_problem.hpp"
-#include "posewright/results/next.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/forecast.hpp"
 #include "posewright/study/unmodelled.hpp"
@@ -21,14 +20,15 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/random.hpp"
+#include "posewright/tasks/next_poses.hpp"
 #include "posewright/tasks/next_state.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
 namespace {
 
-using testing::HasSubstr;
 using Eigen::Vector2d, Eigen::Vector4d;
+using testing::HasSubstr;
 using Block = Eigen::Matrix<double, 2, 4>;
 
 constexpr double upper = 1.2, lower = 0.8, noise = 1e-3;  // m
@@ -41,8 +41,8 @@ const char* const urdf =
 <limit lower="-2" upper="2" effort="0" velocity="1"/></joint>
 <joint name="end" type="fixed"><parent link="l2"/><child link="tip"/><origin xyz="0.8 0 0"/></joint></robot>)";
 
-const std::vector<Vector2d> candidates = {{0, 1.5},   {0.4, 1.1},  {-2, -1},   {0.3, 0.5}, {1.5, 0.1},
-                                          {1, 1.9},   {2.5, -0.4}, {-1, 0.8},  {-2.4, 1.3}, {0.8, -1.4}, {-0.6, -0.2}};
+const std::vector<Vector2d> candidates = {{0, 1.5},    {0.4, 1.1}, {-2, -1},    {0.3, 0.5},  {1.5, 0.1},  {1, 1.9},
+                                          {2.5, -0.4}, {-1, 0.8},  {-2.4, 1.3}, {0.8, -1.4}, {-0.6, -0.2}};
 const std::vector<Vector2d> tests = {{0.5, 1.7}, {-1.5, 1.9}, {2.0, 1.6}};
 const std::vector<Vector2d> poses = {{0.2, 0.3}, {0.1, 0.4}, {1.1, -0.6}, {-0.9, 1.4}, {1.9, 0.2}};
 
@@ -133,9 +133,7 @@ class NextPosesOfAnArm : public testing::Test {
   TemporaryFolder folder_;
 };
 
-Vector2d configuration(const PlannedPose& pose) {
-  return {pose.configuration[0].value, pose.configuration[1].value};
-}
+Vector2d configuration(const PlannedPose& pose) { return {pose.configuration[0].value, pose.configuration[1].value}; }
 
 TEST_F(NextPosesOfAnArm, TheNextPoseIsTheBestOfAllCandidates) {
   const Problem p = problem();
@@ -237,8 +235,7 @@ TEST_F(NextPosesOfAnArm, AnEffectCountsAsAPlanOfTheSamePosesCountsIt) {
   list.dimension = 2;
   for (const Vector2d& q : poses) list.values.insert(list.values.end(), q.begin(), q.end());
   variant.scale = Eigen::VectorXd::Ones(Eigen::Index(variant.columns.selected.size()));
-  variant.test_points =
-      test_points_of(p, *variant.spec, *variant.model, variant.columns, 0, &variant.test_places);
+  variant.test_points = test_points_of(p, *variant.spec, *variant.model, variant.columns, 0, &variant.test_places);
   allow_for_unmodelled(p, list, 1, variant);
   std::vector<double> each;
   const double planned = predicted_error(variant.test_points, worth_of(variant, list, Prior::none, 1).errors, each);

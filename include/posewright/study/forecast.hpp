@@ -25,7 +25,7 @@ std::vector<PoseRows> rows_of(const Variant& variant, const Configurations& conf
 /// Error after compensation at the test poses, root of the weighted mean square over them, m.
 struct ForecastError {
   double expected = 0.0;  ///< ρ0, root of the expected mean square
-  /// The error is below it with 95 % confidence, theory.md eq. (37); infinite where the residuals leave no degree of
+  /// The error is below it with 95 % confidence, theory.md eq. (51); infinite where the residuals leave no degree of
   /// freedom.
   double upper = 0.0;
 };
@@ -38,7 +38,7 @@ struct ForecastNoise {
   double freedom = std::numeric_limits<double>::infinity();  ///< of the residuals: Fit::left
 };
 
-/// Error of a calibration at the variant's test poses, from its poses alone, theory.md eq. (34) and (37).
+/// Error of a calibration at the variant's test poses, from its poses alone, theory.md eq. (34) and (51).
 class ForecastOfError {
  public:
   /// @param variant  with test points; must outlive this

@@ -58,18 +58,18 @@ struct NextPoses {
   /// Stated by option or problem; else o1 below 1.5 times the smallest number of poses and test_pose from there on.
   std::string criterion;
   bool criterion_stated = false;
-  int measured = 0, readings = 0;    ///< poses, single readings
-  int parameters = 0, told = 0;      ///< columns, and how many the readings tell without any tolerance
-  std::optional<int> smallest{};     ///< number of poses that tells all
-  bool fitted = false;               ///< what follows is at calibrated values; else at nominal ones
-  double noise = 1.0, freedom = 0;   ///< of the residuals, in units of the stated noise; their degrees of freedom
+  int measured = 0, readings = 0;   ///< poses, single readings
+  int parameters = 0, told = 0;     ///< columns, and how many the readings tell without any tolerance
+  std::optional<int> smallest{};    ///< number of poses that tells all
+  bool fitted = false;              ///< what follows is at calibrated values; else at nominal ones
+  double noise = 1.0, freedom = 0;  ///< of the residuals, in units of the stated noise; their degrees of freedom
   std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
-  std::vector<EstimatedValue> estimates;  ///< of the parameters, if there was a fit
-  int places = 0;                    ///< where accuracy counts
-  bool places_stated = false;        ///< test poses of the problem; else places through the workspace
-  std::vector<NextPoint> curve;      ///< of the measured poses, by what is known today; the last: all
-  std::vector<NextPoint> ahead;      ///< with 1, 2, … of `poses`
-  std::optional<NextPoint> with_three{};  ///< with the three that lower the error most
+  std::vector<EstimatedValue> estimates;     ///< of the parameters, if there was a fit
+  int places = 0;                            ///< where accuracy counts
+  bool places_stated = false;                ///< test poses of the problem; else places through the workspace
+  std::vector<NextPoint> curve;              ///< of the measured poses, by what is known today; the last: all
+  std::vector<NextPoint> ahead;              ///< with 1, 2, … of `poses`
+  std::optional<NextPoint> with_three{};     ///< with the three that lower the error most
   std::optional<double> required{};
   NextVerdict verdict = NextVerdict::not_determined;
   std::vector<PlannedPose> poses;

@@ -19,10 +19,10 @@ struct NextState {
   std::vector<NextPoint> history;      ///< as it was predicted then, the last of a number of poses
   std::vector<std::string> names;      ///< of coordinates
   std::vector<std::vector<double>> proposed;
-  std::string variant;                 ///< of the candidates
-  std::uint64_t seed = 0;              ///< of the candidates
+  std::string variant;                         ///< of the candidates
+  std::uint64_t seed = 0;                      ///< of the candidates
   std::shared_ptr<const KeptCandidates> kept;  ///< null: a list was given
-  std::vector<WrittenWith> files;      ///< that were written with it, as they were and as they will be
+  std::vector<WrittenWith> files;              ///< that were written with it, as they were and as they will be
 };
 
 /// None if there is no such file. Throws InputError for a file that is no state.
@@ -48,8 +48,8 @@ std::string next_state_text(const NextState& state);
 /// The lines of a growing file that have their end: what is after the last one may be half a line.
 struct WholeLines {
   std::string text;
-  std::string rest;  ///< without an end
-  int next_line = 1;  ///< number of the line that `rest` is
+  std::string rest;       ///< without an end
+  int next_line = 1;      ///< number of the line that `rest` is
   bool has_rows = false;  ///< a line beside the header and comments
 };
 WholeLines whole_lines(const std::string& bytes);

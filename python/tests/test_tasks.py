@@ -144,3 +144,21 @@ def test_wrong_words_and_numbers_are_refused(kr270, small_plan, data):
                   lambda: pw.calibrate(kr270, "no.csv"), lambda: pw.report(kr270, "no.json")):
         with pytest.raises(pw.InputError):
             wrong()
+
+
+def test_next_poses_says_what_the_command_line_says(program, kr270, data, tmp_path):
+    theirs = program("next", kr270.file, "--data", data, "-k", 2, "--candidates", 300, "--required", "0.5mm", "--state",
+                     tmp_path / "theirs.json")
+    asked = {"poses": 2, "candidates": 300, "required": 0.5e-3, "state": tmp_path / "mine.json"}
+    mine = pw.next_poses(kr270, data, **asked)
+    assert mine.to_dict() == theirs
+    assert (tmp_path / "mine.json").read_text() == (tmp_path / "theirs.json").read_text()
+    assert mine.verdict == theirs["verdict"] and mine.stop == theirs["stop"] and mine.reason in mine.summary()
+    assert mine.error < mine.upper and len(mine.estimates) == theirs["parameters"]["count"]
+    assert np.array_equal(mine.configurations, [pose["configuration"] for pose in theirs["poses"]])
+    first = pw.next_poses(kr270, candidates=300)
+    assert first.verdict == "not_determined" and first.error is None and len(first) == 1
+    other = tmp_path / "measured.csv"
+    other.write_text(data.read_text().replace("0.1", "0.2"))
+    with pytest.raises(pw.InputError, match="is another file"):
+        pw.next_poses(kr270, other, **asked)

@@ -42,6 +42,7 @@ Command compare_command();
 Command simulate_command();
 Command calibrate_command();
 Command compensate_command();
+Command next_command();
 Command route_command();
 Command stations_command();
 Command export_command();

@@ -72,6 +72,7 @@ class ReadingAverages {
     MeasuredPose pose{id, mean_configuration(), group_.size() == 1 ? group_.front().y : mean()};
     share_readings(pose);
     data_.poses.push_back(std::move(pose));
+    data_.lines.push_back(group_.front().line);
     data_.held_back.push_back(group_.front().held_back);
     group_.clear();
   }
@@ -191,7 +192,12 @@ std::optional<PlatformImage> image_of(const MeasuredColumns& columns, int row, c
 
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model) {
-  const MeasuredColumns columns(read_text(file, data_size_limit), file.string(), problem, model);
+  return parse_measured_data(read_text(file, data_size_limit), file, problem, model);
+}
+
+MeasuredData parse_measured_data(const std::string& text, const std::filesystem::path& file, const Problem& problem,
+                                 const IdentificationModel& model) {
+  const MeasuredColumns columns(text, file.string(), problem, model);
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();

@@ -291,15 +291,19 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   const double degree = function.degree();
   // Criteria without a bound take their starts from the determinant's weights.
   const LogDetFunction log_det(joined.nuisance, joined.blocks.columns());
-  ApproximateDesign approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
-                                                           bound_options(request, joined.prior), monitor);
+  ApproximateDesign approximate;
+  std::optional<SpectralBound> spectral;
+  if (request.certify) {
+    approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
+                                           bound_options(request, joined.prior), monitor);
+    spectral = spectral_bound_of(joined.blocks, joined, function, request, monitor);
+  }
   if (degree == 0) approximate.sensitivity.clear();
-  auto spectral = spectral_bound_of(joined.blocks, joined, function, request, monitor);
-  const double share = degree > 0 ? degree : spectral ? spectral_degree : 0.0;
+  const double share = !request.certify ? 0.0 : degree > 0 ? degree : spectral ? spectral_degree : 0.0;
   const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
   std::optional<WorkspaceBound> workspace;
   WorkspaceBoundOptions options;
-  if (space != nullptr && degree > 0 && !monitor.should_stop()) {
+  if (space != nullptr && degree > 0 && request.certify && !monitor.should_stop()) {
     options.prior = bound_options(request, joined.prior).prior;
     options.seed = request.planner.seed;
     options.proof = request.proof;
@@ -314,8 +318,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   const ReserveCriterion reserve(*criterion);
   task.criterion = request.reserve ? &reserve : criterion.get();
   task.poses = request.poses;
-  task.approximate = &approximate;
-  if (degree > 0) task.bound = approximate.bound_for(request.poses);
+  if (request.certify) task.approximate = &approximate;
+  if (degree > 0 && request.certify) task.bound = approximate.bound_for(request.poses);
   if (spectral) task.bound = std::min(spectral->bound, task.bound.value_or(spectral->bound));
   task.space = space.get();
   task.workspace = workspace ? &*workspace : nullptr;
@@ -348,7 +352,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.certificate.proved = share > 0;
   BlockArray added;
   if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
-  if (degree > 0) fill(result.certificate, approximate, joined, request, offset);
+  if (degree > 0 && request.certify) fill(result.certificate, approximate, joined, request, offset);
   else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
   if (share > 0 && !result.design.added.empty()) {
     // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those

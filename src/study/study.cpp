@@ -154,6 +154,7 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   if (settings.fixed) fix_poses(study, *settings.fixed, settings.repeats);
   if (const auto list = given_or_read(settings.candidates_from, settings.candidates_file, without_limits(coordinates)))
     take_listed_candidates(study, problem, *list);
+  else if (settings.drawn) study.configurations = common(study.variants, *settings.drawn);
   else study.configurations = common(study.variants, drawn(study, settings, monitor));
   for (Variant& variant : study.variants) {
     try {

@@ -61,6 +61,7 @@ class CalibrationRun {
     leave_at_nominal_values(all, fit_options.start);
     place_again(fit_options);
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    if (options_.estimate_alone) return estimate_alone(fit_options);
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
@@ -90,6 +91,15 @@ class CalibrationRun {
   }
 
  private:
+  /// What goes on with the robot needs no more.
+  Calibration estimate_alone(FitOptions& fit_options) {
+    allow_for_unmodelled(fit_options);
+    result_.correction = result_.fit.correction;
+    fill_parameters();
+    report(2);
+    return std::move(result_);
+  }
+
   void read() {
     CalibrationData data = read_calibration_data(problem_, options_, *make_model(problem_, spec_), result_);
     fitted_ = std::move(data.fitted);

@@ -165,6 +165,19 @@ class Outputs(unittest.TestCase):
         self.assertGreater(len((self.folder / "readings.csv").read_text().splitlines()), 8)
         self.check("simulation", self.run_program(*words, "--variant", "few", "--truth", "all", "--weights", "robust", "--missing", 0.1))
 
+    def test_next(self):
+        problem = EXAMPLES / "kr270/problem.yaml"
+        words = ["next", problem, "--data", "measured.csv", "--candidates", 60, "-k", 2, "--result", "next.json", "--json"]
+        first = self.run_program(*words)
+        self.assertEqual(first["verdict"], "not_determined")
+        self.check("next", first)
+        self.run_program("plan", problem, "--candidates", 60, *QUICK, "--json")
+        self.run_program("simulate", problem, "plan.json", "--draws", 2, "--data", "measured.csv", "--json")
+        second = self.run_program(*words, "--required", "1 mm")
+        self.assertEqual((second["verdict"], len(second["history"])), ("reached", 2))
+        self.check("next", second)
+        self.check("next", json.loads((self.folder / "next.json").read_text()))
+
     def test_plan_route_and_stations_of_a_cell(self):
         cell = self.folder / "cell.yaml"
         text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")

@@ -14,6 +14,7 @@ namespace posewright {
 /// Readings as a user's file has them, for one model.
 struct MeasuredData {
   std::vector<MeasuredPose> poses;         ///< in the file's order; rows of one configuration averaged
+  std::vector<int> lines;                  ///< of the file, of each pose's first row
   std::vector<bool> held_back;             ///< per pose: for validation only (column `use`)
   int rows = 0;                            ///< of the file
   double repeats = 1.0;                    ///< rows per pose, harmonic mean
@@ -34,6 +35,9 @@ struct MeasuredData {
 /// platform (leg_1.x, …) beside its points make images of how it deforms. Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);
+/// The same for text already in memory; `file` names it in messages.
+MeasuredData parse_measured_data(const std::string& text, const std::filesystem::path& file, const Problem& problem,
+                                 const IdentificationModel& model);
 
 /// The same format, SI, values to their last digit.
 std::string measured_data_csv(const IdentificationModel& model, const std::vector<MeasuredPose>& poses);

@@ -33,7 +33,8 @@ struct SearchRequest {
   Repeats repeats;
   bool reserve = false;
   PlannerOptions planner;
-  bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
+  bool certify = true;  ///< false: no bound is sought, which takes longer than the search for a few poses
+  bool prove = false;   ///< the certificate over the workspace, after the search and where it can be proved
   ProofLimits proof{};
   std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance

@@ -28,6 +28,7 @@ struct Settings {
   Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
   std::optional<PoseList> measured;
   std::optional<PoseList> candidates_from;  ///< none: candidates are drawn
+  std::optional<Configurations> drawn{};    ///< candidates that were drawn before; none: they are drawn now
   /// The same as files that are still to be read; empty: none.
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them

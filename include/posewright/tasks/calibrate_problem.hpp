@@ -25,6 +25,7 @@ namespace posewright {
 
 struct CalibrateOptions {
   std::filesystem::path data;
+  std::optional<std::string> text{};  ///< of `data`, if the file is not to be read: it holds more than counts
   /// More files of the same robot, each a campaign with a base of its own: the instrument was moved between them.
   std::vector<std::filesystem::path> campaigns{};
   std::string variant;  ///< empty: as in the file
@@ -34,6 +35,7 @@ struct CalibrateOptions {
   std::filesystem::path validate;  ///< more data that are not fitted; empty: none
   int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
   bool in_steps = false;           ///< identify base and tool, geometry, stiffness one after the other, too
+  bool estimate_alone = false;     ///< the estimate and the smooth effect that the residuals show, no other judgement
   bool interpolate = false;        ///< predict with what the parameters leave as well: a variant with `unmodelled`
 };
 

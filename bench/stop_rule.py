@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Does what `posewright next` says when it stops hold?  stop_rule.py PROGRAM OUT.jsonl [--robots 1000]
+
+Each drawn robot is measured in the loop: next poses, readings of the true robot with noise, next poses, … until `next` says stop.
+Readings and the true error at the test poses after compensation are computed by a second program of the robot's definition
+(tests/oracle), which knows nothing of the fit. One line a robot is appended to OUT.jsonl; started again, it goes on where it was.
+Exit status 1 if the claim "error <= required" holds for less than 95 % of the robots for which it was made (less three standard
+errors of so many robots)."""
+import argparse
+import concurrent.futures
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "tests" / "oracle"))
+try:
+    import numpy as np
+    import yaml
+
+    from experiment import Experiment
+    from quantities import point
+except ImportError as error:
+    print(f"skipped: {error.name} is absent (Debian: python3-numpy, python3-yaml)")
+    sys.exit(77)
+
+EXAMPLE = SOURCE / "examples" / "kr270"
+VARIANT = "geometric"
+TEST_POSES, CANDIDATES, FIRST, EACH, MOST = 20, 500, 6, 2, 60
+REQUIRED = (0.08e-3, 0.12e-3, 0.2e-3)  # m, in turn
+NOISE = 0.1e-3 / math.sqrt(3)  # m: the problem's, three repeats
+# 1σ of what differs from the nominal robot: lengths m, angles rad. Tolerances that the program assumes, and where things stand.
+TOLERANCE, STANDS = (0.5e-3, math.radians(0.05)), {"base": (5e-3, math.radians(0.3)), "target": (1e-3, 0.0)}
+
+
+def write_problem(folder):
+    """The example with places where accuracy counts; what the next poses maximise is left to the program."""
+    problem = yaml.safe_load((EXAMPLE / "problem.yaml").read_text())
+    problem["robot"]["urdf"] = str(EXAMPLE / problem["robot"]["urdf"])
+    problem["variants"] = {VARIANT: problem["variants"][VARIANT]}
+    chance = np.random.default_rng(270)
+    lower, upper = np.radians([-100, -110, -60, -150, -90, -200]), np.radians([100, -30, 60, 150, 90, 200])
+    places = chance.uniform(lower, upper, (TEST_POSES, 6))
+    problem["design"] = {"variant": VARIANT, "poses": FIRST, "candidates": CANDIDATES,
+                         "test_poses": {"at": [[float(x) for x in q] for q in places]}}
+    file = folder / "problem.yaml"
+    file.write_text(yaml.safe_dump(problem))
+    return file, places
+
+
+class DrawnRobot:
+    """One robot and its instrument, by definition."""
+
+    def __init__(self, file, places, seed, noise):
+        problem = yaml.safe_load(file.read_text())
+        self.experiment = Experiment(problem, file.parent, problem["variants"][VARIANT])
+        self.names, self.places = self.experiment.robot.coordinates, places
+        self.chance, self.noise = np.random.default_rng([seed, 21]), noise
+        self.true = dict(self.experiment.nominal)
+        own = self.experiment.own_names
+        for name in problem["variants"][VARIANT]["parameters"]:
+            self.draw(own.get(name, name), TOLERANCE)
+        for name in list(self.true):
+            if name.split(".")[0] in STANDS:
+                self.draw(name, STANDS[name.split(".")[0]])
+
+    def draw(self, name, sizes):
+        turns = name.endswith(("rx", "ry", "rz", "offset"))
+        self.true[name] += sizes[1 if turns else 0] * self.chance.standard_normal()
+
+    def read(self, q):
+        y = self.experiment.readings(self.experiment.visit(self.names, q), self.true)
+        return y + self.noise * self.chance.standard_normal(len(y))
+
+    def place(self, values, q):
+        """The tip in the robot's own base."""
+        values = {name: self.experiment.nominal[name] if name.startswith(("base.", "tool.")) else value for name, value in values.items()}
+        return point(self.experiment.robot.tip(self.experiment.visit(self.names, q), values), np.zeros(3))
+
+    def error(self, estimates):
+        """Root mean square over the test poses of how far the calibrated robot is from the true one."""
+        found = dict(self.experiment.nominal)
+        for e in estimates:
+            found[e["name"]] = e["value"] - self.experiment.stands.get(e["name"], 0.0)
+        return math.sqrt(np.mean([np.sum((self.place(found, q) - self.place(self.true, q))**2) for q in self.places]))
+
+
+def run_robot(program, file, places, seed, noise_factor):
+    robot, required = DrawnRobot(file, places, seed, noise_factor * NOISE), REQUIRED[seed % len(REQUIRED)]
+    targets = robot.experiment.instrument.targets
+    with tempfile.TemporaryDirectory(dir=file.parent) as scratch:
+        data, steps = pathlib.Path(scratch) / "measured.csv", []
+        with open(data, "w") as out:
+            header = ["id"] + [f"{n} [rad]" for n in robot.names] + [f"{t}.{a} [m]" for t in targets for a in "xyz"]
+            out.write(",".join(header) + "\n")
+        while True:
+            done = subprocess.run([program, "next", file, "--data", data, "-k", str(EACH if steps else FIRST), "--required",
+                                   f"{1e3 * required} mm", "--json", "--quiet", "--threads", "1", "--seed", str(seed)],
+                                  capture_output=True, text=True)
+            if done.returncode != 0:
+                raise RuntimeError(f"robot {seed}: {done.stderr}")
+            said = json.loads(done.stdout)
+            steps.append(said["verdict"])
+            if said["stop"] or said["measured"]["poses"] >= MOST:
+                break
+            with open(data, "a") as out:
+                for pose in said["poses"]:
+                    values = [*pose["configuration"], *robot.read(pose["configuration"])]
+                    out.write(",".join([str(pose["id"]), *map(repr, map(float, values))]) + "\n")
+    now = said["curve"][-1]
+    return {"robot": seed, "verdict": said["verdict"], "poses": said["measured"]["poses"], "required": required,
+            "expected": now["expected"], "upper": now["upper"], "true": robot.error(said["estimates"]),
+            "effect": said["unmodelled"] is not None}
+
+
+def known(out):
+    """What was done before; half a line at the end was being written."""
+    if not out.exists():
+        return []
+    whole = out.read_text().rpartition("\n")[0]
+    rows = [json.loads(line) for line in whole.splitlines()]
+    out.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("program")
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--robots", type=int, default=1000)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--noise-factor", type=float, default=1.0, help="the true noise in units of the stated one")
+    parser.add_argument("--anew", action="store_true", help="what was done before does not count")
+    options = parser.parse_args()
+    if options.anew:
+        options.out.unlink(missing_ok=True)
+    rows = known(options.out)
+    left = sorted(set(range(options.robots)) - {row["robot"] for row in rows})
+    with tempfile.TemporaryDirectory() as scratch, open(options.out, "a") as out:
+        file, places = write_problem(pathlib.Path(scratch))
+        with concurrent.futures.ThreadPoolExecutor(options.workers) as pool:
+            program = str(pathlib.Path(options.program).resolve())
+            for row in pool.map(lambda seed: run_robot(program, file, places, seed, options.noise_factor), left):
+                rows.append(row)
+                out.write(json.dumps(row) + "\n")
+                out.flush()
+    rows = [row for row in rows if row["robot"] < options.robots]
+    claims = [row for row in rows if row["verdict"] == "reached"]
+    held = sum(row["true"] <= row["required"] for row in claims)
+    below = sum(row["true"] <= row["upper"] for row in rows)
+    print(f"{len(rows)} robots; {len(claims)} times 'error <= required': it holds {held} times"
+          + (f" ({100 * held / len(claims):.1f} %)" if claims else ""))
+    print(f"true error below the stated 95 % limit: {below} ({100 * below / len(rows):.1f} %)")
+    poses = sorted(row["poses"] for row in rows)
+    print(f"poses at the stop: {poses[0]} to {poses[-1]}, median {poses[len(poses) // 2]}")
+    allowed = 0.95 - 3 * math.sqrt(0.95 * 0.05 / max(1, len(claims)))
+    sys.exit(0 if claims and held >= allowed * len(claims) else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "posewright/calibration/fit.hpp"
+#include "posewright/study/variant.hpp"
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+
+/// One pose as a forecast counts it.
+struct PoseRows {
+  std::vector<double> q;
+  /// Whitened derivatives of what is read there: the variant's columns, then unit twists of its effect, if it has one.
+  BlockArray::RowMatrix block;
+};
+/// Of readings, without what was not read, at the variant's nominal values. Throws CannotDo if a pose is out of reach.
+std::vector<PoseRows> rows_of(const Variant& variant, const std::vector<MeasuredPose>& poses);
+/// Of poses at which all will be read that can be.
+std::vector<PoseRows> rows_of(const Variant& variant, const Configurations& configurations, int threads);
+
+/// Error after compensation at the test poses, root of the weighted mean square over them, m.
+struct ForecastError {
+  double expected = 0.0;  ///< ρ0, root of the expected mean square
+  /// The error is below it with 95 % confidence, theory.md eq. (51); infinite where the residuals leave no degree of
+  /// freedom.
+  double upper = 0.0;
+};
+
+/// What is known of noise and parameters beside the poses.
+struct ForecastNoise {
+  Prior prior = Prior::manufactured;  ///< tolerances that count
+  double factor = 1.0;                ///< Fit::noise_factor
+  double scale = 1.0;                 ///< of the residuals in units of the stated noise; below 1 it counts as 1
+  double freedom = std::numeric_limits<double>::infinity();  ///< of the residuals: Fit::left
+};
+
+/// Error of a calibration at the variant's test poses, from its poses alone, theory.md eq. (34) and (51).
+class ForecastOfError {
+ public:
+  /// @param variant  with test points; must outlive this
+  ForecastOfError(const Variant& variant, const ForecastNoise& noise);
+
+  /// After the first `from`, from + 1, … and all poses; none where these do not determine all parameters.
+  /// One factorisation serves all.
+  std::vector<std::optional<ForecastError>> after_each(const std::vector<PoseRows>& poses, std::size_t from = 0) const;
+
+ private:
+  class Sum;
+  const Variant& variant_;
+  ForecastNoise noise_;
+  Eigen::VectorXd weights_;  ///< of the test points, Σ = 1
+};
+
+/// What the poses and these tolerances tell of the columns of a search (features in front), in units of one pose's
+/// stated noise.
+/// @param noise_factor  so many times that noise is larger: tolerances count more against it
+Eigen::MatrixXd known_information(const Variant& variant, const std::vector<PoseRows>& poses, Prior prior,
+                                  double noise_factor);
+
+/// Largest value of the root mean square with 95 % confidence: ρ √F(95 %; d, ν), d = (Σλ)²/Σλ².
+/// @param sum      Σλ, expected mean square
+/// @param squares  Σλ²
+double upper_error(double sum, double squares, double freedom);
+
+}  // namespace posewright

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewright/blocks/parameter.hpp"
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/outputs/plan.hpp"
+#include "posewright/problem/calibrated_parameters.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/workspace/candidates.hpp"
+
+namespace posewright {
+
+/// Candidates that were drawn for an earlier call, so that a later one need not draw them.
+struct KeptCandidates {
+  Configurations configurations;
+  int asked = 0;            ///< how many were to be drawn
+  bool calibrated = false;  ///< drawn after a fit, where the robot really stands
+};
+
+struct NextOptions {
+  std::filesystem::path data;         ///< names `text` in messages
+  std::optional<std::string> text{};  ///< what was measured, whole lines; none: nothing yet
+  std::string variant, criterion;     ///< empty: as in the problem; criterion: see NextPoses::criterion
+  int poses = 1;                      ///< wanted
+  std::optional<double> required{};   ///< error at the test poses, m; none: design: require: accuracy
+  Prior prior = Prior::manufactured;  ///< tolerances that count, as in a calibration
+  std::optional<int> candidates{};
+  std::optional<PoseList> candidates_from{};  ///< choose among these; none: as in the problem
+  std::shared_ptr<const KeptCandidates> kept{};
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+/// Why another pose is worth measuring or not.
+enum class NextVerdict {
+  not_determined,  ///< the poses do not tell all parameters yet
+  go_on,
+  reached,  ///< the error is at most the required one with 95 % confidence
+  flat,     ///< three more poses lower the expected error by less than 2 %
+};
+
+/// Error at the test poses after so many poses, m; none: these poses do not tell all parameters.
+struct NextPoint {
+  int poses = 0;
+  std::optional<double> expected{}, upper{};  ///< upper: 95 %; none where nothing was left to judge the noise by
+};
+
+struct NextPoses {
+  std::string variant;
+  /// Stated by option or problem; else o1 below 1.5 times the smallest number of poses and test_pose from there on.
+  std::string criterion;
+  bool criterion_stated = false;
+  int measured = 0, readings = 0;   ///< poses, single readings
+  int parameters = 0, told = 0;     ///< columns, and how many the readings tell without any tolerance
+  std::optional<int> smallest{};    ///< number of poses that tells all
+  bool fitted = false;              ///< what follows is at calibrated values; else at nominal ones
+  double noise = 1.0, freedom = 0;  ///< of the residuals, in units of the stated noise; their degrees of freedom
+  std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
+  std::vector<EstimatedValue> estimates;     ///< of the parameters, if there was a fit
+  int places = 0;                            ///< where accuracy counts
+  bool places_stated = false;                ///< test poses of the problem; else places through the workspace
+  std::vector<NextPoint> curve;              ///< of the measured poses, by what is known today; the last: all
+  std::vector<NextPoint> ahead;              ///< with 1, 2, … of `poses`
+  std::optional<NextPoint> with_three{};     ///< with the three that lower the error most
+  std::optional<double> required{};
+  NextVerdict verdict = NextVerdict::not_determined;
+  std::vector<PlannedPose> poses;
+  std::string candidates;  ///< how many, and where from, for people
+  std::shared_ptr<const KeptCandidates> kept;
+  std::vector<std::string> notes;
+  bool interrupted = false;
+};
+
+/// What the next three poses together must lower the expected error by; less is a flat curve.
+inline constexpr double least_gain = 0.02;
+inline constexpr int poses_looked_ahead = 3;
+
+/// Estimates the parameters from what is measured, then chooses the poses that tell most beside it, at the estimated
+/// values and with the smooth effect that the residuals show; says what they are worth and whether they are needed.
+/// What does not suffice for an estimate counts by its poses alone, at the nominal values.
+/// Throws InputError as the reading of problem, data and lists does, and for rows that are far from where a fit of the
+/// rows before them says; CannotDo as make_study().
+NextPoses next_poses(const Problem& problem, const NextOptions& options, const Monitor& monitor);
+
+}  // namespace posewright

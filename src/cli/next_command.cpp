@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "command.hpp"
+#include "next_files.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/problem/units.hpp"
+#include "posewright/results/next.hpp"
+#include "posewright/search/search.hpp"
+#include "posewright/study/variant.hpp"
+#include "posewright/support/json.hpp"
+#include "problem_source.hpp"
+#include "session.hpp"
+#include "signals.hpp"
+#include "terminal.hpp"
+#include "write_result.hpp"
+
+namespace posewright::cli {
+namespace {
+
+po::options_description next_command_options() {
+  po::options_description options("Options");
+  options.add_options()                                                                                     //
+      ("data", text("FILE"), "readings so far, CSV; more may come at its end (none: nothing is measured)")  //
+      ("poses,k", text("k"), "how many next poses (1)")                                                     //
+      ("required", text("LENGTH"), "error at the test poses that suffices (design: require: accuracy)")     //
+      ("watch", "go on while the file grows, until poses suffice, the curve is flat, or Ctrl-C")            //
+      ("variant", text("V"), "model variant that is fitted (design: variant, else the first)")              //
+      ("criterion", text("NAME"),
+       ("what the next poses maximise: " + criterion_names() + " (the problem's; else o1, later test_pose)").c_str())(
+          "no-prior", "tolerances of what was manufactured do not count in the fit")(
+          "candidates", text("n"),
+          help_with_default("feasible configurations to choose from", default_candidates).c_str())(
+          "candidates-from", text("POSES"),
+          "choose among these configurations instead (CSV, plan.json, measured data)");
+  options.add_options()  //
+      ("state", text("FILE"),
+       "what is remembered from call to call (DATA.next-state.json beside the data; - for none)")(
+          "restart", "forget the state: another problem, another file of readings")                 //
+      ("output,o", text("FILE"), "next poses as CSV")                                               //
+      ("result", text("FILE"), "what --json prints, as a file that is written anew at every step")  //
+      ("force", "replace files that posewright did not write");
+  options.add(problem_options());
+  return options;
+}
+
+std::optional<double> required_of(const po::variables_map& values) {
+  if (values.count("required") == 0) return std::nullopt;
+  const std::string text = text_of(values, "required");
+  const std::string allowed = "a length above 0 with its unit is expected: " + allowed_units({Quantity::length});
+  Measured given;
+  try {
+    given = parse_measured(text, {Quantity::length});
+  } catch (const InputError&) {
+    throw InputError({}, "--required " + text, allowed);
+  }
+  if (!(given.value > 0) || given.quantity != Quantity::length) throw InputError({}, "--required " + text, allowed);
+  return given.value;
+}
+
+NextOptions options_of(const po::variables_map& values, const CommonOptions& common) {
+  NextOptions next;
+  next.data = text_of(values, "data");
+  if (values.count("data") > 0 && next.data.empty()) throw InputError({}, "--data is empty", "name a file");
+  next.variant = text_of(values, "variant");
+  next.criterion = text_of(values, "criterion");
+  if (!next.criterion.empty()) require_known(next.criterion, "auto", {}, {});
+  next.poses = whole_number(values, "poses", 1, 1000).value_or(1);
+  next.required = required_of(values);
+  next.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
+  next.candidates = whole_number(values, "candidates", 1, 10000000);
+  next.seed = common.seed;
+  next.threads = common.threads;
+  if (values.count("watch") > 0 && next.data.empty()) throw InputError({}, "--watch follows a file", "--data FILE");
+  return next;
+}
+
+/// Call after call, one state.
+class NextSession {
+ public:
+  NextSession(const po::variables_map& values, const CommonOptions& common, const Problem& problem, NextOptions options)
+      : common_(common), problem_(problem), options_(std::move(options)), data_(options_.data) {
+    files_.state = values.count("state") > 0 ? output_file(values, "state", "") : usual_state_file(options_.data);
+    if (values.count("output") > 0) files_.poses = output_file(values, "output", "");
+    if (values.count("result") > 0) files_.result = output_file(values, "result", "");
+    std::vector<std::filesystem::path> inputs = files_of(problem);
+    for (const std::filesystem::path& file : {options_.data, std::filesystem::path(text_of(values, "candidates-from"))})
+      if (!file.empty()) inputs.push_back(file);
+    check_output_files(values, {files_.poses, files_.result, files_.state}, inputs);
+    if (!files_.state.empty() && values.count("restart") == 0) state_ = read_next_state(files_.state);
+    watch_ = values.count("watch") > 0;
+  }
+
+  int run() {
+    for (WholeLines lines = data_.read();; lines = data_.wait_for_more(lines.text)) {
+      const NextPoses result = step(lines);
+      if (result.interrupted) return interrupted;
+      const bool stop = result.verdict == NextVerdict::reached || result.verdict == NextVerdict::flat;
+      if (!watch_ || stop) return done;
+    }
+  }
+
+ private:
+  NextPoses step(const WholeLines& lines) {
+    if (state_) require_continues(*state_, files_.state, problem_, options_.data, lines.text);
+    options_.text.reset();
+    if (lines.has_rows) options_.text = lines.text;
+    if (state_) reuse(*state_, problem_, options_);
+    NextPoses result =
+        watched(common_, 0, [&](const Monitor& monitor) { return next_poses(problem_, options_, monitor); }).result;
+    if (!lines.rest.empty() && !watch_)
+      result.notes.push_back(fmt::format("{}:{}: has no line end yet and is left out: it may be half a line",
+                                         options_.data.string(), lines.next_line));
+    NextState now = state_after(problem_, options_, result, state_);
+    const auto json = next_json(problem_, options_, result, now.history);
+    files_.write(now, next_csv(result), json_text(json));
+    state_ = std::move(now);
+    print_notes(result.notes);
+    if (common_.json) {
+      fmt::print("{}", watch_ ? json_text(json, JsonLayout::one_line) + "\n" : json_text(json));
+    } else {
+      print_report(next_text(result) + written_text({files_.poses, files_.result}) + (watch_ ? "\n" : ""));
+    }
+    std::fflush(stdout);
+    return result;
+  }
+
+  const CommonOptions& common_;
+  const Problem& problem_;
+  NextOptions options_;
+  GrowingFile data_;
+  NextFiles files_;
+  std::optional<NextState> state_;
+  bool watch_ = false;
+};
+
+int run_next(const po::variables_map& values, const Words& positional) {
+  const CommonOptions common = common_values(values);
+  NextOptions next = options_of(values, common);
+  const Problem problem = given_problem(single(positional, "PROBLEM"), values);
+  if (const std::string list = text_of(values, "candidates-from"); !list.empty()) {
+    if (next.candidates)
+      throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
+    next.candidates_from = read_poses(list, without_limits(pose_coordinates(problem, next.variant)));
+  }
+  return NextSession(values, common, problem, std::move(next)).run();
+}
+
+}  // namespace
+
+Command next_command() {
+  return {"next",
+          "PROBLEM",
+          "Fits what is measured so far, chooses the next poses, says when to stop.",
+          next_command_options,
+          "posewright next problem.yaml --data measured.csv --required 0.1mm --watch",
+          run_next};
+}
+
+}  // namespace posewright::cli

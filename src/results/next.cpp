@@ -1,0 +1,214 @@
+#include "posewright/results/next.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "document.hpp"
+#include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/plan.hpp"
+#include "posewright/outputs/table.hpp"
+#include "posewright/outputs/write_plan.hpp"
+
+namespace posewright {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string poses_text(int count) { return fmt::format("{} pose{}", count, count == 1 ? "" : "s"); }
+
+std::string length(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
+
+std::string where(const NextPoses& r) {
+  return r.places_stated ? fmt::format("{} test pose{}", r.places, r.places == 1 ? "" : "s")
+                         : fmt::format("{} places through the workspace", r.places);
+}
+
+std::string shown_coordinate(const NamedValue& v) {
+  if (v.unit == "rad") return fmt::format("{:.3f}", v.value * 180 / std::numbers::pi);
+  if (v.unit == "m") return fmt::format("{:.3f}", v.value * 1e3);
+  return fmt::format("{:.6g}", v.value);
+}
+
+std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : unit == "m" ? "mm" : unit; }
+
+std::string now_text(const NextPoint& now, const NextPoses& r) {
+  std::string text = fmt::format("the predicted error at the {} is {}", where(r), length(*now.expected));
+  if (now.upper) text += fmt::format(", below {} with 95 % confidence", length(*now.upper));
+  return text;
+}
+
+std::string not_determined_text(const NextPoses& r) {
+  if (r.measured == 0)
+    return fmt::format("Go on: nothing is measured yet. {}",
+                       r.smallest ? fmt::format("At least {} tell all {} parameters; until then poses are chosen at "
+                                                "nominal values, tolerances as prior knowledge.",
+                                                poses_text(*r.smallest), r.parameters)
+                                  : "Poses are chosen at nominal values, tolerances as prior knowledge.");
+  if (r.told < r.parameters)
+    return fmt::format(
+        "Go on: {} too few for a fit, {} of {} parameters are told. Poses are chosen at nominal values, "
+        "tolerances as prior knowledge.",
+        r.measured == 1 ? "1 pose is" : poses_text(r.measured) + " are", r.told, r.parameters);
+  return "Go on: there is no estimate from these poses. Poses are chosen at nominal values.";
+}
+
+std::string gain_text(const NextPoses& r) {
+  if (r.ahead.empty() || !r.ahead.back().expected || r.curve.empty()) return {};
+  const int more = int(r.ahead.size());
+  const std::string ids =
+      more == 1 ? fmt::format("ose {}", r.measured + 1)
+                : fmt::format("oses {} {} {}", r.measured + 1, more == 2 ? "and" : "to", r.measured + more);
+  const std::string then = length(*r.ahead.back().expected);
+  if (!r.curve.back().expected)
+    return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), then);
+  return fmt::format(" P{} lower{} it from {} to {}.", ids, more == 1 ? "s" : "", length(*r.curve.back().expected),
+                     then);
+}
+
+Json point_json(const NextPoint& p) {
+  const auto value = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
+  return {{"poses", p.poses}, {"expected", value(p.expected)}, {"upper", value(p.upper)}};
+}
+
+Json points_json(const std::vector<NextPoint>& points) {
+  Json list = Json::array();
+  for (const NextPoint& p : points) list.push_back(point_json(p));
+  return list;
+}
+
+Json pose_json(const PlannedPose& pose) {
+  Json names = Json::array(), units = Json::array(), values = Json::array();
+  for (const NamedValue& v : pose.configuration) {
+    names.push_back(v.name);
+    units.push_back(v.unit);
+    values.push_back(v.value);
+  }
+  Json json = {{"id", pose.id}, {"names", names}, {"units", units}, {"configuration", values}};
+  json["actuators"] = Json::object();
+  for (const NamedValue& v : pose.actuators) json["actuators"][v.name] = v.value;
+  json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
+  json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+  json["listed"] = pose.listed ? Json{{"id", pose.listed->id}, {"line", pose.listed->line}} : Json(nullptr);
+  for (const auto& [name, choice] : pose.conditions) json["conditions"][name] = choice;
+  return json;
+}
+
+std::string table_of(const std::vector<PlannedPose>& poses) {
+  if (poses.empty()) return {};
+  const PlannedPose& first = poses.front();
+  std::vector<std::string> header{"pose"};
+  for (const NamedValue& v : first.configuration) header.push_back(fmt::format("{} [{}]", v.name, unit_of(v.unit)));
+  if (!first.load_case.empty()) header.emplace_back("load case");
+  if (!first.station.empty()) header.emplace_back("station");
+  for (const auto& [name, choice] : first.conditions) header.push_back(name);
+  if (first.listed) header.emplace_back("of the list");
+  Table table(header, std::vector<Table::Align>(header.size(), Table::Align::right));
+  for (const PlannedPose& pose : poses) {
+    std::vector<std::string> cells{std::to_string(pose.id)};
+    for (const NamedValue& v : pose.configuration) cells.push_back(shown_coordinate(v));
+    if (!pose.load_case.empty()) cells.push_back(pose.load_case);
+    if (!pose.station.empty()) cells.push_back(pose.station);
+    for (const auto& [name, choice] : pose.conditions) cells.push_back(choice);
+    if (pose.listed) cells.push_back(std::to_string(pose.listed->id));
+    table.row(cells);
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string verdict_name(NextVerdict verdict) {
+  switch (verdict) {
+    case NextVerdict::not_determined:
+      return "not_determined";
+    case NextVerdict::go_on:
+      return "go_on";
+    case NextVerdict::reached:
+      return "reached";
+    case NextVerdict::flat:
+      return "flat";
+  }
+  return {};
+}
+
+std::string next_reason(const NextPoses& r) {
+  if (r.verdict == NextVerdict::not_determined) return not_determined_text(r) + gain_text(r);
+  const NextPoint& now = r.curve.back();
+  const std::string required = r.required ? fmt::format("required {}", length(*r.required)) : "";
+  if (r.verdict == NextVerdict::reached) return fmt::format("Stop: {}; {}.", now_text(now, r), required);
+  const std::string three =
+      r.with_three && r.with_three->expected
+          ? fmt::format("{} more would bring it to {}", poses_text(r.with_three->poses - r.measured),
+                        length(*r.with_three->expected))
+          : "";
+  if (r.verdict == NextVerdict::flat)
+    return fmt::format("Stop: the curve is flat, {}, less than {:.0f} % lower. {}{}{}.", three, 100 * least_gain,
+                       "T" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required,
+                       required.empty() || (now.expected && *now.expected <= *r.required)
+                           ? ""
+                           : ", which more poses like these do not reach: a better instrument, more readings a pose, "
+                             "or a model with more parameters may");
+  return fmt::format("Go on: {}{}.{}", now_text(now, r), required.empty() ? "" : "; " + required, gain_text(r));
+}
+
+std::string next_text(const NextPoses& r) {
+  std::string text = next_reason(r) + "\n";
+  if (r.verdict == NextVerdict::go_on && !r.required)
+    text += "No accuracy is required (design: require: accuracy, or --required): only a flat curve says stop.\n";
+  text += fmt::format("\n{} measured ({} readings), variant {}, {} parameters", poses_text(r.measured), r.readings,
+                      r.variant, r.parameters);
+  if (r.fitted && r.freedom > 0)
+    text += fmt::format("; residuals {:.2f} times the stated noise, {:.0f} degrees of freedom", r.noise, r.freedom);
+  text += ".\n";
+  if (r.effect)
+    text += fmt::format("The residuals hold a smooth effect of {} that no parameter describes; it is allowed for.\n",
+                        length(r.effect->size));
+  const bool stop = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
+  text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "Whoever goes on all the same" : "Next", r.criterion,
+                      r.candidates, table_of(r.poses));
+  return text;
+}
+
+Json next_json(const Problem& problem, const NextOptions& options, const NextPoses& r,
+               const std::vector<NextPoint>& history) {
+  const auto optional = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
+  Json json = begin_document("posewright/next/1", problem, options.seed);
+  json["data"] = options.text ? Json(options.data.string()) : Json(nullptr);
+  json["variant"] = r.variant;
+  json["criterion"] = r.criterion;
+  json["verdict"] = verdict_name(r.verdict);
+  json["stop"] = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
+  json["reason"] = next_reason(r);
+  json["measured"] = {{"poses", r.measured}, {"readings", r.readings}};
+  json["parameters"] = {{"count", r.parameters}, {"told", r.told}, {"smallest_number_of_poses", optional(r.smallest)}};
+  json["fitted"] = r.fitted;
+  json["noise"] = r.fitted ? Json{{"scale", r.noise}, {"freedom", r.freedom}} : Json(nullptr);
+  json["unmodelled"] = r.effect ? Json{{"size", r.effect->size}, {"length", r.effect->length}} : Json(nullptr);
+  json["places"] = {{"count", r.places}, {"test_poses", r.places_stated}};
+  json["required"] = optional(r.required);
+  json["confidence"] = 0.95;
+  json["curve"] = points_json(r.curve);
+  json["ahead"] = points_json(r.ahead);
+  json["with_three_more"] = r.with_three ? point_json(*r.with_three) : Json(nullptr);
+  json["history"] = points_json(history);
+  json["poses"] = Json::array();
+  for (const PlannedPose& pose : r.poses) json["poses"].push_back(pose_json(pose));
+  json["estimates"] = Json::array();
+  for (const EstimatedValue& e : r.estimates)
+    json["estimates"].push_back(
+        {{"name", e.value.name}, {"unit", e.value.unit}, {"value", e.value.value}, {"sigma", *e.sigma}});
+  json["candidates"] = r.candidates;
+  json["notes"] = r.notes;
+  json["interrupted"] = r.interrupted;
+  return json;
+}
+
+std::string next_csv(const NextPoses& r) {
+  Plan plan;
+  plan.poses = r.poses;
+  return poses_csv(plan);
+}
+
+}  // namespace posewright

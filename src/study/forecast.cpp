@@ -1,0 +1,246 @@
+#include "posewright/study/forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/study/unmodelled.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/distributions.hpp"
+
+namespace posewright {
+namespace {
+
+// Share of a column's norm; below, the poses do not tell the column from the others.
+constexpr double told_at_all = 1e-7;
+constexpr double confidence = 0.95;
+// With an effect the errors of so many places say how many degrees of freedom all of them have.
+constexpr Eigen::Index places_that_say = 100;
+
+std::vector<int> with_effect(const Variant& variant) {
+  std::vector<int> selected = variant.columns.selected;
+  if (variant.effect != nullptr)
+    selected.insert(selected.end(), variant.effect->columns().begin(), variant.effect->columns().end());
+  return selected;
+}
+
+Eigen::VectorXd tolerances(const VariantColumns& columns) {
+  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
+  for (Eigen::Index j = 0; j < tolerance.size(); ++j) tolerance[j] = columns.parameters[std::size_t(j)].tolerance;
+  return tolerance;
+}
+
+/// Rows of one pose and another, correlated by the effect.
+Eigen::MatrixXd between(const UnmodelledEffect& effect, const Eigen::MatrixXd& along_a, const Eigen::MatrixXd& place_a,
+                        const Eigen::MatrixXd& along_b, const Eigen::MatrixXd& place_b) {
+  const int each = effect.twists();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(along_a.rows(), along_b.rows());
+  for (Eigen::Index a = 0; a < place_a.cols(); ++a)
+    for (Eigen::Index b = 0; b < place_b.cols(); ++b)
+      sum.noalias() += effect.correlation(place_a.col(a), place_b.col(b)) * along_a.middleCols(a * each, each) *
+                       along_b.middleCols(b * each, each).transpose();
+  return sum;
+}
+
+}  // namespace
+
+std::vector<PoseRows> rows_of(const Variant& variant, const std::vector<MeasuredPose>& poses) {
+  VariantColumns columns;
+  columns.selected = with_effect(variant);
+  const BlockArray blocks = blocks_of(*variant.model, columns, poses);
+  std::vector<PoseRows> rows;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const auto read = poses[k].y.array().isFinite().count();
+    rows.push_back({poses[k].q, blocks.block(k).topRows(read)});
+  }
+  return rows;
+}
+
+std::vector<PoseRows> rows_of(const Variant& variant, const Configurations& configurations, int threads) {
+  const BlockArray blocks = build_blocks(*variant.model, with_effect(variant), configurations, threads);
+  std::vector<PoseRows> rows;
+  for (std::size_t k = 0; k < configurations.count(); ++k)
+    rows.push_back({{configurations[k].begin(), configurations[k].end()}, blocks.block(k)});
+  return rows;
+}
+
+double upper_error(double sum, double squares, double freedom) {
+  if (!(sum > 0)) return 0.0;
+  if (!(freedom > 0)) return std::numeric_limits<double>::infinity();
+  const double d = sum * sum / squares;
+  const double quantile =
+      std::isinf(freedom) ? chi_square_quantile(confidence, d) / d : fisher_upper_quantile(1 - confidence, d, freedom);
+  return std::sqrt(sum * quantile);
+}
+
+Eigen::MatrixXd known_information(const Variant& variant, const std::vector<PoseRows>& poses, Prior prior,
+                                  double noise_factor) {
+  const auto m = Eigen::Index(variant.columns.selected.size());
+  const Eigen::Index features = variant.features == nullptr ? 0 : variant.features->columns();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(features + m, features + m);
+  M.diagonal().head(features).setOnes();
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const Parameter& p = variant.columns.parameters[std::size_t(j)];
+    if (counts(p, prior)) M(features + j, features + j) = std::pow(noise_factor / p.tolerance, 2);
+  }
+  BlockArray::RowMatrix block;
+  for (const PoseRows& pose : poses) {
+    if (variant.features == nullptr) {
+      M.noalias() += pose.block.transpose() * pose.block;
+      continue;
+    }
+    block.resize(pose.block.rows(), features + m);
+    variant.features->expand(pose.q, pose.block, block);
+    M.noalias() += block.transpose() * block;
+  }
+  return M;
+}
+
+/// Rows of pose after pose, by what the covariance of all of them leaves independent, and what they say at the test
+/// poses.
+class ForecastOfError::Sum {
+ public:
+  Sum(const ForecastOfError& of, const std::vector<PoseRows>& poses)
+      : variant_(of.variant_), noise_(of.noise_), weights_(of.weights_), unit_(tolerances(variant_.columns)) {
+    m_ = unit_.size();
+    for (const PoseRows& pose : poses) first_.push_back(first_.back() + pose.block.rows());
+    J_.resize(first_.back(), m_);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      J_.middleRows(first_[k], poses[k].block.rows()) = poses[k].block.leftCols(m_) * unit_.asDiagonal();
+    A_.resize(3 * weights_.size(), m_);
+    for (Eigen::Index t = 0; t < weights_.size(); ++t)
+      A_.middleRows<3>(3 * t) =
+          std::sqrt(weights_[t]) * variant_.test_points[std::size_t(t)].A.leftCols(m_) * unit_.asDiagonal();
+    start();
+    if (variant_.effect != nullptr) correlate(poses);
+  }
+
+  void add(std::size_t pose) {
+    const Eigen::Index rows = first_[pose + 1] - first_[pose];
+    const auto J = J_.middleRows(first_[pose], rows);
+    Eigen::MatrixXd stacked(R_.rows() + rows, m_);
+    stacked << R_, J;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+    R_ = qr.matrixQR().topRows(std::min(stacked.rows(), m_)).triangularView<Eigen::Upper>();
+    if (Y_.size() > 0) C_.noalias() += J.transpose() * Y_.middleRows(first_[pose], rows);
+  }
+
+  std::optional<ForecastError> error() const {
+    if (R_.rows() < m_) return std::nullopt;
+    const Eigen::VectorXd length = R_.colwise().norm();
+    if (!((R_.diagonal().cwiseAbs().array() > told_at_all * length.array()).all())) return std::nullopt;
+    // A_ M⁻¹ A_ᵀ = X Xᵀ, M = RᵀR.
+    const Eigen::MatrixXd X =
+        R_.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd(A_.transpose())).transpose();
+    double sum = X.squaredNorm(), squares = 0;
+    if (Y_.size() == 0) {
+      squares = (X.transpose() * X).squaredNorm();
+    } else {
+      const Eigen::MatrixXd follows = R_.triangularView<Eigen::Upper>().transpose().solve(C_);
+      sum += K_.trace() - 2 * X.transpose().cwiseProduct(follows).sum();
+      const Eigen::Index some = said_.size();
+      const Eigen::MatrixXd Xs = X(said_, Eigen::all), cross = Xs * follows(Eigen::all, said_);
+      const Eigen::MatrixXd S = Xs * Xs.transpose() - cross - cross.transpose() + K_(said_, said_);
+      const double part = S.trace();
+      squares = some > 0 && part > 0 ? S.squaredNorm() * std::pow(sum / part, 2) : sum * sum;
+    }
+    const double factor = std::pow(noise_.factor, 2);
+    ForecastError result{std::sqrt(factor * sum), 0.0};
+    const double worse = std::max(factor, std::pow(std::max(1.0, noise_.scale), 2));
+    result.upper = upper_error(worse * sum, worse * worse * squares, noise_.freedom);
+    return result;
+  }
+
+ private:
+  /// Tolerances as they count, against a noise of unit size.
+  void start() {
+    R_ = Eigen::MatrixXd::Zero(0, m_);
+    Eigen::Index known = 0;
+    for (const Parameter& p : variant_.columns.parameters) known += counts(p, noise_.prior) ? 1 : 0;
+    R_.setZero(known, m_);
+    Eigen::Index row = 0;
+    for (Eigen::Index j = 0; j < m_; ++j)
+      if (counts(variant_.columns.parameters[std::size_t(j)], noise_.prior)) R_(row++, j) = noise_.factor;
+  }
+
+  /// Cholesky factor L of I + A K Aᵀ: its leading part is that of the first poses, so L⁻¹ whitens all beginnings at
+  /// once.
+  void correlate(const std::vector<PoseRows>& poses) {
+    const UnmodelledEffect& effect = *variant_.effect;
+    std::vector<Eigen::MatrixXd> along, places;
+    for (const PoseRows& pose : poses) {
+      along.emplace_back(pose.block.rightCols(pose.block.cols() - m_));
+      effect.take_sizes(along.back());
+      places.push_back(effect.places(pose.q));
+    }
+    Eigen::MatrixXd S = Eigen::MatrixXd::Identity(first_.back(), first_.back());
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        S.block(first_[i], first_[j], along[i].rows(), along[j].rows()) +=
+            between(effect, along[i], places[i], along[j], places[j]);
+    const Eigen::LLT<Eigen::MatrixXd> root(S);
+    root.matrixL().solveInPlace(J_);
+    fill_places(along, places);
+    root.matrixL().solveInPlace(Y_);
+  }
+
+  /// Y_ = A K_x before whitening, K_ = K_xx, weighted.
+  void fill_places(const std::vector<Eigen::MatrixXd>& along, const std::vector<Eigen::MatrixXd>& places) {
+    const UnmodelledEffect& effect = *variant_.effect;
+    const Eigen::Index tests = weights_.size();
+    std::vector<Eigen::MatrixXd> moved, there;
+    for (Eigen::Index t = 0; t < tests; ++t) {
+      const TestPlace& place = variant_.test_places[std::size_t(t)];
+      Eigen::MatrixXd B = std::sqrt(weights_[t]) * place.twists.topLeftCorner(3, effect.twists());
+      effect.take_sizes(B);
+      moved.push_back(std::move(B));
+      there.emplace_back(effect.place(place.q));
+    }
+    Y_.resize(first_.back(), 3 * tests);
+    K_.resize(3 * tests, 3 * tests);
+    for (Eigen::Index t = 0; t < tests; ++t) {
+      const auto u = std::size_t(t);
+      for (std::size_t k = 0; k < along.size(); ++k)
+        Y_.block(first_[k], 3 * t, along[k].rows(), 3) = between(effect, along[k], places[k], moved[u], there[u]);
+      for (Eigen::Index s = 0; s <= t; ++s) {
+        K_.block<3, 3>(3 * t, 3 * s) =
+            between(effect, moved[u], there[u], moved[std::size_t(s)], there[std::size_t(s)]);
+        K_.block<3, 3>(3 * s, 3 * t) = K_.block<3, 3>(3 * t, 3 * s).transpose().eval();
+      }
+    }
+    C_ = Eigen::MatrixXd::Zero(m_, 3 * tests);
+    const Eigen::Index some = std::min(places_that_say, tests);
+    said_.resize(3 * some);
+    for (Eigen::Index i = 0; i < some; ++i)
+      for (Eigen::Index k = 0; k < 3; ++k) said_[3 * i + k] = int(3 * (i * tests / some) + k);
+  }
+
+  const Variant& variant_;
+  const ForecastNoise& noise_;
+  const Eigen::VectorXd& weights_;
+  Eigen::VectorXd unit_;
+  Eigen::Index m_ = 0;
+  std::vector<Eigen::Index> first_{0};
+  Eigen::MatrixXd J_, A_, R_;
+  Eigen::MatrixXd Y_, K_, C_;  // with an effect alone
+  Eigen::VectorXi said_;
+};
+
+ForecastOfError::ForecastOfError(const Variant& variant, const ForecastNoise& noise)
+    : variant_(variant), noise_(noise), weights_(Eigen::Index(variant.test_points.size())) {
+  for (Eigen::Index t = 0; t < weights_.size(); ++t) weights_[t] = variant.test_points[std::size_t(t)].weight;
+  weights_ /= weights_.sum();
+}
+
+std::vector<std::optional<ForecastError>> ForecastOfError::after_each(const std::vector<PoseRows>& poses,
+                                                                      std::size_t from) const {
+  std::vector<std::optional<ForecastError>> result;
+  Sum sum(*this, poses);
+  if (from == 0) result.push_back(sum.error());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    sum.add(k);
+    if (k + 1 >= from) result.push_back(sum.error());
+  }
+  return result;
+}
+
+}  // namespace posewright

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "next_fit.hpp"
+#include "posewright/study/study.hpp"
+
+namespace posewright {
+
+/// All that searches and forecasts of next poses begin with: the fit so far, and the study at its values. At nominal
+/// values if the readings do not tell all parameters.
+class KnownSoFar {
+ public:
+  /// `problem` and `options` must outlive it. Throws as next_poses().
+  KnownSoFar(const Problem& problem, const NextOptions& options, const Monitor& monitor);
+
+  const NextFit& fit() const { return fit_; }
+  /// With test points, unless the robot has no tip. Its candidates may shrink.
+  Study& study() { return study_; }
+  const Study& study() const { return study_; }
+  const Variant& variant() const { return study_.first(); }
+  /// Criterion: as problem or options state it, else the default.
+  const Settings& settings() const { return settings_; }
+  const std::vector<PoseRows>& rows() const { return rows_; }
+  /// Null if a list of candidates was given.
+  const std::shared_ptr<const KeptCandidates>& kept() const { return kept_; }
+  /// Whether the test points are the problem's.
+  bool places_stated() const { return places_stated_; }
+  int columns() const { return int(study_.first().columns.selected.size()); }
+  /// How many columns the readings tell, whatever tolerances say.
+  int told() const { return told_; }
+  bool determined() const { return told_ == columns(); }
+
+ private:
+  void prepare();
+  void settle();
+  void make();
+  void reuse_candidates();
+  void place_tests();
+  int rank_of_readings() const;
+  const VariantSpec& nominal_spec() const { return find_variant(nominal_, options_.variant); }
+
+  const Problem& nominal_;
+  const NextOptions& options_;
+  const Monitor& monitor_;
+  NextFit fit_;
+  Settings settings_;
+  Study study_;
+  std::shared_ptr<const KeptCandidates> kept_;
+  std::vector<PoseRows> rows_;
+  int told_ = 0;
+  bool places_stated_ = false;
+};
+
+}  // namespace posewright

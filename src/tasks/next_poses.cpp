@@ -1,0 +1,217 @@
+#include "posewright/tasks/next_poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "fill_plan.hpp"
+#include "next_known.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/search/search.hpp"
+#include "posewright/study/forecast.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// As in a plan: from so many times the smallest number of poses on there is enough to choose by what is predicted.
+constexpr double enough_to_predict = 1.5;
+
+class NextRun {
+ public:
+  NextRun(const Problem& problem, const NextOptions& options, const Monitor& monitor)
+      : options_(options), monitor_(monitor), known_(problem, options, monitor), study_(known_.study()) {
+    result_.required = options.required ? options.required : problem.design.require.accuracy;
+  }
+
+  NextPoses run() {
+    describe_known();
+    choose_criterion();
+    const SearchParts parts = parts_for(result_.criterion);
+    const Configurations chosen = search_for(parts, result_.criterion, options_.poses);
+    forecast(chosen);
+    fill_poses(chosen);
+    judge();
+    result_.interrupted = monitor_.was_interrupted();
+    return std::move(result_);
+  }
+
+ private:
+  using SearchParts = std::vector<SearchPart>;
+
+  void describe_known() {
+    const Variant& variant = study_.first();
+    result_.variant = variant.spec->name;
+    result_.measured = int(known_.fit().poses.size());
+    result_.readings = known_.fit().readings;
+    result_.parameters = known_.columns();
+    result_.told = known_.told();
+    result_.fitted = known_.fit().fitted;
+    result_.noise = known_.fit().noise.scale;
+    result_.freedom = known_.fit().fitted ? known_.fit().noise.freedom : 0;
+    result_.effect = known_.fit().effect;
+    if (known_.fit().fitted) result_.estimates = known_.fit().estimates;
+    result_.kept = known_.kept();
+    result_.places = int(variant.test_points.size());
+    result_.places_stated = known_.places_stated();
+    result_.smallest = smallest_number_of_poses(*variant.model, study_.configurations, variant.columns,
+                                                known_.settings().planner.threads);
+    result_.candidates = study_.list.empty()
+                             ? fmt::format("{} candidates", study_.configurations.count())
+                             : fmt::format("{} candidates of {}", study_.configurations.count(), study_.list);
+    result_.notes = known_.fit().notes;
+    result_.notes.insert(result_.notes.end(), study_.notes.begin(), study_.notes.end());
+  }
+
+  void choose_criterion() {
+    result_.criterion = known_.settings().criterion;
+    result_.criterion_stated = known_.settings().criterion_stated;
+    const bool places = result_.places > 0;
+    if (!known_.settings().criterion_stated && places && known_.determined() && result_.smallest &&
+        result_.measured >= enough_to_predict * *result_.smallest)
+      result_.criterion = "test_pose";
+    if (find_criterion(result_.criterion)->needs_test_poses && !places)
+      throw CannotDo("criterion '" + result_.criterion +
+                     "' needs places where accuracy matters, and this robot has no tip");
+  }
+
+  /// Candidates beside what is known.
+  SearchParts parts_for(const std::string& criterion) {
+    Variant& variant = study_.first();
+    const Prior prior = known_.determined() ? options_.prior : Prior::every;
+    variant.prior = known_information(variant, known_.rows(), prior, known_.fit().noise.factor);
+    return search_parts(study_, criterion, study_.configurations, known_.settings().planner.threads);
+  }
+
+  /// The best that are feasible at the estimated values, too.
+  Configurations search_for(const SearchParts& parts, const std::string& criterion, int poses) {
+    SearchRequest request = spaced_request(study_, known_.settings(), poses);
+    request.criterion = criterion;
+    request.certify = false;
+    request.planner.kicks = 0;
+    if (poses == 1) request.planner.restarts = 1;
+    const SearchResult found = search(copied_parts(parts), request, monitor_);
+    Configurations chosen;
+    chosen.dimension = study_.configurations.dimension;
+    for (const int member : found.design.members) append(chosen, study_.configurations, std::size_t(member));
+    if (!study_.list.empty() || all_feasible(chosen)) return in_order(chosen);
+    remove_infeasible();
+    return search_for(search_parts(study_, criterion, study_.configurations, known_.settings().planner.threads),
+                      criterion, poses);
+  }
+
+  bool all_feasible(const Configurations& chosen) const {
+    for (std::size_t i = 0; i < chosen.count(); ++i)
+      if (study_.first().workspace->violation(chosen[i]) >= 0) return false;
+    return true;
+  }
+
+  /// Drawn at other values: the whole set is looked at once.
+  void remove_infeasible() {
+    const Configurations all = study_.configurations;
+    study_.configurations.values.clear();
+    for (std::size_t i = 0; i < all.count(); ++i)
+      if (study_.first().workspace->violation(all[i]) < 0) append(study_.configurations, all, i);
+    if (study_.configurations.count() == 0) throw CannotDo("no candidate is feasible at the estimated values");
+    keep_away_from_measured(study_, known_.settings().repeats);
+  }
+
+  /// The pose that tells most first: whoever measures one only measures that.
+  Configurations in_order(const Configurations& chosen) const {
+    if (chosen.count() < 2 || result_.places == 0) return chosen;
+    const std::vector<PoseRows> more = rows_of(study_.first(), chosen, known_.settings().planner.threads);
+    const ForecastOfError error(study_.first(), noise());
+    Configurations ordered;
+    ordered.dimension = chosen.dimension;
+    std::vector<PoseRows> known = known_.rows();
+    std::set<std::size_t> left;
+    for (std::size_t i = 0; i < chosen.count(); ++i) left.insert(i);
+    while (!left.empty()) {
+      std::size_t best = *left.begin();
+      double least = std::numeric_limits<double>::infinity();
+      for (const std::size_t i : left) {
+        known.push_back(more[i]);
+        const auto after = error.after_each(known, known.size()).back();
+        known.pop_back();
+        if (after && after->expected < least) {
+          least = after->expected;
+          best = i;
+        }
+      }
+      append(ordered, chosen, best);
+      known.push_back(more[best]);
+      left.erase(best);
+    }
+    return ordered;
+  }
+
+  ForecastNoise noise() const {
+    ForecastNoise noise = known_.fit().noise;
+    noise.prior = options_.prior;
+    return noise;
+  }
+
+  NextPoint point(std::size_t poses, const std::optional<ForecastError>& error) const {
+    NextPoint point{int(poses)};
+    if (!error) return point;
+    point.expected = error->expected;
+    if (std::isfinite(error->upper)) point.upper = error->upper;
+    return point;
+  }
+
+  void forecast(const Configurations& chosen) {
+    if (result_.places == 0) return;
+    const ForecastOfError error(study_.first(), noise());
+    std::vector<PoseRows> all = known_.rows();
+    for (PoseRows& row : rows_of(study_.first(), chosen, known_.settings().planner.threads))
+      all.push_back(std::move(row));
+    const auto errors = error.after_each(all);
+    for (std::size_t n = 0; n < errors.size(); ++n)
+      (n <= known_.rows().size() ? result_.curve : result_.ahead).push_back(point(n, errors[n]));
+    if (!known_.determined()) return;
+    const int ahead = std::min(poses_looked_ahead, int(study_.configurations.count()));
+    const Configurations three = search_for(parts_for("test_pose"), "test_pose", ahead);
+    all.resize(known_.rows().size());
+    for (PoseRows& row : rows_of(study_.first(), three, known_.settings().planner.threads))
+      all.push_back(std::move(row));
+    result_.with_three = point(all.size(), error.after_each(all, all.size()).back());
+  }
+
+  void fill_poses(const Configurations& chosen) {
+    const IdentificationModel& model = *study_.first().model;
+    for (std::size_t i = 0; i < chosen.count(); ++i) {
+      PlannedPose pose = pose_of(model, chosen[i]);
+      pose.id = result_.measured + int(i) + 1;
+      if (!chosen.rows.empty()) pose.listed = PlannedPose::Listed{chosen.rows[i].id, chosen.rows[i].line};
+      pose.nearest = nearest_at(*study_.cell, chosen[i]);
+      result_.poses.push_back(std::move(pose));
+    }
+  }
+
+  void judge() {
+    if (!known_.determined() || !known_.fit().fitted || result_.curve.empty() || !result_.curve.back().expected) return;
+    const NextPoint& now = result_.curve.back();
+    result_.verdict = NextVerdict::go_on;
+    if (result_.required && now.upper && *now.upper <= *result_.required) result_.verdict = NextVerdict::reached;
+    else if (result_.with_three && result_.with_three->expected &&
+             *result_.with_three->expected > (1 - least_gain) * *now.expected)
+      result_.verdict = NextVerdict::flat;
+  }
+
+  const NextOptions& options_;
+  const Monitor& monitor_;
+  KnownSoFar known_;
+  Study& study_;
+  NextPoses result_;
+};
+
+}  // namespace
+
+NextPoses next_poses(const Problem& problem, const NextOptions& options, const Monitor& monitor) {
+  return NextRun(problem, options, monitor).run();
+}
+
+}  // namespace posewright

@@ -1,0 +1,361 @@
+// The next pose to measure and when to stop. The second road is a planar arm by definition: its derivatives, all
+// candidates one by one, and calibrations that are drawn.
+
+#include "posewright/results/next.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/study/accuracy_points.hpp"
+#include "posewright/study/forecast.hpp"
+#include "posewright/study/unmodelled.hpp"
+#include "posewright/study/variant.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/support/random.hpp"
+#include "posewright/tasks/next_poses.hpp"
+#include "posewright/tasks/next_state.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using Eigen::Vector2d, Eigen::Vector4d;
+using testing::HasSubstr;
+using Block = Eigen::Matrix<double, 2, 4>;
+
+constexpr double upper = 1.2, lower = 0.8, noise = 1e-3;  // m
+
+const char* const urdf =
+    R"(<robot name="planar"><link name="l0"/><link name="l1"/><link name="l2"/><link name="tip"/>
+<joint name="q1" type="revolute"><parent link="l0"/><child link="l1"/><axis xyz="0 0 1"/>
+<limit lower="-3" upper="3" effort="0" velocity="1"/></joint>
+<joint name="q2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="1.2 0 0"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" effort="0" velocity="1"/></joint>
+<joint name="end" type="fixed"><parent link="l2"/><child link="tip"/><origin xyz="0.8 0 0"/></joint></robot>)";
+
+const std::vector<Vector2d> candidates = {{0, 1.5},    {0.4, 1.1}, {-2, -1},    {0.3, 0.5},  {1.5, 0.1},  {1, 1.9},
+                                          {2.5, -0.4}, {-1, 0.8},  {-2.4, 1.3}, {0.8, -1.4}, {-0.6, -0.2}};
+const std::vector<Vector2d> tests = {{0.5, 1.7}, {-1.5, 1.9}, {2.0, 1.6}};
+const std::vector<Vector2d> poses = {{0.2, 0.3}, {0.1, 0.4}, {1.1, -0.6}, {-0.9, 1.4}, {1.9, 0.2}};
+
+/// Errors of both zero positions and both lengths, and the true robot that has them.
+Vector2d tip(const Vector2d& q, const Vector4d& x) {
+  const double a = q[0] + x[0], b = a + q[1] + x[1];
+  return (upper + x[2]) * Vector2d(std::cos(a), std::sin(a)) + (lower + x[3]) * Vector2d(std::cos(b), std::sin(b));
+}
+
+Block derivative(const Vector2d& q) {
+  Block J;
+  for (int k = 0; k < 4; ++k) {
+    const Vector4d h = 1e-6 * Vector4d::Unit(k);
+    J.col(k) = (tip(q, h) - tip(q, -h)) / 2e-6;
+  }
+  return J;
+}
+
+Eigen::Matrix4d information(const std::vector<Vector2d>& list) {
+  Eigen::Matrix4d M = Eigen::Matrix4d::Zero();
+  for (const Vector2d& q : list) M += derivative(q).transpose() * derivative(q) / (noise * noise);
+  return M;
+}
+
+/// Error at a test pose by that of the parameters: where the target sits on the tip is none of the robot's.
+Block accuracy(const Vector2d& q) {
+  Block A = derivative(q);
+  A.col(3).setZero();
+  return A;
+}
+
+double expected_error(const std::vector<Vector2d>& list) {
+  const Eigen::Matrix4d V = information(list).inverse();
+  double sum = 0;
+  for (const Vector2d& q : tests) sum += (accuracy(q) * V * accuracy(q).transpose()).trace();
+  return std::sqrt(sum / double(tests.size()));
+}
+
+std::vector<Vector2d> with(std::vector<Vector2d> list, const Vector2d& more) {
+  list.push_back(more);
+  return list;
+}
+
+std::string row(int id, const Vector2d& q, const Vector2d& y) {
+  return fmt::format("{},{},{},{},{}\n", id, q[0], q[1], y[0], y[1]);
+}
+
+const std::string header = "id,q1 [rad],q2 [rad],T1.x [m],T1.y [m]\n";
+const Vector4d truth(1e-4, -2e-4, 1e-4, 2e-4);
+
+/// Readings with the noise that the problem states.
+std::string readings(const std::vector<Vector2d>& list, std::uint64_t seed = 1) {
+  Random random(seed, 1);
+  std::string text = header;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    text += row(int(i) + 1, list[i], tip(list[i], truth) + noise * Vector2d(random.normal(), random.normal()));
+  return text;
+}
+
+class NextPosesOfAnArm : public testing::Test {
+ protected:
+  Problem problem(const std::string& more = "", const std::string& variant = "") {
+    folder_.write("planar.urdf", urdf);
+    std::string at;
+    for (const Vector2d& q : tests) at += fmt::format("{}[{}, {}]", at.empty() ? "" : ", ", q[0], q[1]);
+    return read_problem(folder_.write(
+        "p.yaml",
+        "posewright: 1\nrobot: {urdf: planar.urdf}\nmeasurement: {type: points, targets: {T1: [0, 0, 0]}, components: "
+        "[x, y], device: {type: isotropic, noise: 1 mm}}\nvariants: {all: {parameters: [q1.offset, q2.offset, q2.x, "
+        "target.T1.x]" +
+            variant + "}}\ndesign: {test_poses: {at: [" + at + "]}" + more + "}\n"));
+  }
+  NextOptions options(const std::string& text) const {
+    NextOptions next;
+    next.data = "measured.csv";
+    if (!text.empty()) next.text = text;
+    next.prior = Prior::none;
+    return next;
+  }
+  NextOptions among(const Problem& problem, const std::string& text, const std::string& criterion) {
+    std::string list = "q1,q2\n";
+    for (const Vector2d& q : candidates) list += fmt::format("{},{}\n", q[0], q[1]);
+    NextOptions next = options(text);
+    next.candidates_from = read_poses(folder_.write("list.csv", list), pose_coordinates(problem));
+    next.criterion = criterion;
+    return next;
+  }
+  TemporaryFolder folder_;
+};
+
+Vector2d configuration(const PlannedPose& pose) { return {pose.configuration[0].value, pose.configuration[1].value}; }
+
+TEST_F(NextPosesOfAnArm, TheNextPoseIsTheBestOfAllCandidates) {
+  const Problem p = problem();
+  const NextPoses least_error = next_poses(p, among(p, readings(poses), "test_pose"), Monitor{});
+  const NextPoses most_told = next_poses(p, among(p, readings(poses), "o1"), Monitor{});
+  const auto best_error = std::min_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return expected_error(with(poses, a)) < expected_error(with(poses, b));
+  });
+  const auto best_det = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return information(with(poses, a)).determinant() < information(with(poses, b)).determinant();
+  });
+  ASSERT_TRUE(least_error.fitted);
+  EXPECT_EQ(configuration(least_error.poses.front()), *best_error);
+  EXPECT_EQ(configuration(most_told.poses.front()), *best_det);
+  EXPECT_NE(*best_error, *best_det) << "else one of both would do for the other";
+  EXPECT_EQ(least_error.poses.front().id, 6);
+}
+
+TEST_F(NextPosesOfAnArm, TheErrorIsThatOfTheDefinitionBeforeAndAfter) {
+  const Problem p = problem();
+  NextOptions next = among(p, readings(poses), "test_pose");
+  next.poses = 2;
+  const NextPoses result = next_poses(p, next, Monitor{});
+  ASSERT_EQ(result.curve.size(), poses.size() + 1);
+  EXPECT_FALSE(result.curve[1].expected) << "one pose tells two of four";
+  for (std::size_t n = 2; n <= poses.size(); ++n)
+    EXPECT_NEAR(*result.curve[n].expected / expected_error({poses.begin(), poses.begin() + std::ptrdiff_t(n)}), 1, 2e-3)
+        << n;
+  std::vector<Vector2d> all = poses;
+  for (std::size_t k = 0; k < 2; ++k) {
+    all.push_back(configuration(result.poses[k]));
+    EXPECT_NEAR(*result.ahead[k].expected / expected_error(all), 1, 2e-3) << k;
+  }
+  double three = INFINITY;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t j = i + 1; j < candidates.size(); ++j)
+      for (std::size_t k = j + 1; k < candidates.size(); ++k)
+        three = std::min(three, expected_error(with(with(with(poses, candidates[i]), candidates[j]), candidates[k])));
+  EXPECT_NEAR(*result.with_three->expected / three, 1, 2e-3) << "the best three of all";
+}
+
+TEST(UpperError, IsTheQuantileOfDrawnSumsOfSquares) {
+  Random random(3, 7);
+  const auto square = [&random](int count) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += std::pow(random.normal(), 2);
+    return sum;
+  };
+  const std::vector<std::vector<double>> spectra = {{1, 1, 1, 1}, {1, 0.5, 0.2, 0.1, 0.05}, {1, 0.01}};
+  for (const std::vector<double>& spectrum : spectra)
+    for (const int freedom : {8, 40}) {
+      double sum = 0, squares = 0;
+      for (const double v : spectrum) {
+        sum += v;
+        squares += v * v;
+      }
+      const double limit = upper_error(sum, squares, freedom);
+      constexpr int draws = 40000;
+      int above = 0;
+      for (int i = 0; i < draws; ++i) {
+        // The error with the true noise of size one, the limit with the noise that the residuals show.
+        double error = 0;
+        for (const double v : spectrum) error += v * square(1);
+        above += error > limit * limit * square(freedom) / freedom ? 1 : 0;
+      }
+      EXPECT_NEAR(above / double(draws), 0.05, 0.006) << spectrum.size() << " " << freedom;
+    }
+}
+
+TEST_F(NextPosesOfAnArm, DrawnCalibrationsMissByWhatIsPredicted) {
+  const Problem p = problem();
+  const NextPoses result = next_poses(p, options(readings(poses)), Monitor{});
+  const Eigen::Matrix4d M = information(poses);
+  Random random(5, 9);
+  double sum = 0;
+  int below = 0;
+  constexpr int draws = 5000;
+  for (int d = 0; d < draws; ++d) {
+    Vector4d right = Vector4d::Zero();
+    for (const Vector2d& q : poses)
+      right += derivative(q).transpose() * Vector2d(random.normal(), random.normal()) / noise;
+    const Vector4d off = M.ldlt().solve(right);
+    double mean = 0;
+    for (const Vector2d& q : tests) mean += (accuracy(q) * off).squaredNorm() / double(tests.size());
+    sum += mean;
+    below += std::sqrt(mean) <= *result.curve.back().upper ? 1 : 0;
+  }
+  EXPECT_NEAR(std::sqrt(sum / draws) / *result.curve.back().expected, 1, 0.03);
+  EXPECT_GE(below, 0.95 * draws) << "the noise is not known to the program, so it allows for more";
+}
+
+TEST_F(NextPosesOfAnArm, AnEffectCountsAsAPlanOfTheSamePosesCountsIt) {
+  const Problem p = problem(", poses: 5", ", unmodelled: {size: 2 mm, length: 40 deg}");
+  NextOptions next = options(readings(poses));
+  const NextPoses result = next_poses(p, next, Monitor{});
+  VariantOptions wanted;
+  Variant variant = make_variant(p, wanted, Monitor{});
+  Configurations list;
+  list.dimension = 2;
+  for (const Vector2d& q : poses) list.values.insert(list.values.end(), q.begin(), q.end());
+  variant.scale = Eigen::VectorXd::Ones(Eigen::Index(variant.columns.selected.size()));
+  variant.test_points = test_points_of(p, *variant.spec, *variant.model, variant.columns, 0, &variant.test_places);
+  allow_for_unmodelled(p, list, 1, variant);
+  std::vector<double> each;
+  const double planned = predicted_error(variant.test_points, worth_of(variant, list, Prior::none, 1).errors, each);
+  const auto forecast = ForecastOfError(variant, {Prior::none}).after_each(rows_of(variant, list, 1));
+  EXPECT_NEAR(forecast.back()->expected / planned, 1, 1e-9) << "the same covariance by another factorisation";
+  EXPECT_GT(*result.curve.back().expected, 1.2 * expected_error(poses)) << "what the model lacks stays";
+  EXPECT_NEAR(*result.curve.back().expected / planned, 1, 0.02) << "at the estimated values";
+}
+
+TEST_F(NextPosesOfAnArm, TooFewPosesAreSaidToBeFewAndNothingMeasuredGivesTheFirst) {
+  const Problem p = problem(", candidates: 200");
+  NextOptions next = options("");
+  next.poses = 3;
+  const NextPoses first = next_poses(p, next, Monitor{});
+  EXPECT_EQ(first.verdict, NextVerdict::not_determined);
+  EXPECT_EQ(first.measured, 0);
+  ASSERT_EQ(first.poses.size(), 3U);
+  EXPECT_THAT(next_reason(first), HasSubstr("nothing is measured yet"));
+  const NextPoses one = next_poses(p, options(readings({poses[0]})), Monitor{});
+  EXPECT_FALSE(one.fitted);
+  EXPECT_EQ(one.told, 2);
+  EXPECT_EQ(*one.smallest, 2);
+  EXPECT_THAT(next_reason(one), HasSubstr("1 pose is too few for a fit, 2 of 4 parameters are told"));
+}
+
+TEST_F(NextPosesOfAnArm, ItStopsWhereTheLimitIsRequiredAndWhereTheCurveIsFlat) {
+  const Problem p = problem(", candidates: 300");
+  NextOptions next = options(readings(poses));
+  const NextPoses open = next_poses(p, next, Monitor{});
+  EXPECT_EQ(open.verdict, NextVerdict::go_on);
+  next.required = 1.001 * *open.curve.back().upper;
+  EXPECT_EQ(next_poses(p, next, Monitor{}).verdict, NextVerdict::reached);
+  next.required = 0.999 * *open.curve.back().upper;
+  EXPECT_EQ(next_poses(p, next, Monitor{}).verdict, NextVerdict::go_on) << "the expected error alone is not enough";
+  // Many poses: three more are few of them.
+  std::vector<Vector2d> many;
+  Random random(8, 1);
+  for (int i = 0; i < 250; ++i) many.emplace_back(random.uniform(-3, 3), random.uniform(-2, 2));
+  const NextPoses flat = next_poses(p, options(readings(many)), Monitor{});
+  EXPECT_EQ(flat.verdict, NextVerdict::flat);
+  EXPECT_GT(*flat.with_three->expected, 0.98 * *flat.curve.back().expected);
+}
+
+TEST_F(NextPosesOfAnArm, ARowOfAnotherRobotIsNamedByItsLine) {
+  const Problem p = problem(", candidates: 200");
+  std::vector<Vector2d> list = poses;
+  list.insert(list.end(), candidates.begin(), candidates.end());
+  std::string text = readings(list);
+  EXPECT_NO_THROW(next_poses(p, options(text), Monitor{}));
+  const Vector4d other(0.1, -0.2, 0.15, 0.1);
+  text += row(17, {0.7, 0.9}, tip({0.7, 0.9}, other)) + row(18, {-1.2, 0.1}, tip({-1.2, 0.1}, other));
+  try {
+    next_poses(p, options(text), Monitor{});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("measured.csv:18: T1."));
+    EXPECT_THAT(error.what(), HasSubstr("from where the 16 poses before it put this robot"));
+    EXPECT_THAT(error.what(), HasSubstr("a row of another robot"));
+  }
+}
+
+TEST(WholeLines, HalfALineIsLeftUntilItHasAnEnd) {
+  EXPECT_EQ(whole_lines("id,q\n1,2\n2,3").text, "id,q\n1,2\n");
+  EXPECT_EQ(whole_lines("id,q\n1,2\n2,3").rest, "2,3");
+  EXPECT_EQ(whole_lines("id,q\n1,2\n2,3").next_line, 3);
+  EXPECT_TRUE(whole_lines("id,q\n1,2\n").has_rows);
+  EXPECT_FALSE(whole_lines("# day 1\n\nid,q\n1,2").has_rows) << "the only row is half a line";
+  EXPECT_EQ(whole_lines("id").text, "");
+}
+
+class NextStates : public NextPosesOfAnArm {
+ protected:
+  std::string refusal(const NextState& state, const Problem& p, const std::string& text) const {
+    try {
+      require_continues(state, "s.json", p, "measured.csv", text);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+};
+
+TEST_F(NextStates, AStateComesBackFromItsFileAndSavesDrawingCandidatesAgain) {
+  const Problem p = problem(", candidates: 150");
+  NextOptions next = options(readings(poses));
+  const NextPoses result = next_poses(p, next, Monitor{});
+  const NextState state = state_after(p, next, result, std::nullopt);
+  const auto file = folder_.write("s.json", next_state_text(state));
+  const NextState again = *read_next_state(file);
+  EXPECT_EQ(next_state_text(again), next_state_text(state));
+  EXPECT_EQ(again.kept->configurations.values, result.kept->configurations.values);
+  EXPECT_EQ(*again.history.back().expected, *result.curve.back().expected);
+  reuse(again, p, next);
+  ASSERT_EQ(next.kept, again.kept);
+  const NextPoses second = next_poses(p, next, Monitor{});
+  EXPECT_EQ(second.kept, again.kept) << "drawn anew";
+  EXPECT_EQ(configuration(second.poses.front()), configuration(result.poses.front()));
+  EXPECT_EQ(read_next_state(folder_ / "none.json"), std::nullopt);
+}
+
+TEST_F(NextStates, DataThatGrowAreGoneOnWithAndReplacedOnesRefused) {
+  const Problem p = problem(", candidates: 150");
+  const std::string text = readings(poses);
+  NextOptions next = options(text);
+  const NextState state = state_after(p, next, next_poses(p, next, Monitor{}), std::nullopt);
+  EXPECT_EQ(refusal(state, p, text), "accepted");
+  EXPECT_EQ(refusal(state, p, text + "6,0.1,0.2,1.9,0.4\n"), "accepted");
+  EXPECT_THAT(refusal(state, p, readings(poses, 2) + text), HasSubstr("measured.csv: is another file than s.json saw"));
+  EXPECT_THAT(refusal(state, p, header), HasSubstr("it was replaced or cut"));
+  const Problem other = problem(", candidates: 151");
+  EXPECT_THAT(refusal(state, other, text), HasSubstr("changed"));
+  Problem elsewhere = other;
+  elsewhere.file = "other.yaml";
+  EXPECT_THAT(refusal(state, elsewhere, text), HasSubstr("s.json: is of another problem"));
+}
+
+TEST_F(NextStates, ADamagedFileIsOneLine) {
+  for (const char* bytes : {"{", "{\"schema\": \"posewright/next-state/1\"}", "[]", ""})
+    EXPECT_THROW(read_next_state(folder_.write("s.json", bytes)), InputError) << bytes;
+}
+
+}  // namespace
+}  // namespace posewright

@@ -58,7 +58,7 @@ auto json_of(const MadeCalibration& m) { return calibration_json(m.problem->prob
 auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
 auto json_of(const MadeCompensation& m) { return compensation_json(m.problem->problem, m.value); }
 auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
-auto json_of(const MadeStations& m) { return stations_json(m.value); }
+auto json_of(const MadeStations& m) { return stations_json(m.problem->problem, m.options, m.value); }
 
 /// What all results have.
 template <class M>

@@ -49,13 +49,14 @@ function tiles(list) {
 /** How long the robot is taken, by the route. @param {any} route */
 function jobTime(route) {
   if (!route || route.motions.length === 0) return null;
-  const { travel, changes, settle } = route.seconds;
+  const { travel, changes, settle, reading = 0 } = route.seconds;
   const parts = [
     `${duration(travel)} moving`,
-    settle > 0 && `${duration(settle)} standing still`,
+    settle > 0 && `${duration(settle)} settling`,
+    reading > 0 && `${duration(reading)} reading`,
     changes > 0 && `${duration(changes)} changes`,
   ].filter(Boolean);
-  return tile(duration(travel + changes + settle), 'for the whole route', parts.join(', '));
+  return tile(duration(travel + changes + settle + reading), 'for the whole route', parts.join(', '));
 }
 
 /** Figures and warnings: the picture comes next, words after it. @param {import('../pose_list.js').PoseList} list */

@@ -1,0 +1,169 @@
+import { h, section, table } from '../dom.js';
+import { inShort, tile } from '../parts/tiles.js';
+import { commonFacts, repeatSection } from '../parts/repeat.js';
+import { choice } from '../plots/choice.js';
+import { coveragePlot, sigmaPlot } from '../plots/simulation.js';
+import { histogram } from '../plots/histogram.js';
+import { normalCounts } from '../numerics/normal.js';
+import { shell, shellFile } from '../sections/reproduce.js';
+import { number, percent, plural, quantity } from '../text/units.js';
+
+const observed = (s) => s.parameters.filter((p) => p.sigma_observed !== null);
+
+/** @param {any} s */
+function tiles(s) {
+  const known = observed(s);
+  const ratios = known.map((p) => p.sigma_observed / p.sigma_predicted);
+  const covered = known.map((p) => p.coverage);
+  const mean = (list) => list.reduce((sum, v) => sum + v, 0) / list.length;
+  const { accuracy, chi_square: chi } = s;
+  return [
+    tile(s.draws.fitted.toLocaleString('en'), 'virtual calibrations', `of ${plural(s.poses, 'pose')}, ${plural(s.readings, 'reading')} each`),
+    known.length > 0
+      ? tile(`${number(Math.min(...ratios), 3)} to ${number(Math.max(...ratios), 3)}`, 'σ observed / predicted', `± ${number(s.sigma_error, 2)} by the number of draws`)
+      : null,
+    known.length > 0
+      ? tile(percent(mean(covered)), 'of the 95 % intervals', `hold the truth; ${percent(Math.min(...covered))} to ${percent(Math.max(...covered))} by parameter`)
+      : null,
+    accuracy ? tile(quantity(accuracy.observed, 'm', 3), 'position error', `${quantity(accuracy.predicted, 'm', 3)} was predicted`) : null,
+    chi.rejected === null ? null : tile(percent(chi.rejected), 'refused by the χ² test', s.truth === s.variant ? 'of the draws; 5 % is right' : 'of the draws: its power'),
+  ];
+}
+
+/** @param {any} s */
+function warnings(s) {
+  const { draws } = s;
+  return [
+    draws.interrupted && `Stopped early: ${draws.asked.toLocaleString('en')} draws were asked for.`,
+    draws.not_converged > 0 && `${plural(draws.not_converged, 'draw')} did not converge and are in no figure.`,
+    draws.failed > 0 && `${plural(draws.failed, 'draw')} could not be calibrated: ${draws.first_failure}.`,
+  ].filter(Boolean);
+}
+
+/** What the truth was. @param {any} s */
+function truthText(s) {
+  const o = s.options;
+  const noise = Object.entries(o.truth_noise ?? {}).filter(([, v]) => v !== null).map(([name, v]) => `${name} ${number(v)}`);
+  return [
+    `The robot that is measured is ${o.exact ? `the nominal one of ${s.truth}` : o.truth_nominal ? `nominal as in ${s.truth}, off by one tolerance (1σ) where ${s.variant} estimates` : `of ${s.truth}, each parameter off by its tolerance (1σ)`}.`,
+    noise.length > 0 && ` Its noise is not the one stated (SI): ${noise.join(', ')}.`,
+    o.missing > 0 && ` ${percent(o.missing)} of the targets are not read; the prediction counts on it.`,
+    o.outliers > 0 && ` ${percent(o.outliers)} of the targets are ${number(o.outlier_size)} σ off.`,
+  ]
+    .filter(Boolean)
+    .join('');
+}
+
+/** @param {any} s */
+const verdictSection = (s) =>
+  section(
+    'verdict',
+    s.confirmed ? 'As predicted' : 'Not as predicted',
+    truthText(s),
+    h('ul', { class: 'sentences' }, s.verdict.map((line) => h('li', {}, line))),
+  );
+
+/** @param {any} s */
+function errorHistograms(s) {
+  const { from, bin_width: width } = s.histogram;
+  const known = s.parameters.filter((p) => p.histogram);
+  if (known.length === 0) return null;
+  const add = (lists) => lists[0].map((_, k) => lists.reduce((sum, list) => sum + list[k], 0));
+  const of = (id, name, counts) => [
+    name,
+    histogram({
+      id: `plot-errors-${id}`,
+      headed: false,
+      title: `Errors: ${name}`,
+      caption: 'Estimate less truth, in units of the σ that each calibration states for itself; the line is what normal errors give. A narrower bell: σ is stated too large; one beside zero: a bias.',
+      histogram: { from, bin_width: width, counts },
+      axis: '(estimate − truth) / σ',
+      counted: 'draws',
+      expected: normalCounts(from, width, counts.length, counts.reduce((sum, n) => sum + n, 0)),
+      open: true,
+    }),
+  ];
+  return choice('Truth against estimate:', 'Which parameter', [
+    of('all', 'all parameters', add(known.map((p) => p.histogram))),
+    ...known.map((p, k) => of(String(k), p.name, p.histogram)),
+  ]);
+}
+
+/** @param {any} accuracy */
+function accuracyHistogram(accuracy) {
+  if (!accuracy?.histogram || !(accuracy.histogram.bin_width > 0)) return null;
+  const { from, bin_width: width, counts } = accuracy.histogram;
+  return histogram({
+    id: 'plot-distances',
+    title: 'Position error of the calibrated robots',
+    caption: `Draws by the root mean square of their error at the ${accuracy.places} ${accuracy.of === 'test_poses' ? 'test poses' : 'random places'}. Upright lines: ${quantity(accuracy.predicted, 'm', 3)} predicted (orange), ${quantity(accuracy.observed, 'm', 3)} over all draws (blue); the worst place of all was ${quantity(accuracy.largest, 'm', 3)} off.`,
+    histogram: { from: 1e3 * from, bin_width: 1e3 * width, counts },
+    axis: 'error, mm',
+    counted: 'draws',
+    marks: [
+      { value: 1e3 * accuracy.observed, label: 'observed', tint: 'plan' },
+      { value: 1e3 * accuracy.predicted, label: 'predicted', tint: 'accent' },
+    ],
+  });
+}
+
+/** @param {any} s */
+function parametersSection(s) {
+  const rows = s.parameters.map((p) => [
+    p.name,
+    p.role === 'nuisance' ? 'nuisance' : '',
+    quantity(p.tolerance, p.unit, 3),
+    quantity(p.sigma_predicted, p.unit, 3),
+    quantity(p.sigma_observed, p.unit, 3),
+    p.sigma_observed === null ? '–' : number(p.sigma_observed / p.sigma_predicted, 3),
+    quantity(p.sigma_stated, p.unit, 3),
+    quantity(p.bias, p.unit, 2),
+    quantity(p.bias_error, p.unit, 2),
+    percent(p.coverage),
+  ]);
+  return section(
+    'parameters',
+    'Parameters',
+    'σ predicted by the plan, observed over the draws, and stated by the calibrations for themselves; bias with its standard error.',
+    table(['parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'], rows, 'Parameters'),
+  );
+}
+
+/** @param {any} s @param {any} report */
+function repeat(s, report) {
+  const o = s.options;
+  const words = [
+    `--variant ${shell(s.variant)}`,
+    s.truth !== s.variant && `--truth ${shell(s.truth)}`,
+    `--draws ${shell(o.draws)}`,
+    o.exact && '--exact',
+    o.truth_nominal && '--truth-nominal',
+    o.prior === false && '--no-prior',
+    o.weights !== 'wls' && `--weights ${shell(o.weights)}`,
+    o.missing > 0 && `--missing ${shell(o.missing)}`,
+    o.outliers > 0 && `--outliers ${shell(o.outliers)} --outlier-size ${shell(o.outlier_size)}`,
+    `--seed ${shell(s.seed)}`,
+  ];
+  return repeatSection(
+    [...commonFacts(s, report), ['poses', s.plan]],
+    [`posewright simulate ${shellFile(s.problem.file)} ${shellFile(s.plan)} ${words.filter(Boolean).join(' ')} --json > simulation.json`],
+    'A draw belongs to the seed and its number: more draws leave the first ones as they are. Another noise of the truth (--truth-repeatability and its like), --validation and --candidates have to be given again.',
+  );
+}
+
+/** @param {any} s simulation.json @param {any} report @returns {import('../page.js').Page} */
+export function simulationPage(s, report) {
+  const plots = [sigmaPlot(s), coveragePlot(s), errorHistograms(s), accuracyHistogram(s.accuracy)].filter(Boolean);
+  return {
+    kind: `Virtual calibrations of variant ${s.variant} with ${s.plan}`,
+    heading: report.title,
+    title: `Simulation: ${report.title}`,
+    sections: [
+      ['In short', inShort(tiles(s), warnings(s))],
+      ['Verdict', verdictSection(s)],
+      ['Truth and prediction', plots.length > 0 ? section('figures', 'Truth and prediction', null, h('div', { class: 'plots' }, plots)) : null],
+      ['Parameters', parametersSection(s)],
+      ['Repeat', repeat(s, report)],
+    ],
+  };
+}

@@ -86,7 +86,7 @@ function worthSection(c) {
     'worth',
     'Do more parameters pay?',
     'If the larger variant is the case: the error with it by noise, against the error without its parameters, by noise and by the bias that leaving them out makes.',
-    worthPlot(c),
+    h('div', { class: 'plots' }, worthPlot(c)),
     h('ul', { class: 'sentences' }, c.worth.map((w) => h('li', {}, `${w.text}.`))),
   );
 }

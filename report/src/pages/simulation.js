@@ -96,7 +96,7 @@ function accuracyHistogram(accuracy) {
   return histogram({
     id: 'plot-distances',
     title: 'Position error of the calibrated robots',
-    caption: `Draws by the root mean square of their error at the ${accuracy.places} ${accuracy.of === 'test_poses' ? 'test poses' : 'random places'}. Upright lines: ${quantity(accuracy.predicted, 'm', 3)} predicted (orange), ${quantity(accuracy.observed, 'm', 3)} over all draws (blue); the worst place of all was ${quantity(accuracy.largest, 'm', 3)} off.`,
+    caption: `Draws by the root mean square of their error at the ${accuracy.places} ${accuracy.of === 'test_poses' ? 'test poses' : 'random places'}. Upright lines: ${quantity(accuracy.predicted, 'm', 3)} predicted, ${quantity(accuracy.observed, 'm', 3)} observed over all draws (root mean square); the worst place of all was ${quantity(accuracy.largest, 'm', 3)} off.`,
     histogram: { from: 1e3 * from, bin_width: 1e3 * width, counts },
     axis: 'error, mm',
     counted: 'draws',
@@ -109,7 +109,8 @@ function accuracyHistogram(accuracy) {
 
 /** @param {any} s */
 function parametersSection(s) {
-  const rows = s.parameters.map((p) => [
+  const rows = s.parameters.map((p, k) => [
+    String(k + 1),
     p.name,
     p.role === 'nuisance' ? 'nuisance' : '',
     quantity(p.tolerance, p.unit, 3),
@@ -125,7 +126,7 @@ function parametersSection(s) {
     'parameters',
     'Parameters',
     'σ predicted by the plan, observed over the draws, and stated by the calibrations for themselves; bias with its standard error.',
-    table(['parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'], rows, 'Parameters'),
+    table(['##', 'parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'], rows, 'Parameters'),
   );
 }
 

@@ -1,7 +1,7 @@
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
-import { stationMap } from '../plots/station_map.js';
+import { isDeterminant, sigmaRatio, stationMap } from '../plots/station_map.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { number, percent, plural, quantity } from '../text/units.js';
 
@@ -29,7 +29,7 @@ function tiles(s) {
 function rankingSection(s) {
   const planned = s.ranking.filter((r) => !r.why_not);
   const withError = planned.some((r) => r.rho0 !== null);
-  const header = ['#', 'station', 'place x, y, z, mm', 'planned', '#parameters', `#${s.criterion}`, '#σ against the best', '#feasible', ...(withError ? ['#position error'] : []), 'most rejected by'];
+  const header = ['#', 'station', 'place x, y, z, mm', 'planned', '#parameters', `#${s.criterion}`, '#σ against the best planned alike', '#feasible', ...(withError ? ['#position error'] : []), 'most rejected by'];
   const rows = planned.map((r, k) => [
     String(k + 1),
     namesOf(r),
@@ -37,7 +37,7 @@ function rankingSection(s) {
     r.in_full ? 'in full' : 'quickly',
     String(r.parameters),
     number(r.phi, 7),
-    r.sigma_ratio === null ? '–' : `${number(r.sigma_ratio, 4)} ×`,
+    isDeterminant(s) ? `${number(sigmaRatio(s.ranking, r), 4)} ×` : '–',
     percent(r.feasible_share),
     ...(withError ? [quantity(r.rho0, 'm')] : []),
     r.main_rejection,

@@ -2,13 +2,14 @@ import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { efficiencyOf, inCommon, whyNotComparable } from '../numerics/two_plans.js';
 import { PoseList } from '../pose_list.js';
-import { sigmaPairsPlot } from '../plots/two_plans.js';
+import { growingPlot, sigmaPairsPlot } from '../plots/two_plans.js';
 import { shellFile } from '../sections/reproduce.js';
 import { newPoses } from '../text/sentences.js';
 import { coordinate, number, percent, percentDown, plural, quantity } from '../text/units.js';
 import { viewer } from '../view/viewer.js';
 
 const letters = ['A', 'B'];
+const worst = (plan) => interestOf(plan).reduce((a, b) => (b.sigma / b.tolerance > a.sigma / a.tolerance ? b : a));
 const interestOf = (plan) => plan.parameters.filter((p) => p.identifiable && p.role === 'interest');
 
 /** @param {PoseList[]} lists @param {[any, any][]} common */
@@ -21,6 +22,7 @@ function tiles(lists, common, why) {
     efficiency === null
       ? tile('–', 'no efficiency', why || 'a plan does not determine its parameters')
       : tile(percent(efficiency), 'information of B', 'per parameter, compared with A'),
+    tile([a, b].map((r) => number(worst(r.plan).sigma / worst(r.plan).tolerance, 3)).join(' and '), 'largest σ/tolerance', `${worst(a.plan).name} of A, ${worst(b.plan).name} of B`),
     errors.every((e) => e !== null) ? tile(errors.map((e) => quantity(e, 'm', 3)).join(' and '), 'position error', 'predicted, of A and B') : null,
   ];
 }
@@ -63,7 +65,6 @@ function commonTable(common) {
 /** One row a figure. @param {import('../types.js').Report[]} reports */
 function figuresTable(reports) {
   const plans = reports.map((r) => r.plan);
-  const worst = (plan) => interestOf(plan).reduce((a, b) => (b.sigma / b.tolerance > a.sigma / a.tolerance ? b : a));
   const smallest = (plan) => {
     const near = plan.poses.filter((p) => p.nearest).map((p) => p.nearest.distance);
     return near.length > 0 ? quantity(Math.min(...near), 'm') : '–';
@@ -84,7 +85,11 @@ function figuresTable(reports) {
     ['left if the most needed pose is lost', (p) => percentDown(Math.min(...newPoses(p).map((q) => q.efficiency_without)))],
     ['smallest clearance', smallest],
   ];
-  return table(['figure', '#A', '#B'], rows.map(([title, of]) => [title, ...plans.map(of)]), 'Figures of both plans');
+  // What each of them keeps of the best for a variant, where it was made for several.
+  for (const name of new Set(plans.flatMap((p) => (p.variants ?? []).map((v) => v.name))))
+    rows.push([`efficiency for variant ${name}`, (p) => percentDown(p.variants?.find((v) => v.name === name)?.efficiency ?? null)]);
+  const told = rows.map(([title, of]) => [title, ...plans.map(of)]).filter(([, ...values]) => values.some((v) => v !== '–' && v !== '0'));
+  return table(['figure', '#A', '#B'], told, 'Figures of both plans');
 }
 
 /** @param {import('../types.js').Report[]} reports */
@@ -100,14 +105,14 @@ function sigmaSection([a, b]) {
   const pairs = a.plan.parameters.filter((p) => p.identifiable && other.has(p.name)).map((p) => [p, other.get(p.name)]);
   const only = (plan, names) => plan.parameters.filter((p) => p.identifiable && !names.has(p.name)).map((p) => p.name);
   const shared = new Set(pairs.map(([p]) => p.name));
-  const rows = pairs.map(([p, q]) => [p.name, p.role === 'nuisance' ? 'nuisance' : '', quantity(p.tolerance, p.unit, 3), quantity(p.sigma, p.unit, 3), quantity(q.sigma, q.unit, 3), number(q.sigma / p.sigma, 3)]);
+  const rows = pairs.map(([p, q], k) => [String(k + 1), p.name, p.role === 'nuisance' ? 'nuisance' : '', quantity(p.tolerance, p.unit, 3), quantity(p.sigma, p.unit, 3), quantity(q.sigma, q.unit, 3), number(q.sigma / p.sigma, 3)]);
   const alone = [a, b].map((r, k) => [letters[k], only(r.plan, shared)]).filter(([, names]) => names.length > 0);
   return section(
     'parameters',
     'σ of the parameters',
     'Predicted standard deviation; B / A below 1: plan B tells more of it.',
-    h('div', { class: 'plots' }, sigmaPairsPlot(pairs)),
-    table(['parameter', '', '#tolerance', '#σ of A', '#σ of B', '#B / A'], rows, 'σ of both plans'),
+    h('div', { class: 'plots' }, [sigmaPairsPlot(pairs), growingPlot([a, b])].filter(Boolean)),
+    table(['##', 'parameter', '', '#tolerance', '#σ of A', '#σ of B', '#B / A'], rows, 'σ of both plans'),
     alone.map(([letter, names]) => h('p', { class: 'note' }, `In ${letter} alone: ${names.join(', ')}.`)),
   );
 }

@@ -72,6 +72,9 @@ export const uprights = (marks) => ({
   },
 });
 
+/** Not named in the legend: the caption says what it is. @param {any} series */
+export const unlisted = (series) => ({ ...series, class: 'unlisted' });
+
 /** What the legend shows under the pointer. */
 const shownValue = (plot, value) => (value === null || value === undefined ? '' : number(value));
 

@@ -31,12 +31,12 @@ export function perPosePlots(c) {
           headed: false,
           title: `Error at each pose: ${measure.title}`,
           caption:
-            `Root mean square over what was read at the pose, on a logarithmic scale: grey ${beforeText(c)}, blue calibrated` +
-            (anyHeld ? ', orange calibrated at poses that were not fitted, which is what to expect elsewhere.' : '.'),
+            `Root mean square over what was read at the pose, on a logarithmic scale. Before: ${beforeText(c)}.` +
+            (anyHeld ? ' Held back: calibrated without these poses, which is what to expect elsewhere.' : ''),
           options: {
             series: [
               { label: 'pose', value: (u, v) => (v === null ? '' : String(c.poses[v - 1]?.id ?? '')) },
-              dots(`before${unit}`, 'off', 6),
+              dots(`before${unit}`, 'ink-soft', 5),
               dots(`fitted${unit}`, 'plan'),
               ...(anyHeld ? [dots(`held back${unit}`, 'accent', 8)] : []),
             ],
@@ -122,8 +122,8 @@ export function heldBackPlot(c) {
     id: 'plot-held-back',
     title: 'Poses that were not fitted',
     caption:
-      'Orange: the error that was found. Dark: what the covariance of the estimate and the noise of the readings let expect (1σ); light: the estimate’s share of it. ' +
-      'Errors far above the dark dots say that the model lacks something.',
+      'The error that was found, beside what the covariance of the estimate and the noise of the readings let expect (1σ), and the estimate’s share of that. ' +
+      'Errors far above what is expected with noise say that the model lacks something.',
     options: {
       series: [
         { label: 'pose', value: (u, v) => (v === null ? '' : String(poses[v - 1]?.id ?? '')) },

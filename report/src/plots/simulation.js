@@ -1,4 +1,4 @@
-import { around, dots, figure, level, namedAxis } from './figure.js';
+import { around, dots, figure, level, namedAxis, unlisted } from './figure.js';
 import { number, percent } from '../text/units.js';
 
 const observed = (s) => s.parameters.filter((p) => p.sigma_observed !== null);
@@ -18,7 +18,7 @@ export function sigmaPlot(s) {
     title: 'σ observed over the draws, beside the predicted one',
     caption: `One dot a parameter, in the order of the table; 1 is as predicted. Between the dashed lines a difference is no more than chance (three Monte Carlo errors, ± ${number(error, 2)}).`,
     options: {
-      series: [named(parameters), dots('observed / predicted', 'plan'), level('chance', 'ink-soft'), level('chance', 'ink-soft')],
+      series: [named(parameters), dots('observed / predicted', 'plan'), level('chance', 'ink-soft'), unlisted(level('chance', 'ink-soft'))],
       scales: { x: { time: false, range: around }, y: { range: (u, low, high) => [Math.min(low, 1 - error) - 0.02, Math.max(high, 1 + error) + 0.02] } },
       axes: [namedAxis(parameters.map((_, k) => k + 1), 'parameter'), { label: 'σ observed / predicted', size: 58 }],
     },
@@ -40,7 +40,7 @@ export function coveragePlot(s) {
     title: 'How many 95 % intervals hold the truth',
     caption: `One dot a parameter, in the order of the table. 95 % is right; between the dashed lines a difference is no more than chance (three Monte Carlo errors). Below: intervals are too short.`,
     options: {
-      series: [named(parameters), dots('covered, %', 'plan'), level('chance', 'ink-soft'), level('chance', 'ink-soft')],
+      series: [named(parameters), dots('covered, %', 'plan'), level('chance', 'ink-soft'), unlisted(level('chance', 'ink-soft'))],
       scales: { x: { time: false, range: around }, y: { range: (u, low, high) => [Math.min(low, 95 - error) - 1, Math.max(high, top) + 1] } },
       axes: [namedAxis(parameters.map((_, k) => k + 1), 'parameter'), { label: 'covered, %', size: 58 }],
     },

@@ -6,27 +6,55 @@ import { number, percent, quantity } from '../text/units.js';
 
 /**
  * What a place may be coloured by.
- * @typedef {{name: string, of: (rank: any) => number|null, shown: (rank: any) => string, least?: boolean}} Value least: smaller is better
+ * @typedef {object} Value
+ * @property {string} name
+ * @property {(rank: any) => number|null} of larger is better unless `least`
+ * @property {(value: number) => string} shown
+ * @property {boolean} [least] smaller is better
+ * @property {number} span differences below it are not worth a colour: relative to the best
  */
+
+/** How many times as large σ is as from the best place that was planned alike, of a determinant: exp((Φ* − Φ)/(2 m)).
+ * @param {any[]} ranking @param {any} rank */
+export function sigmaRatio(ranking, rank) {
+  const best = Math.max(...alike(ranking, rank).map((r) => r.phi));
+  return Math.exp((best - rank.phi) / (2 * Math.max(rank.parameters, 1)));
+}
+
+/** Whether the criterion is a log-determinant of information, so that its differences are ratios of σ. @param {any} s */
+export const isDeterminant = (s) => s.criterion === 'o1' || s.criterion === 'ds';
+
+/** Places that can be compared with this one. @param {any[]} ranking @param {any} rank */
+const alike = (ranking, rank) =>
+  ranking.filter((r) => !r.why_not && r.in_full === rank.in_full && r.parameters === rank.parameters);
 
 /** @param {any} s stations.json @returns {Value[]} */
 export function valuesOf(s) {
   const good = s.ranking.filter((r) => !r.why_not);
   return [
-    { name: `criterion ${s.criterion}`, of: (r) => r.phi, shown: (r) => number(r.phi, 6) },
-    { name: 'share of feasible configurations', of: (r) => r.feasible_share, shown: (r) => percent(r.feasible_share) },
-    ...(good.some((r) => r.rho0 !== null) ? [{ name: 'position error', of: (r) => r.rho0, shown: (r) => quantity(r.rho0, 'm'), least: true }] : []),
+    isDeterminant(s)
+      ? { name: 'σ against the best place', of: (r) => sigmaRatio(s.ranking, r), shown: (v) => `${number(v, 4)} ×`, least: true, span: 0.1 }
+      : { name: `criterion ${s.criterion}`, of: (r) => r.phi, shown: (v) => number(v, 5), span: 0.1 },
+    { name: 'share of feasible configurations', of: (r) => r.feasible_share, shown: (v) => percent(v), span: 0.1 },
+    ...(good.some((r) => r.rho0 !== null)
+      ? [{ name: 'position error', of: (r) => r.rho0, shown: (v) => quantity(v, 'm', 3), least: true, span: 0.1 }]
+      : []),
   ];
 }
 
-/** 0: the worst, 1: the best of those that were planned alike. @param {any[]} ranking @param {any} rank @param {Value} value */
+/** Where the colours begin (worst) and end (best). @param {any[]} ranking @param {Value} value @returns {[number, number]|null} */
+export function endsOf(ranking, value) {
+  const all = ranking.filter((r) => !r.why_not).map(value.of).filter((v) => v !== null);
+  if (all.length === 0) return null;
+  const [low, high] = [Math.min(...all), Math.max(...all)];
+  return value.least ? [Math.max(high, low * (1 + value.span)), low] : [Math.min(low, high - value.span * Math.abs(high)), high];
+}
+
+/** 0: worst, 1: best. @param {any[]} ranking @param {any} rank @param {Value} value */
 export function shareOf(ranking, rank, value) {
-  const alike = ranking.filter((r) => !r.why_not && r.in_full === rank.in_full && value.of(r) !== null).map(value.of);
   const own = value.of(rank);
-  if (own === null || alike.length === 0) return null;
-  const [low, high] = [Math.min(...alike), Math.max(...alike)];
-  const share = high > low ? (own - low) / (high - low) : 1;
-  return value.least ? 1 - share : share;
+  const ends = endsOf(ranking, value);
+  return own === null || ends === null || ends[0] === ends[1] ? null : (own - ends[0]) / (ends[1] - ends[0]);
 }
 
 /** Every place with the best of the sets that it is in. @param {any} s */
@@ -48,13 +76,13 @@ class Frame {
     const room = 0.12 * Math.max(right - left, high - low, 0.5);
     this.least = [left - room, low - room];
     this.most = [right + room, high + room];
-    this.width = width;
     this.edge = 40;
     this.scale = (width - this.edge - 8) / (this.most[0] - this.least[0]);
     // A narrow strip of places must not become a tower.
     const tallest = 460;
     this.scale = Math.min(this.scale, tallest / (this.most[1] - this.least[1]));
-    this.height = this.scale * (this.most[1] - this.least[1]) + 34;
+    this.width = this.edge + this.scale * (this.most[0] - this.least[0]) + 8;
+    this.height = this.scale * (this.most[1] - this.least[1]) + 44;
   }
 
   x(value) {
@@ -112,33 +140,42 @@ function mark(frame, place, s, value) {
   if (rgb) circle.style.fill = `rgb(${rgb.map(Math.round).join(' ')})`;
   const text = svg('text', { x, y: y + 4, 'text-anchor': 'middle' }, place.rank.why_not ? '–' : String(place.place));
   if (rgb) text.style.fill = inkOn(rgb);
-  circle.append(svg('title', {}, `${place.name}: ${place.rank.why_not || value.shown(place.rank)}`));
+  circle.append(svg('title', {}, `${place.name}: ${place.rank.why_not || value.shown(value.of(place.rank))}`));
   return [circle, text, svg('text', { class: 'soft', x, y: y - 19, 'text-anchor': 'middle' }, place.name)];
 }
 
 /** @param {any} s stations.json */
 export function stationMap(s) {
   const places = placesOf(s);
-  const bodies = s.obstacles.map((o) => convexHull(o.points.map((p) => [p[0], p[1]]))).filter((hull) => hull.length > 2);
-  const points = [...places.map((p) => p.position), ...(s.base ? [s.base] : []), ...bodies.flat()].map((p) => [p[0], p[1]]);
+  const bodies = s.obstacles
+    .map((o) => ({ name: o.name, hull: convexHull(o.points.map((p) => [p[0], p[1]])) }))
+    .filter(({ hull }) => hull.length > 2);
+  const points = [...places.map((p) => p.position), ...(s.base ? [s.base] : []), ...bodies.flatMap((b) => b.hull)].map((p) => [p[0], p[1]]);
   const values = valuesOf(s);
   const select = h('select', { 'aria-label': 'Coloured by', onchange: () => draw() }, values.map((v, k) => h('option', { value: k }, v.name)));
   const holder = h('div', { class: 'map-holder' });
+  const ramp = h('span', { class: 'ramp' });
   const draw = () => {
-    const width = Math.min(720, holder.clientWidth);
+    const ends = endsOf(s.ranking, values[Number(select.value)]);
+    if (ends) ramp.replaceChildren(`${values[Number(select.value)].shown(ends[0])} `, h('span', { class: 'ramp-bar' }), ` ${values[Number(select.value)].shown(ends[1])}`);
+    const width = Math.min(900, holder.clientWidth);
     if (width < 60) return;
     const frame = new Frame(points, width);
+    const middle = (hull) => [0, 1].map((axis) => hull.reduce((sum, p) => sum + p[axis], 0) / hull.length);
     const outline = (hull) => hull.map(([x, y]) => `${frame.x(x)},${frame.y(y)}`).join(' ');
     const best = Object.keys(s.ranking[0].stations).map((name) => places.find((p) => p.name === name).position);
     holder.replaceChildren(
       svg(
         'svg',
-        { class: 'map', viewBox: `0 0 ${width} ${frame.height}`, role: 'img', 'aria-label': `Places from above, coloured by ${values[Number(select.value)].name}` },
+        { class: 'map', viewBox: `0 0 ${frame.width} ${frame.height}`, width: frame.width, height: frame.height, role: 'img', 'aria-label': `Places from above, coloured by ${values[Number(select.value)].name}` },
         gridOf(frame),
-        bodies.map((hull) => svg('polygon', { class: 'obstacle', points: outline(hull) })),
+        bodies.flatMap(({ name, hull }) => [
+          svg('polygon', { class: 'obstacle', points: outline(hull) }),
+          svg('text', { x: frame.x(middle(hull)[0]), y: frame.y(middle(hull)[1]) + 4, 'text-anchor': 'middle' }, name),
+        ]),
         best.length > 1 ? svg('polyline', { class: 'link', fill: 'none', points: outline(best.map((p) => [p[0], p[1]])) }) : null,
         s.base ? baseMark(frame, s.base) : null,
-        places.map((place) => mark(frame, place, s, values[Number(select.value)])),
+        places.flatMap((place) => mark(frame, place, s, values[Number(select.value)])),
       ),
     );
   };
@@ -146,7 +183,7 @@ export function stationMap(s) {
   return h(
     'figure',
     { id: 'plot-map', class: 'figure' },
-    h('p', { class: 'choice' }, 'Coloured by ', select, ' ', h('span', { class: 'ramp' }, 'worst ', h('span', { class: 'ramp-bar' }), ' best')),
+    h('p', { class: 'choice' }, 'Coloured by ', select, ' ', ramp),
     holder,
     h('figcaption', {}, captionOf(s)),
   );
@@ -164,7 +201,7 @@ function captionOf(s) {
   const full = s.ranking.some((r) => r.in_full) && s.ranking.some((r) => !r.why_not && !r.in_full);
   return (
     'From above; the number is the rank, the thick edge the best choice. ' +
-    (full ? 'Large dots were planned in full, small ones quickly: colours compare places that were planned alike. ' : '') +
+    (full ? 'Large dots were planned in full, small ones quickly; σ is against the best place that was planned alike. ' : '') +
     (hidden.length > 0 ? `Not drawn: ${hidden.join(', ')}.` : '')
   );
 }

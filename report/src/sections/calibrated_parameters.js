@@ -31,33 +31,50 @@ function toSigma(value, p) {
   return `${(value * factor).toFixed(decimals).replace('-', '−')}${name ? ` ${name}` : ''}`;
 }
 
+/** What a file's rounding left of zero is zero. @param {number} value SI */
+const clean = (value) => (Math.abs(value) < 1e-12 ? 0 : value);
+
 /** @param {any} p */
 function line(p) {
-  const cells = p.estimated
-    ? [
-        toSigma(p.value, p),
-        quantity(p.value - p.nominal, p.unit, 3),
-        quantity(p.sigma, p.unit, 2),
-        p.interval ? `${toSigma(p.interval[0], p)} to ${toSigma(p.interval[1], p)}` : '–',
-      ]
-    : ['not estimated', '', '', ''];
+  const cells = [
+    toSigma(p.value, p),
+    quantity(p.value - p.nominal, p.unit, 3),
+    quantity(p.sigma, p.unit, 2),
+    p.interval ? `${toSigma(p.interval[0], p)} to ${toSigma(p.interval[1], p)}` : '–',
+  ];
   const notes = [
     p.role === 'nuisance' && 'nuisance',
     p.tells_less_than_tolerance && 'told less than its tolerance',
-    p.prior === 'assumed' && 'tolerance assumed',
-    p.why_not,
+    p.prior === 'stated' && 'tolerance counts',
+    p.prior === 'assumed' && 'tolerance counts, assumed',
   ].filter(Boolean);
   return h(
     'tr',
     { class: p.role, 'data-name': p.name },
     h('th', { scope: 'row' }, p.name),
-    h('td', { class: 'number nominal' }, quantity(p.nominal, p.unit)),
+    h('td', { class: 'number nominal' }, quantity(clean(p.nominal), p.unit)),
     h('td', { class: 'number' }, cells[0]),
     h('td', { class: 'number' }, cells[1]),
     h('td', { class: 'number nominal' }, cells[2]),
     h('td', { class: 'number interval-text' }, cells[3]),
     h('td', { class: 'nominal' }, picture(p)),
     h('td', { class: 'role' }, notes.join('; ')),
+  );
+}
+
+/** @param {any} c */
+function notEstimated(c) {
+  const left = c.parameters.filter((p) => !p.estimated);
+  if (left.length === 0) return null;
+  return h(
+    'details',
+    { class: 'printed', open: left.length <= 8 },
+    h('summary', {}, `Not estimated: ${left.length}, which stay at their nominal values`),
+    h(
+      'ul',
+      { class: 'equations' },
+      left.map((p) => h('li', {}, p.why_not ? `${p.name}: ${p.why_not}` : p.name)),
+    ),
   );
 }
 
@@ -85,9 +102,10 @@ export function calibratedParametersSection(c) {
         'table',
         { class: 'parameters calibrated' },
         h('thead', {}, h('tr', {}, head.map((title, k) => h('th', { scope: 'col', class: [title.startsWith('#') && 'number', hidden.has(k) && 'nominal', k === 7 && 'role'].filter(Boolean).join(' ') }, title.replace('#', ''))))),
-        h('tbody', {}, c.parameters.map(line)),
+        h('tbody', {}, estimated.map(line)),
       ),
     ),
+    notEstimated(c),
     c.orientations.length > 0 ? h('ul', { class: 'sentences' }, c.orientations.map(turned)) : null,
     c.noise_factor > 1 ? h('p', { class: 'note' }, `σ and intervals count the noise that the residuals show, ${number(c.noise_factor, 3)} times the stated one.`) : null,
   );

@@ -12,9 +12,9 @@ function rowsOf(c) {
   const add = (title, test, statistic, text) => test && rows.push([title, statistic, chance(test.probability), text]);
   add('Is the noise as stated? (χ²)', tests.chi_square, tests.chi_square && `${number(tests.chi_square.statistic, 4)} of ${c.freedom}`, tests.chi_square && sized(c));
   add('Does the model fit? (scatter within poses, F)', tests.lack_of_fit, number(tests.lack_of_fit?.statistic, 3), tests.lack_of_fit && verdict(tests.lack_of_fit, 'the scatter within poses and what is stated to stay at one explain the residuals', 'more stays at a pose than is stated: larger repeatability, or a missing effect'));
-  add('Do readings of a pose err together?', tests.within_pose_correlation, number(tests.within_pose_correlation?.statistic, 2), tests.within_pose_correlation && verdict(tests.within_pose_correlation, 'no sign of it', 'they do: state a repeatability, or σ is too small'));
-  add('From pose to pose? (drift)', tests.serial_correlation, number(tests.serial_correlation?.statistic, 2), tests.serial_correlation && verdict(tests.serial_correlation, 'no sign of it', 'poses after each other err alike: drift, temperature'));
-  add('Are there gross errors? (normality)', tests.normality, number(tests.normality?.statistic, 3), tests.normality && verdict(tests.normality, 'no sign of them', 'residuals are not normal: see the histogram, try --weights robust'));
+  add('Do readings of a pose err together?', tests.within_pose_correlation, number(tests.within_pose_correlation?.statistic, 2), tests.within_pose_correlation && verdict(tests.within_pose_correlation, 'no clear sign of it', 'they do: state a repeatability, or σ is too small'));
+  add('From pose to pose? (drift)', tests.serial_correlation, number(tests.serial_correlation?.statistic, 2), tests.serial_correlation && verdict(tests.serial_correlation, 'no clear sign of it', 'poses after each other err alike: drift, temperature'));
+  add('Are there gross errors? (normality)', tests.normality, number(tests.normality?.statistic, 3), tests.normality && verdict(tests.normality, 'no clear sign of them', 'residuals are not normal: see the histogram, try --weights robust'));
   addSmooth(c, rows);
   if (c.left_out.groups > 0)
     rows.push(['Are the parameters of use? (poses left out)', `${number(c.left_out.estimated, 3)} against ${number(c.left_out.placed, 3)}`, '', c.left_out.refused ? h('span', { class: 'refused' }, 'no better than base and tool alone') : 'poses left out, predicted in units of the stated noise, against base and tool alone']);
@@ -38,7 +38,7 @@ function addSmooth(c, rows) {
   if (s.why_not) return;
   const found = s.probability < seldom;
   const text = `${quantity(s.size, 'm', 3)}${s.upper === null ? '' : ` (${quantity(s.lower, 'm', 2)} to ${quantity(s.upper, 'm', 2)})`} over ${quantity(s.length, 'rad', 3)}`;
-  rows.push(['Does something smooth over the joints remain?', text, chance(s.probability), found ? h('span', { class: 'refused' }, c.smooth_effect.counted ? 'yes; σ and intervals count it' : 'yes: plain intervals are too small; let the variant have unmodelled') : 'no sign of it']);
+  rows.push(['Does something smooth over the joints remain?', text, chance(s.probability), found ? h('span', { class: 'refused' }, c.smooth_effect.counted ? 'yes; σ and intervals count it' : 'yes: plain intervals are too small; let the variant have unmodelled') : 'no clear sign of it']);
 }
 
 /** @param {any} e of effects_left_out */

@@ -5,5 +5,5 @@ export const seldom = 0.01;
 export function chance(p) {
   if (p === null || p === undefined) return '–';
   if (p < 1e-6) return '< 1e-6';
-  return p < 0.001 ? p.toExponential(1).replace('-', '−') : String(Number(p.toPrecision(2)));
+  return p < 0.001 ? p.toExponential(1).replace('-', '−') : p.toPrecision(2);
 }

@@ -5,6 +5,7 @@ import { watchTheme } from './theme.js';
 import { calibrationPage } from './pages/calibration.js';
 import { calibrationsPage } from './pages/calibrations.js';
 import { comparisonPage } from './pages/comparison.js';
+import { nextPage } from './pages/next.js';
 import { planPage } from './pages/plan.js';
 import { simulationPage } from './pages/simulation.js';
 import { stationsPage } from './pages/stations.js';
@@ -16,6 +17,7 @@ const results = {
   'posewright/calibrations/1': calibrationsPage,
   'posewright/comparison/1': comparisonPage,
   'posewright/simulation/1': simulationPage,
+  'posewright/next/1': nextPage,
   'posewright/stations/1': stationsPage,
 };
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <initializer_list>
+#include <optional>
+#include <thread>
 
 #include "command.hpp"
 #include "posewright/tasks/report_problem.hpp"
@@ -21,6 +24,7 @@ po::options_description report_command_options() {
       ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")                    //
       ("problem", text("FILE"), "problem file (the one the plan names)")                                      //
       ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates, moved poses")  //
+      ("watch", "of a result: write the page anew whenever the file changes; the open page follows")          //
       ("force", "replace files that posewright did not write")                                                //
       ("time-limit", text("S"), "begin no other number of poses after S seconds");
   options.add(problem_options());
@@ -80,7 +84,7 @@ void refuse_options(const po::variables_map& values, std::initializer_list<const
 
 int report_plans(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
                  const Words& files) {
-  refuse_options(values, {"route", "brief", "time-limit"}, "two plans");
+  refuse_options(values, {"route", "brief", "time-limit", "watch"}, "two plans");
   std::vector<std::filesystem::path> inputs;
   std::vector<GivenPlan> plans;
   TwoPlansReport report;
@@ -107,14 +111,60 @@ int report_plans(const po::variables_map& values, const CommonOptions& common, c
   return done;
 }
 
+/// Reads the file until it is a result again: whoever writes it may be in the middle of it.
+std::optional<ResultReport> changed_result(const std::filesystem::path& file, std::string& seen) {
+  try {
+    ResultReport report = report_result(file);
+    if (report.result_json == seen) return std::nullopt;
+    seen = report.result_json;
+    return report;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Writes the page at every change of the result until it says that nothing more comes, or a signal. The last page
+/// stands still.
+int follow_result(const CommonOptions& common, const std::filesystem::path& page, const std::filesystem::path& file) {
+  constexpr auto pause = std::chrono::milliseconds(200);
+  constexpr double refresh = 2.0;
+  ResultReport report = report_result(file);
+  std::string seen = report.result_json;
+  const Watch watch(common, 0);
+  const auto write = [&](bool more) {
+    report.refresh = more ? refresh : 0.0;
+    write_results({{page, report_html(report)}});
+  };
+  write(!report.ended);
+  if (!common.quiet) print_notes({"open " + page.string() + "; it follows " + file.string() + " (Ctrl-C ends)"});
+  while (!report.ended && !watch.monitor().should_stop()) {
+    std::this_thread::sleep_for(pause);
+    std::optional<ResultReport> changed = changed_result(file, seen);
+    if (!changed) continue;
+    report = std::move(*changed);
+    write(!report.ended);
+  }
+  if (!report.ended) write(false);
+  fmt::print("{}", written_text({page}));
+  return watch.was_interrupted() ? interrupted : done;
+}
+
 int run_report(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path page = output_file(values, "output", "report.html");
   if (positional.size() == 2) return report_plans(values, common, page, positional);
   const std::filesystem::path file = single(positional, "PLAN or RESULT");
-  if (is_plan(file)) return report_plan(values, common, page, file);
+  const bool watch = values.count("watch") > 0;
+  if (is_plan(file)) {
+    if (watch) throw InputError({}, "--watch does not go with a plan", "it goes with one RESULT");
+    return report_plan(values, common, page, file);
+  }
   refuse_options(values, {"route", "problem", "brief", "time-limit", "package", "parameters"}, "a result");
   check_output_files(values, {page}, {file});
+  if (watch) {
+    if (page.empty() || common.json) throw InputError({}, "--watch writes a page", "-o FILE without --json");
+    return follow_result(common, page, file);
+  }
   hand_out(report_result(file), common, page, {});
   return done;
 }
@@ -124,7 +174,7 @@ int run_report(const po::variables_map& values, const Words& positional) {
 Command report_command() {
   return {"report",
           "FILE [PLAN]",
-          "Writes a page to look at: of a plan, of two plans, of a result of calibrate, compare, simulate or stations.",
+          "Writes a page to look at: of a plan, of two plans, of a result of calibrate, compare, next, simulate, stations.",
           report_command_options,
           "posewright report plan.json --route route.json -o report.html",
           run_report};

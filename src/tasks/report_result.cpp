@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* plan_schema = "posewright/plan/1";
-constexpr const char* allowed = "plan.json, or what calibrate, compare, simulate or stations prints with --json";
+constexpr const char* allowed = "plan.json, or what calibrate, compare, next, simulate or stations prints with --json";
 
 /// A result with a page: its schema, the command that writes it, and what its page cannot do without.
 struct Kind {
@@ -36,6 +36,10 @@ const std::vector<Kind>& kinds() {
       {"posewright/simulation/1",
        "simulate",
        {"problem", "variant", "truth", "plan", "draws", "options", "parameters", "histogram", "chi_square", "verdict"}},
+      {"posewright/next/1",
+       "next",
+       {"problem", "variant", "verdict", "stop", "reason", "measured", "parameters", "places", "required", "confidence",
+        "curve", "ahead", "poses", "candidates"}},
       {"posewright/stations/1", "stations", {"problem", "base", "obstacles", "ranking"}}};
   return all;
 }
@@ -95,6 +99,7 @@ ResultReport report_result(const std::filesystem::path& file) {
     refuse(file, "names no problem file", "problem: {file: …}");
   report.title = title_of(problem["file"].get<std::string>());
   report.file = file.string();
+  report.ended = json.contains("stop") && json["stop"].is_boolean() && json["stop"].get<bool>();
   return report;
 }
 

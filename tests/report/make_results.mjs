@@ -35,7 +35,8 @@ export function makeResults(program, out) {
   save('calibrations', 'calibrate', kr270, 'measured.csv', '--variant', 'geometric,automatic', '--hold-back', '4');
   save('comparison', 'compare', telescope, '--variant', 'rigid,matrix', '--truth', 'matrix', '--restarts', '1', '--candidates', '150');
   save('stations', 'stations', withPlaces(folder), '--poses', '16', '--candidates', '150', '--restarts', '1', '--full', '2');
-  const made = ['calibration', 'calibrations', 'simulation', 'comparison', 'stations'].map((name) => ({ name, words: [`${name}.json`] }));
+  writeFileSync(join(folder, 'next.json'), readFileSync(new URL('next.json', import.meta.url)));
+  const made = ['calibration', 'calibrations', 'simulation', 'comparison', 'stations', 'next'].map((name) => ({ name, words: [`${name}.json`] }));
   return [...made, { name: 'two_plans', words: ['a.json', 'b.json'] }].map(({ name, words }) => {
     const page = join(folder, `${name}.html`);
     const data = JSON.parse(run('report', ...words, '-o', page, '--force', '--quiet', '--json'));

@@ -154,6 +154,26 @@ export async function checkStations(page, { data }) {
   check(named.includes('table') && named.includes('robot'), 'obstacle and robot are on the map', named);
 }
 
+export async function checkNext(page, { data }) {
+  const n = data.result;
+  const [poses, expected, bound, ahead] = await plotted(page, 'plot-next');
+  for (const p of n.curve.filter((q) => q.expected !== null)) {
+    near(expected[poses.indexOf(p.poses)], mm * p.expected, 1e-12, `expected after ${p.poses} poses`);
+    near(bound[poses.indexOf(p.poses)], mm * p.upper, 1e-12, `bound after ${p.poses} poses`);
+  }
+  for (const p of n.ahead) near(ahead[poses.indexOf(p.poses)], mm * p.expected, 1e-12, `what is to come with ${p.poses} poses`);
+  check(expected[poses.indexOf(n.ahead[0].poses)] === null, 'what is not measured yet is drawn as that');
+  const level = (await plotted(page, 'plot-next')).at(-1);
+  check(level.every((v) => Math.abs(v - mm * n.required) < 1e-12), 'the required error is a level');
+  const rows = await rowsOf(page, 'Next poses');
+  n.poses.forEach((p, k) => {
+    check(rows[k][0] === String(p.id), `pose ${p.id} is in its place`);
+    p.configuration.forEach((v, j) => check(Math.abs(read(rows[k][j + 1]) - (v * 180) / Math.PI) <= 5.01e-4, `${p.names[j]} of pose ${p.id}`, rows[k][j + 1]));
+  });
+  check((await page.locator('#progress .lead').textContent()) === n.reason, 'the reason is the file’s');
+  check((await page.locator('.tile').first().locator('b').textContent()) === (n.stop ? 'stop' : 'go on'), 'the verdict comes first');
+}
+
 export async function checkTwoPlans(page, { data, files }) {
   const [a, b] = ['a', 'b'].map((name) => JSON.parse(readFileSync(join(files.folder, `${name}.json`), 'utf8')));
   const interest = a.parameters.filter((p) => p.identifiable && p.role === 'interest').length;

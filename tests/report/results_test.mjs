@@ -25,6 +25,7 @@ const own = {
   simulation: checks.checkSimulation,
   comparison: checks.checkComparison,
   stations: checks.checkStations,
+  next: checks.checkNext,
   two_plans: checks.checkTwoPlans,
 };
 

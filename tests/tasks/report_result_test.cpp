@@ -96,7 +96,7 @@ TEST(ReportResult, RefusesEverythingElseInOneLine) {
     }
     return std::string("accepted");
   };
-  const std::string known = "plan.json, or what calibrate, compare, simulate or stations prints with --json";
+  const std::string known = "plan.json, or what calibrate, compare, next, simulate or stations prints with --json";
   EXPECT_THAT(refused("pose,joint_a1 [rad]\n1,0\n"), HasSubstr("is no JSON; " + known));
   EXPECT_THAT(refused("[1, 2]"), HasSubstr("is no result of posewright; " + known));
   EXPECT_THAT(refused("{\"schema\": 3}"), HasSubstr("is no result of posewright"));

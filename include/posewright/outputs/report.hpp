@@ -142,6 +142,7 @@ struct ResultReport {
   std::string title;        ///< the robot
   std::string file;         ///< where the result was read from
   std::string result_json;  ///< as the file is
+  bool ended = false;       ///< the result itself says that nothing more comes
   double refresh = 0.0;     ///< s after which the page reads itself again; 0: never
 };
 

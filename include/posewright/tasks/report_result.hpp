@@ -11,7 +11,7 @@ namespace posewright {
 /// that nor a result with a page of its own.
 bool is_plan(const std::filesystem::path& file);
 
-/// The page of a result as calibrate, compare, simulate and stations print it with --json: nothing is computed again.
+/// The page of a result as calibrate, compare, next, simulate and stations print it with --json: nothing is computed again.
 /// Throws InputError for a file that is none, or lacks what its page shows.
 ResultReport report_result(const std::filesystem::path& file);
 

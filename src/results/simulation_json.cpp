@@ -68,12 +68,9 @@ Json distances_json(const std::vector<double>& distances) {
 
 Json accuracy_json(const Simulation& s) {
   if (!s.accuracy) return nullptr;
-  return {{"places", s.accuracy->places},
-          {"of", s.accuracy->test_poses ? "test_poses" : "validation"},
-          {"predicted", s.accuracy->predicted},
-          {"observed", s.accuracy->observed},
-          {"largest", s.accuracy->largest},
-          {"histogram", distances_json(s.summary.distances)}};
+  return {{"places", s.accuracy->places},       {"of", s.accuracy->test_poses ? "test_poses" : "validation"},
+          {"predicted", s.accuracy->predicted}, {"observed", s.accuracy->observed},
+          {"largest", s.accuracy->largest},     {"histogram", distances_json(s.summary.distances)}};
 }
 
 Json chi_square_json(const ExperimentSummary& summary) {

@@ -41,12 +41,8 @@ void fill_poses(const CalibratedPoses& poses, const Residuals& before, const Res
       predicted_errors(poses.model, poses.columns, poses.held_back, result.fit);
   const std::vector<PoseError> observed = observed_errors(poses.model, beyond);
   for (std::size_t k = 0; k < poses.held_back.size(); ++k)
-    result.pose_residuals.push_back({poses.held_back[k].id,
-                                     true,
-                                     listed(before[poses.fitted.size() + k]),
-                                     listed(beyond[k]),
-                                     1.0,
-                                     PoseAccuracy{predicted[k], observed[k]}});
+    result.pose_residuals.push_back({poses.held_back[k].id, true, listed(before[poses.fitted.size() + k]),
+                                     listed(beyond[k]), 1.0, PoseAccuracy{predicted[k], observed[k]}});
 }
 
 }  // namespace

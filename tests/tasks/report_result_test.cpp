@@ -1,5 +1,7 @@
 // Pages of results: what a file is told from what it says of itself, and the page holds it as it is.
 
+#include "posewright/tasks/report_result.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +17,6 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
-#include "posewright/tasks/report_result.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
@@ -33,8 +34,7 @@ json calibration_of_kr270(const TemporaryFolder& folder) {
   SimulateOptions simulate;
   simulate.validation = 2;
   simulate.experiment.draws = 2;
-  const Simulation made =
-      simulate_problem(problem, given_poses(problem, list_of(problem, 16)), simulate, Monitor{});
+  const Simulation made = simulate_problem(problem, given_poses(problem, list_of(problem, 16)), simulate, Monitor{});
   CalibrateOptions options;
   options.data = folder.write("measured.csv", made.first_readings);
   options.hold_back = 4;

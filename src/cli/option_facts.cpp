@@ -30,9 +30,9 @@ std::vector<std::string> names_of(const Registry& registry) {
 
 Expected expected_of(const std::string& value) {
   static const std::map<std::string, std::vector<std::string>> files = {
-      {"PROBLEM", {"yaml", "yml"}},   {"PLAN", {"json"}}, {"POSES", {"csv", "json"}},
-      {"BLOCKS", {"npy", "csv"}},     {"FILE", {"*"}},    {"FILE|DIR", {"*"}},
-      {"[PLAN...]", {"json", "csv"}},
+      {"PROBLEM", {"yaml", "yml"}},   {"PLAN", {"json"}},   {"POSES", {"csv", "json"}},
+      {"BLOCKS", {"npy", "csv"}},     {"FILE", {"*"}},      {"FILE|DIR", {"*"}},
+      {"[PLAN...]", {"json", "csv"}}, {"RESULT", {"json"}}, {"[PLAN]", {"json"}},
   };
   Expected expected;
   if (const auto found = files.find(value); found != files.end()) expected.suffixes = found->second;

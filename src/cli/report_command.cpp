@@ -174,7 +174,7 @@ int run_report(const po::variables_map& values, const Words& positional) {
 Command report_command() {
   return {
       "report",
-      "FILE [PLAN]",
+      "RESULT [PLAN]",
       "Writes a page to look at: of a plan, of two plans, of a result of calibrate, compare, next, simulate, stations.",
       report_command_options,
       "posewright report plan.json --route route.json -o report.html",

@@ -16,12 +16,8 @@ export function showPage({ kind, heading, title, sections, mark }, version) {
   document.title = title;
   const shown = sections.filter(([, element]) => element);
   // A long path may break after its slashes.
-  document
-    .getElementById('title')
-    .replaceChildren(...heading.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
-  document
-    .getElementById('contents')
-    .append(...shown.map(([name, element]) => h('a', { href: `#${element.id}` }, name)), mark ?? '');
+  document.getElementById('title').replaceChildren(...heading.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
+  document.getElementById('contents').append(...shown.map(([name, element]) => h('a', { href: `#${element.id}` }, name)), mark ?? '');
   document.getElementById('page').append(...shown.map(([, element]) => element));
   document.getElementById('version').textContent = `posewright ${version}`;
 }

@@ -15,7 +15,10 @@ function withPlaces(folder) {
   const text = readFileSync(join(root, 'examples/instruments/tracker_two_stations.yaml'), 'utf8')
     .replace('../kr270/kr270.urdf', join(root, 'examples/kr270/kr270.urdf'))
     .replace(', "station.B.*"', '')
-    .replace(/variants:/, 'workspace:\n  stations: {box: {x: [2.5, 4], y: [-2, 2], z: 1, points: [2, 2, 1]}}\n  collision: {obstacles: [{name: table, box: [0.8, 0.5, 0.6], at: [1.5, 1, -0.5]}]}\nvariants:');
+    .replace(
+      /variants:/,
+      'workspace:\n  stations: {box: {x: [2.5, 4], y: [-2, 2], z: 1, points: [2, 2, 1]}}\n  collision: {obstacles: [{name: table, box: [0.8, 0.5, 0.6], at: [1.5, 1, -0.5]}]}\nvariants:',
+    );
   const file = join(folder, 'problem.yaml');
   writeFileSync(file, text);
   return file;
@@ -36,7 +39,10 @@ export function makeResults(program, out) {
   save('comparison', 'compare', telescope, '--variant', 'rigid,matrix', '--truth', 'matrix', '--restarts', '1', '--candidates', '150');
   save('stations', 'stations', withPlaces(folder), '--poses', '16', '--candidates', '150', '--restarts', '1', '--full', '2');
   writeFileSync(join(folder, 'next.json'), readFileSync(new URL('next.json', import.meta.url)));
-  const made = ['calibration', 'calibrations', 'simulation', 'comparison', 'stations', 'next'].map((name) => ({ name, words: [`${name}.json`] }));
+  const made = ['calibration', 'calibrations', 'simulation', 'comparison', 'stations', 'next'].map((name) => ({
+    name,
+    words: [`${name}.json`],
+  }));
   return [...made, { name: 'two_plans', words: ['a.json', 'b.json'] }].map(({ name, words }) => {
     const page = join(folder, `${name}.html`);
     const data = JSON.parse(run('report', ...words, '-o', page, '--force', '--quiet', '--json'));

@@ -21,6 +21,10 @@ export async function checkRefresh(browser, c) {
   check(Math.abs((await page.evaluate(() => scrollY)) - before) <= 1, 'it shows the new file where the reader was', before);
   check(await page.locator('#tests details').evaluate((details) => details.open), 'what they had opened is open');
   await page.waitForTimeout(1500);
-  check((await page.evaluate(() => performance.getEntriesByType('navigation')[0].type)) === 'reload' && complaints.length === 0, 'no complaint', complaints.join(' | '));
+  check(
+    (await page.evaluate(() => performance.getEntriesByType('navigation')[0].type)) === 'reload' && complaints.length === 0,
+    'no complaint',
+    complaints.join(' | '),
+  );
   await page.close();
 }

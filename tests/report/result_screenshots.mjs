@@ -37,7 +37,19 @@ run('plan', kr270, '--poses', '24', ...quick, '-o', 'b.json');
 save('simulation', 'simulate', kr270, 'a.json', '--draws', '1000', '--data', 'measured.csv', '--force');
 const [problem, data] = readings();
 save('calibration', 'calibrate', problem, data, '--hold-back', '4');
-save('comparison', 'compare', example('telescope/problem.yaml'), '--variant', 'rigid,linear,matrix', '--truth', 'matrix', '--candidates', '400', '--restarts', '1');
+save(
+  'comparison',
+  'compare',
+  example('telescope/problem.yaml'),
+  '--variant',
+  'rigid,linear,matrix',
+  '--truth',
+  'matrix',
+  '--candidates',
+  '400',
+  '--restarts',
+  '1',
+);
 save('stations', 'stations', example('cell/problem.yaml'), '--poses', '14', '--candidates', '300', '--restarts', '1', '--full', '3');
 
 copyFileSync(join(root, 'tests/report/next.json'), join(folder, 'next.json'));

@@ -2,83 +2,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { check, near } from './checks.mjs';
-
-/** A number as the pages write it. @param {string} text */
-export const read = (text) => Number.parseFloat(text.replace(/−/g, '-').replace(/ · 10\^/, 'e').replace(/,/g, '').replace(/^[^\d-]*/, ''));
-
-/** Rows of a table by its label, as texts. @param {any} page @param {string} label */
-const rowsOf = (page, label) =>
-  page
-    .locator(`[aria-label="${label}"] tbody tr`)
-    .evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
-
-/** @param {any} page @param {string} id @returns {Promise<number[][]>} */
-const plotted = (page, id) => page.locator(`#${id}`).evaluate((f) => f.plot.data.map((s) => [...s]));
-
-const mm = 1e3;
-const rms = (list) => Math.sqrt(list.reduce((sum, v) => sum + v * v, 0) / list.length);
-
-/** Distances of the targets P1, P2, P3 at a pose. @param {number[]} r residuals */
-const distances = (r) => [0, 3, 6].map((k) => Math.sqrt(r[k] ** 2 + r[k + 1] ** 2 + r[k + 2] ** 2));
-
-export async function checkCalibration(page, { data }) {
-  const c = data.result;
-  // RMS by axis from the readings of the poses, not from the sums that the program states.
-  const rows = await rowsOf(page, 'Errors by axis');
-  for (const [axis, offset] of [['x', 0], ['y', 1], ['z', 2]])
-    for (const held of [false, true]) {
-      const of = (key) => rms(c.poses.filter((p) => p.held_back === held).flatMap((p) => [0, 3, 6].map((k) => p[key][k + offset])));
-      const row = rows.find((r) => r[0] === axis && r[1] === (held ? 'held back' : 'fitted'));
-      near(read(row[2]), mm * of('before'), 2e-3, `${axis} before, ${row[1]}`);
-      near(read(row[3]), mm * of('residuals'), 2e-3, `${axis} after, ${row[1]}`);
-    }
-  const [, before, fitted, heldBack] = await plotted(page, 'plot-per-pose-m');
-  check(before.length === c.poses.length, 'one dot a pose before', before.length);
-  c.poses.forEach((p, k) => {
-    near(before[k], mm * rms(distances(p.before)), 1e-9, `error before at pose ${p.id}`);
-    near((p.held_back ? heldBack : fitted)[k], mm * rms(distances(p.residuals)), 1e-9, `error after at pose ${p.id}`);
-    check((p.held_back ? fitted : heldBack)[k] === null, `pose ${p.id} is drawn once`);
-  });
-  const [, along] = await plotted(page, 'plot-along-z-m');
-  check(along.filter((v) => v !== null).length === 3 * c.poses_fitted, 'one dot a target and fitted pose along z', along.length);
-  const [, counts, expected] = await plotted(page, 'plot-histogram');
-  check(counts.join() === c.histogram.counts.join(), 'the histogram is the file’s');
-  const all = c.poses.filter((p) => !p.held_back).flatMap((p) => p.residuals).length;
-  near(counts.reduce((a, b) => a + b), all, 1e-12, 'it holds every fitted residual');
-  near(expected.reduce((a, b) => a + b), all, 1e-6, 'normal noise would give as many');
-  // 68.27 % of normal numbers are within one σ, bins 7 to 10 (tables).
-  near(expected.slice(7, 11).reduce((a, b) => a + b) / all, 0.682689, 1e-5, 'of which 68.27 % within 1 σ');
-  await checkParameters(page, c);
-  const tile = page.locator('.tile', { hasText: 'poses not fitted' });
-  near(read(await tile.locator('b').textContent()), mm * rms(c.poses.filter((p) => p.held_back).flatMap((p) => distances(p.residuals))), 6e-3, 'the tile of poses held back');
-  const effects = await rowsOf(page, 'Effects that are not fitted');
-  effects.forEach((row, k) => near(read(row[1]), 100 * c.effects_left_out[k].share, 6e-2, `share of ${row[0]}`));
-}
-
-async function checkParameters(page, c) {
-  const estimated = c.parameters.filter((p) => p.estimated);
-  const rows = page.locator('.calibrated tbody tr');
-  check((await rows.count()) === estimated.length, 'one row a parameter that was estimated', await rows.count());
-  for (const p of estimated) {
-    const factor = { m: 1e3, rad: 180 / Math.PI }[p.unit];
-    const cells = await page.locator(`.calibrated tr[data-name="${p.name}"] td`).allTextContents();
-    check(Math.abs(read(cells[1]) - factor * p.value) <= 0.06 * factor * p.sigma, `value of ${p.name}`, cells[1]);
-    near(read(cells[3]), factor * p.sigma, 6e-2, `σ of ${p.name}`);
-    if (p.interval) check(cells[4].includes(' to ') && Math.abs(read(cells[4]) - factor * p.interval[0]) <= 0.06 * factor * p.sigma, `interval of ${p.name}`, cells[4]);
-  }
-}
-
-export async function checkCalibrations(page, { data }) {
-  const all = data.result;
-  const rows = await rowsOf(page, 'Models');
-  check(rows.map((r) => r[0]).join() === all.models.map((c) => c.variant).join(), 'all models are in the table', rows.length);
-  all.models.forEach((c, k) => near(read(rows[k][2]), Math.sqrt(c.chi_square / c.freedom), 6e-3, `residuals over noise of ${c.variant}`));
-  const count = async () => page.locator('.calibrated tbody tr').count();
-  for (const c of all.models) {
-    await page.getByLabel('Model', { exact: true }).selectOption(c.variant);
-    check((await count()) === c.parameters.filter((p) => p.estimated).length, `the parameters of ${c.variant} are shown when it is chosen`);
-  }
-}
+import { mm, plotted, read, rowsOf } from './shown.mjs';
 
 export async function checkSimulation(page, { data }) {
   const s = data.result;
@@ -89,16 +13,26 @@ export async function checkSimulation(page, { data }) {
     // What lies within ±1.96 σ is at least what is within ±1.5, and at most what is within ±2: bins 6 to 11, 5 to 12.
     const within = (from, to) => p.histogram.slice(from, to).reduce((a, b) => a + b);
     check(p.histogram.reduce((a, b) => a + b) === s.draws.fitted, `every draw of ${p.name} is in its histogram`);
-    check(within(6, 12) <= p.coverage * s.draws.fitted + 1e-9 && p.coverage * s.draws.fitted <= within(5, 13) + 1e-9, `the histogram of ${p.name} goes with its coverage`);
+    check(
+      within(6, 12) <= p.coverage * s.draws.fitted + 1e-9 && p.coverage * s.draws.fitted <= within(5, 13) + 1e-9,
+      `the histogram of ${p.name} goes with its coverage`,
+    );
   });
   const [, covered] = await plotted(page, 'plot-coverage');
-  check(covered.every((v, k) => v === 100 * s.parameters[k].coverage), 'coverage is drawn');
+  check(
+    covered.every((v, k) => v === 100 * s.parameters[k].coverage),
+    'coverage is drawn',
+  );
   const [, pooled] = await plotted(page, 'plot-errors-all');
   check(pooled.reduce((a, b) => a + b) === s.draws.fitted * s.parameters.length, 'the histogram of all holds every error');
   const [centres, draws] = await plotted(page, 'plot-distances');
   check(draws.reduce((a, b) => a + b) === s.draws.fitted, 'one entry a draw');
   const spread = Math.sqrt(centres.reduce((sum, x, k) => sum + draws[k] * x * x, 0) / s.draws.fitted);
-  check(Math.abs(spread - mm * s.accuracy.observed) < mm * s.accuracy.histogram.bin_width, 'its root mean square is the observed error within a bin', spread);
+  check(
+    Math.abs(spread - mm * s.accuracy.observed) < mm * s.accuracy.histogram.bin_width,
+    'its root mean square is the observed error within a bin',
+    spread,
+  );
 }
 
 export async function checkComparison(page, { data }) {
@@ -109,7 +43,11 @@ export async function checkComparison(page, { data }) {
     c.variants.forEach((v, k) => {
       const score = c.scores.find((s) => s.plan === plan.name && s.variant === v.name);
       const shown = read(cells[r][k + 1]);
-      check(shown <= 100 * score.efficiency && 100 * score.efficiency - shown < 0.01, `efficiency of ${plan.name} for ${v.name}, rounded down`, shown);
+      check(
+        shown <= 100 * score.efficiency && 100 * score.efficiency - shown < 0.01,
+        `efficiency of ${plan.name} for ${v.name}, rounded down`,
+        shown,
+      );
     });
   });
   const rows = await rowsOf(page, 'Accuracy');
@@ -123,9 +61,18 @@ export async function checkComparison(page, { data }) {
   });
   const [times, first] = await plotted(page, 'plot-reliance-0');
   const { reliance } = c.scores.find((s) => s.variant === c.variants[0].name);
-  times.forEach((t, k) => near(first[k], mm * (t === 0 ? reliance.error : reliance.with.find((w) => w.times === t).error), 1e-12, `error with an effect of ${t} times the noise`));
+  times.forEach((t, k) =>
+    near(
+      first[k],
+      mm * (t === 0 ? reliance.error : reliance.with.find((w) => w.times === t).error),
+      1e-12,
+      `error with an effect of ${t} times the noise`,
+    ),
+  );
   const [title] = await page.locator('.bias summary').allTextContents();
-  const worst = Math.max(...c.aliases.flatMap((a) => a.parameters.map((p) => Math.max(Math.abs(p.bias_by_nominal), Math.abs(p.bias_by_tolerance)) / p.sigma)));
+  const worst = Math.max(
+    ...c.aliases.flatMap((a) => a.parameters.map((p) => Math.max(Math.abs(p.bias_by_nominal), Math.abs(p.bias_by_tolerance)) / p.sigma)),
+  );
   near(read(title.match(/most, ([\d.]+) σ/)[1]), worst, 6e-3, 'the largest bias comes first');
 }
 
@@ -139,7 +86,11 @@ export async function checkStations(page, { data }) {
     near(read(rows[k][6]), Math.exp((best - r.phi) / (2 * r.parameters)), 6e-4, `σ from ${rows[k][1]}`);
     if (r.sigma_ratio !== null) near(read(rows[k][6]), r.sigma_ratio, 6e-4, `σ from ${rows[k][1]}, as the program says`);
   });
-  const marks = await page.locator('.map circle.place').evaluateAll((all) => all.map((e) => ({ name: e.dataset.name, x: e.cx.baseVal.value, y: e.cy.baseVal.value, share: Number(e.dataset.share) })));
+  const marks = await page
+    .locator('.map circle.place')
+    .evaluateAll((all) =>
+      all.map((e) => ({ name: e.dataset.name, x: e.cx.baseVal.value, y: e.cy.baseVal.value, share: Number(e.dataset.share) })),
+    );
   check(marks.length === s.ranking.length, 'every place is on the map', marks.length);
   const at = (name) => s.ranking.find((r) => r.stations[name]).stations[name].position;
   const [a, b] = [marks[0], marks.find((m) => at(m.name)[0] !== at(marks[0].name)[0])];
@@ -164,11 +115,16 @@ export async function checkNext(page, { data }) {
   for (const p of n.ahead) near(ahead[poses.indexOf(p.poses)], mm * p.expected, 1e-12, `what is to come with ${p.poses} poses`);
   check(expected[poses.indexOf(n.ahead[0].poses)] === null, 'what is not measured yet is drawn as that');
   const level = (await plotted(page, 'plot-next')).at(-1);
-  check(level.every((v) => Math.abs(v - mm * n.required) < 1e-12), 'the required error is a level');
+  check(
+    level.every((v) => Math.abs(v - mm * n.required) < 1e-12),
+    'the required error is a level',
+  );
   const rows = await rowsOf(page, 'Next poses');
   n.poses.forEach((p, k) => {
     check(rows[k][0] === String(p.id), `pose ${p.id} is in its place`);
-    p.configuration.forEach((v, j) => check(Math.abs(read(rows[k][j + 1]) - (v * 180) / Math.PI) <= 5.01e-4, `${p.names[j]} of pose ${p.id}`, rows[k][j + 1]));
+    p.configuration.forEach((v, j) =>
+      check(Math.abs(read(rows[k][j + 1]) - (v * 180) / Math.PI) <= 5.01e-4, `${p.names[j]} of pose ${p.id}`, rows[k][j + 1]),
+    );
   });
   check((await page.locator('#progress .lead').textContent()) === n.reason, 'the reason is the file’s');
   check((await page.locator('.tile').first().locator('b').textContent()) === (n.stop ? 'stop' : 'go on'), 'the verdict comes first');
@@ -178,13 +134,27 @@ export async function checkTwoPlans(page, { data, files }) {
   const [a, b] = ['a', 'b'].map((name) => JSON.parse(readFileSync(join(files.folder, `${name}.json`), 'utf8')));
   const interest = a.parameters.filter((p) => p.identifiable && p.role === 'interest').length;
   const tile = page.locator('.tile', { hasText: 'information of B' }).locator('b');
-  near(read(await tile.textContent()), 100 * Math.exp((b.criterion.log_det - a.criterion.log_det) / interest), 1e-3, 'efficiency of B by the log det of both files');
+  near(
+    read(await tile.textContent()),
+    100 * Math.exp((b.criterion.log_det - a.criterion.log_det) / interest),
+    1e-3,
+    'efficiency of B by the log det of both files',
+  );
   // Lines of the lists of poses that are the same text but for their number.
-  const lines = (name) => readFileSync(join(files.folder, `${name}.csv`), 'utf8').trim().split('\n').slice(1).map((l) => l.replace(/^\d+,/, ''));
+  const lines = (name) =>
+    readFileSync(join(files.folder, `${name}.csv`), 'utf8')
+      .trim()
+      .split('\n')
+      .slice(1)
+      .map((l) => l.replace(/^\d+,/, ''));
   const other = new Set(lines('b'));
   const common = lines('a').filter((l) => other.has(l)).length;
   check(common > 0, 'the plans have poses in common', common);
-  check((await page.locator('.tile', { hasText: 'in common' }).locator('small').textContent()).includes(`${common} in common`), 'as many as the lists of poses have', common);
+  check(
+    (await page.locator('.tile', { hasText: 'in common' }).locator('small').textContent()).includes(`${common} in common`),
+    'as many as the lists of poses have',
+    common,
+  );
   check((await page.locator('.viewer').count()) === 2, 'both are drawn');
   const [, p, q] = await plotted(page, 'plot-two-sigma');
   const kept = a.parameters.filter((x) => x.identifiable);
@@ -197,6 +167,9 @@ export async function checkTwoPlans(page, { data, files }) {
   await page.locator('.common').evaluate((details) => (details.open = true));
   const place = a.poses.findIndex((x) => x.id === Number(idA));
   await page.getByRole('slider', { name: 'Place in the measuring order' }).first().fill(String(place));
-  check((await stop(0)).includes(`pose ${idA}`) && (await stop(1)).includes(`pose ${idB}`), 'a pose of both is shown in both pictures', [await stop(0), await stop(1)]);
+  check((await stop(0)).includes(`pose ${idA}`) && (await stop(1)).includes(`pose ${idB}`), 'a pose of both is shown in both pictures', [
+    await stop(0),
+    await stop(1),
+  ]);
   check(data.plans.length === 2 && data.files.join() === 'a.json,b.json', 'the page holds both plans');
 }

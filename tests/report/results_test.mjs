@@ -6,6 +6,7 @@ import { about, check, verdict } from './checks.mjs';
 import { makeResults } from './make_results.mjs';
 import { checkLeftovers, overflow } from './reading_checks.mjs';
 import { checkRefresh } from './refresh_checks.mjs';
+import { checkCalibration, checkCalibrations } from './calibration_checks.mjs';
 import * as checks from './results_checks.mjs';
 
 const { values } = parseArgs({ options: { program: { type: 'string' }, out: { type: 'string' } } });
@@ -20,8 +21,8 @@ if (lacking) {
 }
 
 const own = {
-  calibration: checks.checkCalibration,
-  calibrations: checks.checkCalibrations,
+  calibration: checkCalibration,
+  calibrations: checkCalibrations,
   simulation: checks.checkSimulation,
   comparison: checks.checkComparison,
   stations: checks.checkStations,
@@ -51,6 +52,9 @@ async function checkPage(browser, c) {
 const cases = makeResults(values.program, values.out);
 const browser = await launch({ webgl: false });
 for (const c of cases) await checkPage(browser, c);
-await checkRefresh(browser, cases.find((c) => c.name === 'calibration'));
+await checkRefresh(
+  browser,
+  cases.find((c) => c.name === 'calibration'),
+);
 await browser.close();
 process.exitCode = verdict();

@@ -25,7 +25,12 @@ export function inCommon(a, b) {
 
 /** Why the information of two reports cannot be held against each other; empty: it can. */
 export function whyNotComparable(a, b) {
-  const names = ({ columns }, role) => columns.filter((c) => c.role === role).map((c) => c.name).sort().join('\n');
+  const names = ({ columns }, role) =>
+    columns
+      .filter((c) => c.role === role)
+      .map((c) => c.name)
+      .sort()
+      .join('\n');
   if (names(a, 'interest') !== names(b, 'interest')) return 'they identify different parameters';
   return names(a, 'nuisance') === names(b, 'nuisance') ? '' : 'they estimate different nuisance parameters';
 }

@@ -59,7 +59,11 @@ function tiles(c) {
     tile(String(estimated.length - nuisance), 'parameters', nuisance > 0 ? `and ${nuisance} estimated along with them` : 'estimated'),
     errorTile(c, 'fitted'),
     errorTile(c, 'held back'),
-    tile(`${number(c.noise_scale, 3)} ×`, 'the stated noise', c.tests.chi_square ? `residuals; p = ${chance(c.tests.chi_square.probability)}` : 'residuals'),
+    tile(
+      `${number(c.noise_scale, 3)} ×`,
+      'the stated noise',
+      c.tests.chi_square ? `residuals; p = ${chance(c.tests.chi_square.probability)}` : 'residuals',
+    ),
   ];
 }
 

@@ -23,8 +23,16 @@ function choiceSection(all) {
     'choice',
     'Which model?',
     all.recommended ? `Recommended: ${all.recommended}, which ${all.why}.` : `No model is recommended: ${all.why}.`,
-    table(['model', '#parameters', '#residuals / noise', '#left out / noise', '#with base and tool alone', '#AICc', 'F', '#p'], rows, 'Models'),
-    h('p', { class: 'note' }, 'Left out: each pose predicted from the others, in units of the stated noise. A model that fits better and predicts worse describes the noise.'),
+    table(
+      ['model', '#parameters', '#residuals / noise', '#left out / noise', '#with base and tool alone', '#AICc', 'F', '#p'],
+      rows,
+      'Models',
+    ),
+    h(
+      'p',
+      { class: 'note' },
+      'Left out: each pose predicted from the others, in units of the stated noise. A model that fits better and predicts worse describes the noise.',
+    ),
     besideEachOther(all),
   );
 }
@@ -37,7 +45,13 @@ function besideEachOther(all) {
       ? []
       : all.models
           .filter((c) => c.axes[k])
-          .map((c) => [c.axes[k].axis, c.variant, quantity(c.axes[k].before.rms, axis.unit), quantity(c.axes[k].after.rms, axis.unit), quantity(c.axes[k].after.largest, axis.unit)]),
+          .map((c) => [
+            c.axes[k].axis,
+            c.variant,
+            quantity(c.axes[k].before.rms, axis.unit),
+            quantity(c.axes[k].after.rms, axis.unit),
+            quantity(c.axes[k].after.largest, axis.unit),
+          ]),
   );
   if (rows.length === 0) return null;
   return h(
@@ -52,7 +66,11 @@ function besideEachOther(all) {
 export function calibrationsPage(all, report) {
   const start = all.recommended ?? all.models[0].variant;
   const holder = h('div', { id: 'model' });
-  const select = h('select', { 'aria-label': 'Model', onchange: () => show(select.value) }, all.models.map((c) => h('option', { value: c.variant, selected: c.variant === start }, c.variant)));
+  const select = h(
+    'select',
+    { 'aria-label': 'Model', onchange: () => show(select.value) },
+    all.models.map((c) => h('option', { value: c.variant, selected: c.variant === start }, c.variant)),
+  );
   const show = (variant) => {
     const parts = modelSections(all.models.find((c) => c.variant === variant));
     holder.replaceChildren(...parts.map(([, element]) => element).filter(Boolean));

@@ -17,7 +17,11 @@ function tiles(c) {
   const known = c.variants.filter((v) => !v.why_not);
   const pays = c.worth.filter((w) => w.worth === true);
   return [
-    tile(String(c.variants.length), 'variants', known.length < c.variants.length ? `${known.length} of them can be identified` : 'all can be identified'),
+    tile(
+      String(c.variants.length),
+      'variants',
+      known.length < c.variants.length ? `${known.length} of them can be identified` : 'all can be identified',
+    ),
     tile(String(c.plans.length), c.plans.length === 1 ? 'plan' : 'plans', `judged on ${plural(c.candidates, 'candidate')}`),
     worst ? tile(`≥ ${percentDown(worst.efficiency, 1)}`, 'least efficiency', `of ${worst.plan} for ${worst.variant}`) : null,
     c.worth.length > 0 ? tile(`${pays.length} of ${c.worth.length}`, 'larger models pay', 'if they are the case') : null,
@@ -29,7 +33,10 @@ function warnings(c) {
   const outside = c.scores.filter((s) => s.infeasible_poses > 0);
   return [
     ...c.variants.filter((v) => v.why_not).map((v) => `${v.name}: ${v.why_not}`),
-    ...outside.map((s) => `${s.plan}: ${plural(s.infeasible_poses, 'pose')} outside the workspace of ${s.variant} (${s.infeasible_because}); the figures hold for all poses.`),
+    ...outside.map(
+      (s) =>
+        `${s.plan}: ${plural(s.infeasible_poses, 'pose')} outside the workspace of ${s.variant} (${s.infeasible_because}); the figures hold for all poses.`,
+    ),
   ];
 }
 
@@ -46,15 +53,35 @@ function efficiencySection(c) {
     'efficiency',
     'What is a plan worth to the other variants?',
     'Plans down, variants across: at least this share of the information per parameter of the best plan that the candidates allow for that variant.',
-    shareTable(variants, c.plans.map((p) => p.name), cell, 'plan', 'Efficiency'),
-    h('p', { class: 'note' }, 'Proved. The diagonal is what the search reached; “no”: the poses do not determine the variant’s parameters. Colour: from 60 % (dark) to 100 %.'),
+    shareTable(
+      variants,
+      c.plans.map((p) => p.name),
+      cell,
+      'plan',
+      'Efficiency',
+    ),
+    h(
+      'p',
+      { class: 'note' },
+      'Proved. The diagonal is what the search reached; “no”: the poses do not determine the variant’s parameters. Colour: from 60 % (dark) to 100 %.',
+    ),
   );
 }
 
 /** @param {any} c */
 function accuracySection(c) {
   const withError = c.scores.some((s) => s.rho0 !== null);
-  const header = ['plan', 'variant', '#parameters', '#log det', '#largest σ/tolerance', 'of', '#mean σ/tolerance', '#condition', ...(withError ? ['#position error'] : [])];
+  const header = [
+    'plan',
+    'variant',
+    '#parameters',
+    '#log det',
+    '#largest σ/tolerance',
+    'of',
+    '#mean σ/tolerance',
+    '#condition',
+    ...(withError ? ['#position error'] : []),
+  ];
   const rows = c.scores.map((s) => {
     const v = c.variants.find((variant) => variant.name === s.variant);
     if (s.why_not) return [s.plan, s.variant, String(v.interest), s.why_not, '', '', '', '', ...(withError ? [''] : [])];
@@ -87,7 +114,11 @@ function worthSection(c) {
     'Do more parameters pay?',
     'If the larger variant is the case: the error with it by noise, against the error without its parameters, by noise and by the bias that leaving them out makes.',
     h('div', { class: 'plots' }, worthPlot(c)),
-    h('ul', { class: 'sentences' }, c.worth.map((w) => h('li', {}, `${w.text}.`))),
+    h(
+      'ul',
+      { class: 'sentences' },
+      c.worth.map((w) => h('li', {}, `${w.text}.`)),
+    ),
   );
 }
 

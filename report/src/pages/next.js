@@ -20,16 +20,27 @@ function tiles(n) {
   return [
     tile(verdicts[n.verdict], 'verdict', becauses[n.verdict]),
     tile(String(n.measured.poses), 'poses measured', plural(n.measured.readings, 'reading')),
-    tile(quantity(now.expected, 'm', 3), 'predicted error', now.upper === null || now.upper === undefined ? 'no bound yet' : `below ${quantity(now.upper, 'm', 3)} with ${100 * n.confidence} % confidence`),
-    n.required === null ? tile('–', 'nothing required', 'only a flat curve says stop') : tile(quantity(n.required, 'm', 3), 'required', 'of the bound'),
-    last && last.expected !== null ? tile(quantity(last.expected, 'm', 3), `after ${plural(last.poses, 'pose')}`, 'with the next poses below') : null,
+    tile(
+      quantity(now.expected, 'm', 3),
+      'predicted error',
+      now.upper === null || now.upper === undefined
+        ? 'no bound yet'
+        : `below ${quantity(now.upper, 'm', 3)} with ${100 * n.confidence} % confidence`,
+    ),
+    n.required === null
+      ? tile('–', 'nothing required', 'only a flat curve says stop')
+      : tile(quantity(n.required, 'm', 3), 'required', 'of the bound'),
+    last && last.expected !== null
+      ? tile(quantity(last.expected, 'm', 3), `after ${plural(last.poses, 'pose')}`, 'with the next poses below')
+      : null,
   ];
 }
 
 /** @param {any} n */
 function warnings(n) {
   return [
-    n.unmodelled && `The residuals hold a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the figures allow for it.`,
+    n.unmodelled &&
+      `The residuals hold a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the figures allow for it.`,
     n.interrupted && 'Stopped early.',
     ...(n.notes ?? []),
   ].filter(Boolean);
@@ -46,9 +57,22 @@ function posesSection(n) {
     ['of the list', (p) => p.listed && String(p.listed.id)],
     ...Object.keys(first.conditions ?? {}).map((name) => [name, (p) => p.conditions[name]]),
   ].filter(([, of]) => of(first));
-  const header = ['pose', ...extra.map(([title]) => title), ...first.names.map((name, k) => `#${name}${shown[k].name ? `, ${shown[k].name}` : ''}`)];
-  const rows = n.poses.map((p) => [String(p.id), ...extra.map(([, of]) => of(p)), ...p.configuration.map((v, k) => fixed(v * shown[k].factor, 3))]);
-  return section('poses', n.poses.length === 1 ? 'The next pose' : 'The next poses', `In this order, by criterion ${n.criterion} among ${n.candidates}.`, table(header, rows, 'Next poses'));
+  const header = [
+    'pose',
+    ...extra.map(([title]) => title),
+    ...first.names.map((name, k) => `#${name}${shown[k].name ? `, ${shown[k].name}` : ''}`),
+  ];
+  const rows = n.poses.map((p) => [
+    String(p.id),
+    ...extra.map(([, of]) => of(p)),
+    ...p.configuration.map((v, k) => fixed(v * shown[k].factor, 3)),
+  ]);
+  return section(
+    'poses',
+    n.poses.length === 1 ? 'The next pose' : 'The next poses',
+    `In this order, by criterion ${n.criterion} among ${n.candidates}.`,
+    table(header, rows, 'Next poses'),
+  );
 }
 
 /** @param {any} n */
@@ -59,7 +83,12 @@ function estimatesSection(n) {
     'parameters',
     'Parameters so far',
     `Estimated from what is measured; ${n.parameters.told} of ${n.parameters.count} are told by the readings alone. posewright calibrate judges them.`,
-    h('details', { class: 'printed' }, h('summary', {}, plural(n.estimates.length, 'parameter')), table(['parameter', '#value', '#σ'], rows, 'Parameters so far')),
+    h(
+      'details',
+      { class: 'printed' },
+      h('summary', {}, plural(n.estimates.length, 'parameter')),
+      table(['parameter', '#value', '#σ'], rows, 'Parameters so far'),
+    ),
   );
 }
 
@@ -83,7 +112,11 @@ export function nextPage(n, report) {
       ['Parameters', estimatesSection(n)],
       [
         'Repeat',
-        repeatSection([...commonFacts(n, report), ['readings', n.data]], [`posewright next ${shellFile(n.problem.file)} ${words.filter(Boolean).join(' ')}`], 'Options that are not in the result (--candidates, --no-prior) have to be given again.'),
+        repeatSection(
+          [...commonFacts(n, report), ['readings', n.data]],
+          [`posewright next ${shellFile(n.problem.file)} ${words.filter(Boolean).join(' ')}`],
+          'Options that are not in the result (--candidates, --no-prior) have to be given again.',
+        ),
       ],
     ],
   };

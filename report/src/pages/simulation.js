@@ -1,10 +1,7 @@
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
-import { choice } from '../plots/choice.js';
-import { coveragePlot, sigmaPlot } from '../plots/simulation.js';
-import { histogram } from '../plots/histogram.js';
-import { normalCounts } from '../numerics/normal.js';
+import { accuracyHistogram, coveragePlot, errorHistograms, sigmaPlot } from '../plots/simulation.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { number, percent, plural, quantity } from '../text/units.js';
 
@@ -18,15 +15,33 @@ function tiles(s) {
   const mean = (list) => list.reduce((sum, v) => sum + v, 0) / list.length;
   const { accuracy, chi_square: chi } = s;
   return [
-    tile(s.draws.fitted.toLocaleString('en'), 'virtual calibrations', `of ${plural(s.poses, 'pose')}, ${plural(s.readings, 'reading')} each`),
+    tile(
+      s.draws.fitted.toLocaleString('en'),
+      'virtual calibrations',
+      `of ${plural(s.poses, 'pose')}, ${plural(s.readings, 'reading')} each`,
+    ),
     known.length > 0
-      ? tile(`${number(Math.min(...ratios), 3)} to ${number(Math.max(...ratios), 3)}`, 'σ observed / predicted', `± ${number(s.sigma_error, 2)} by the number of draws`)
+      ? tile(
+          `${number(Math.min(...ratios), 3)} to ${number(Math.max(...ratios), 3)}`,
+          'σ observed / predicted',
+          `± ${number(s.sigma_error, 2)} by the number of draws`,
+        )
       : null,
     known.length > 0
-      ? tile(percent(mean(covered)), 'of the 95 % intervals', `hold the truth; ${percent(Math.min(...covered))} to ${percent(Math.max(...covered))} by parameter`)
+      ? tile(
+          percent(mean(covered)),
+          'of the 95 % intervals',
+          `hold the truth; ${percent(Math.min(...covered))} to ${percent(Math.max(...covered))} by parameter`,
+        )
       : null,
     accuracy ? tile(quantity(accuracy.observed, 'm', 3), 'position error', `${quantity(accuracy.predicted, 'm', 3)} was predicted`) : null,
-    chi.rejected === null ? null : tile(percent(chi.rejected), 'refused by the χ² test', s.truth === s.variant ? 'of the draws; 5 % is right' : 'of the draws: its power'),
+    chi.rejected === null
+      ? null
+      : tile(
+          percent(chi.rejected),
+          'refused by the χ² test',
+          s.truth === s.variant ? 'of the draws; 5 % is right' : 'of the draws: its power',
+        ),
   ];
 }
 
@@ -43,7 +58,9 @@ function warnings(s) {
 /** What the truth was. @param {any} s */
 function truthText(s) {
   const o = s.options;
-  const noise = Object.entries(o.truth_noise ?? {}).filter(([, v]) => v !== null).map(([name, v]) => `${name} ${number(v)}`);
+  const noise = Object.entries(o.truth_noise ?? {})
+    .filter(([, v]) => v !== null)
+    .map(([name, v]) => `${name} ${number(v)}`);
   return [
     `The robot that is measured is ${o.exact ? `the nominal one of ${s.truth}` : o.truth_nominal ? `nominal as in ${s.truth}, off by one tolerance (1σ) where ${s.variant} estimates` : `of ${s.truth}, each parameter off by its tolerance (1σ)`}.`,
     noise.length > 0 && ` Its noise is not the one stated (SI): ${noise.join(', ')}.`,
@@ -60,52 +77,12 @@ const verdictSection = (s) =>
     'verdict',
     s.confirmed ? 'As predicted' : 'Not as predicted',
     truthText(s),
-    h('ul', { class: 'sentences' }, s.verdict.map((line) => h('li', {}, line))),
+    h(
+      'ul',
+      { class: 'sentences' },
+      s.verdict.map((line) => h('li', {}, line)),
+    ),
   );
-
-/** @param {any} s */
-function errorHistograms(s) {
-  const { from, bin_width: width } = s.histogram;
-  const known = s.parameters.filter((p) => p.histogram);
-  if (known.length === 0) return null;
-  const add = (lists) => lists[0].map((_, k) => lists.reduce((sum, list) => sum + list[k], 0));
-  const of = (id, name, counts) => [
-    name,
-    histogram({
-      id: `plot-errors-${id}`,
-      headed: false,
-      title: `Errors: ${name}`,
-      caption: 'Estimate less truth, in units of the σ that each calibration states for itself; the line is what normal errors give. A narrower bell: σ is stated too large; one beside zero: a bias.',
-      histogram: { from, bin_width: width, counts },
-      axis: '(estimate − truth) / σ',
-      counted: 'draws',
-      expected: normalCounts(from, width, counts.length, counts.reduce((sum, n) => sum + n, 0)),
-      open: true,
-    }),
-  ];
-  return choice('Truth against estimate:', 'Which parameter', [
-    of('all', 'all parameters', add(known.map((p) => p.histogram))),
-    ...known.map((p, k) => of(String(k), p.name, p.histogram)),
-  ]);
-}
-
-/** @param {any} accuracy */
-function accuracyHistogram(accuracy) {
-  if (!accuracy?.histogram || !(accuracy.histogram.bin_width > 0)) return null;
-  const { from, bin_width: width, counts } = accuracy.histogram;
-  return histogram({
-    id: 'plot-distances',
-    title: 'Position error of the calibrated robots',
-    caption: `Draws by the root mean square of their error at the ${accuracy.places} ${accuracy.of === 'test_poses' ? 'test poses' : 'random places'}. Upright lines: ${quantity(accuracy.predicted, 'm', 3)} predicted, ${quantity(accuracy.observed, 'm', 3)} observed over all draws (root mean square); the worst place of all was ${quantity(accuracy.largest, 'm', 3)} off.`,
-    histogram: { from: 1e3 * from, bin_width: 1e3 * width, counts },
-    axis: 'error, mm',
-    counted: 'draws',
-    marks: [
-      { value: 1e3 * accuracy.observed, label: 'observed', tint: 'plan' },
-      { value: 1e3 * accuracy.predicted, label: 'predicted', tint: 'accent' },
-    ],
-  });
-}
 
 /** @param {any} s */
 function parametersSection(s) {
@@ -126,7 +103,11 @@ function parametersSection(s) {
     'parameters',
     'Parameters',
     'σ predicted by the plan, observed over the draws, and stated by the calibrations for themselves; bias with its standard error.',
-    table(['##', 'parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'], rows, 'Parameters'),
+    table(
+      ['##', 'parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'],
+      rows,
+      'Parameters',
+    ),
   );
 }
 
@@ -162,7 +143,10 @@ export function simulationPage(s, report) {
     sections: [
       ['In short', inShort(tiles(s), warnings(s))],
       ['Verdict', verdictSection(s)],
-      ['Truth and prediction', plots.length > 0 ? section('figures', 'Truth and prediction', null, h('div', { class: 'plots' }, plots)) : null],
+      [
+        'Truth and prediction',
+        plots.length > 0 ? section('figures', 'Truth and prediction', null, h('div', { class: 'plots' }, plots)) : null,
+      ],
       ['Parameters', parametersSection(s)],
       ['Repeat', repeat(s, report)],
     ],

@@ -1,7 +1,8 @@
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
-import { isDeterminant, sigmaRatio, stationMap } from '../plots/station_map.js';
+import { isDeterminant, sigmaRatio } from '../numerics/stations.js';
+import { stationMap } from '../plots/station_map.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { number, percent, plural, quantity } from '../text/units.js';
 
@@ -18,9 +19,17 @@ function tiles(s) {
   const ratio = planned.filter((r) => r.sigma_ratio !== null).map((r) => r.sigma_ratio);
   return [
     tile(namesOf(best), Object.keys(best.stations).length > 1 ? 'best places' : 'best place', `at ${placeOf(best)} mm`),
-    tile(String(planned.length), 'choices give a plan', planned.length < s.ranking.length ? `${s.ranking.length - planned.length} do not` : `${planned.filter((r) => r.in_full).length} planned in full`),
+    tile(
+      String(planned.length),
+      'choices give a plan',
+      planned.length < s.ranking.length
+        ? `${s.ranking.length - planned.length} do not`
+        : `${planned.filter((r) => r.in_full).length} planned in full`,
+    ),
     best.rho0 !== null ? tile(quantity(best.rho0, 'm', 3), 'position error', 'predicted from the best place') : null,
-    ratio.length > 1 ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned in full, against the best`) : null,
+    ratio.length > 1
+      ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned in full, against the best`)
+      : null,
     tile(percent(best.feasible_share), 'feasible', 'of the configurations drawn, from the best place'),
   ];
 }
@@ -29,7 +38,18 @@ function tiles(s) {
 function rankingSection(s) {
   const planned = s.ranking.filter((r) => !r.why_not);
   const withError = planned.some((r) => r.rho0 !== null);
-  const header = ['#', 'station', 'place x, y, z, mm', 'planned', '#parameters', `#${s.criterion}`, '#σ against the best planned alike', '#feasible', ...(withError ? ['#position error'] : []), 'most rejected by'];
+  const header = [
+    '#',
+    'station',
+    'place x, y, z, mm',
+    'planned',
+    '#parameters',
+    `#${s.criterion}`,
+    '#σ against the best planned alike',
+    '#feasible',
+    ...(withError ? ['#position error'] : []),
+    'most rejected by',
+  ];
   const rows = planned.map((r, k) => [
     String(k + 1),
     namesOf(r),
@@ -48,7 +68,13 @@ function rankingSection(s) {
     'Ranking',
     `Criterion ${s.criterion} as it is maximised, larger is better; compare only places that were planned alike.`,
     table(header, rows, 'Ranking'),
-    refused.length > 0 ? h('ul', { class: 'sentences' }, refused.map((r) => h('li', {}, `${namesOf(r)} gives no plan: ${r.why_not}`))) : null,
+    refused.length > 0
+      ? h(
+          'ul',
+          { class: 'sentences' },
+          refused.map((r) => h('li', {}, `${namesOf(r)} gives no plan: ${r.why_not}`)),
+        )
+      : null,
   );
 }
 
@@ -73,14 +99,24 @@ export function stationsPage(s, report) {
     title: `Stations: ${report.title}`,
     sections: [
       ['In short', inShort(tiles(s))],
-      ['Map', section('map', 'Map of the places', `${plural(s.ranking.length, 'choice')} of ${Object.keys(s.ranking[0].stations).length > 1 ? 'places' : 'a place'}, each judged by the plan that it allows.`, stationMap(s))],
+      [
+        'Map',
+        section(
+          'map',
+          'Map of the places',
+          `${plural(s.ranking.length, 'choice')} of ${Object.keys(s.ranking[0].stations).length > 1 ? 'places' : 'a place'}, each judged by the plan that it allows.`,
+          stationMap(s),
+        ),
+      ],
       ['Ranking', rankingSection(s)],
       ['Problem file', entrySection(s)],
       [
         'Repeat',
         repeatSection(
           [...commonFacts(s, report), ['criterion', s.criterion]],
-          [`posewright stations ${shellFile(s.problem.file)} --variant ${shell(s.variant)} --criterion ${shell(s.criterion)} --choose ${Object.keys(s.ranking[0].stations).length} --seed ${shell(s.seed)} --json > stations.json`],
+          [
+            `posewright stations ${shellFile(s.problem.file)} --variant ${shell(s.variant)} --criterion ${shell(s.criterion)} --choose ${Object.keys(s.ranking[0].stations).length} --seed ${shell(s.seed)} --json > stations.json`,
+          ],
           'Options that are not in the result (--poses, --candidates, --restarts, --full) have to be given again.',
         ),
       ],

@@ -22,8 +22,14 @@ function tiles(lists, common, why) {
     efficiency === null
       ? tile('–', 'no efficiency', why || 'a plan does not determine its parameters')
       : tile(percent(efficiency), 'information of B', 'per parameter, compared with A'),
-    tile([a, b].map((r) => number(worst(r.plan).sigma / worst(r.plan).tolerance, 3)).join(' and '), 'largest σ/tolerance', `${worst(a.plan).name} of A, ${worst(b.plan).name} of B`),
-    errors.every((e) => e !== null) ? tile(errors.map((e) => quantity(e, 'm', 3)).join(' and '), 'position error', 'predicted, of A and B') : null,
+    tile(
+      [a, b].map((r) => number(worst(r.plan).sigma / worst(r.plan).tolerance, 3)).join(' and '),
+      'largest σ/tolerance',
+      `${worst(a.plan).name} of A, ${worst(b.plan).name} of B`,
+    ),
+    errors.every((e) => e !== null)
+      ? tile(errors.map((e) => quantity(e, 'm', 3)).join(' and '), 'position error', 'predicted, of A and B')
+      : null,
   ];
 }
 
@@ -58,7 +64,11 @@ function commonTable(common) {
     'details',
     { class: 'printed common' },
     h('summary', {}, `${plural(common.length, 'pose')} in both plans`),
-    table(['pose of A', 'pose of B', ...names.map((n) => `#${n}`)], common.map(([p, q]) => [String(p.id), String(q.id), ...p.configuration.map((v, k) => coordinate(v, p.units[k]))]), 'Poses in both plans'),
+    table(
+      ['pose of A', 'pose of B', ...names.map((n) => `#${n}`)],
+      common.map(([p, q]) => [String(p.id), String(q.id), ...p.configuration.map((v, k) => coordinate(v, p.units[k]))]),
+      'Poses in both plans',
+    ),
   );
 }
 
@@ -78,8 +88,20 @@ function figuresTable(reports) {
     ['nuisance parameters', (p) => String(p.parameters.filter((q) => q.identifiable && q.role === 'nuisance').length)],
     ['criterion', (p) => p.criterion.name],
     ['log det', (p) => number(p.criterion.log_det, 8)],
-    ['of the best among its candidates', (p) => (certificate(p).candidates ? `≥ ${percentDown(certificate(p).candidates.efficiency)} of ${certificate(p).candidates.count.toLocaleString('en')}` : 'no bound')],
-    ['of the best over the workspace', (p) => (certificate(p).workspace ? `${certificate(p).workspace.proved ? '≥ ' : 'about '}${percentDown(certificate(p).workspace.efficiency, 1)}` : '–')],
+    [
+      'of the best among its candidates',
+      (p) =>
+        certificate(p).candidates
+          ? `≥ ${percentDown(certificate(p).candidates.efficiency)} of ${certificate(p).candidates.count.toLocaleString('en')}`
+          : 'no bound',
+    ],
+    [
+      'of the best over the workspace',
+      (p) =>
+        certificate(p).workspace
+          ? `${certificate(p).workspace.proved ? '≥ ' : 'about '}${percentDown(certificate(p).workspace.efficiency, 1)}`
+          : '–',
+    ],
     ['largest σ/tolerance', (p) => `${number(worst(p).sigma / worst(p).tolerance, 3)} (${worst(p).name})`],
     ['position error at the test poses', (p) => quantity(p.accuracy.rho0, 'm')],
     ['left if the most needed pose is lost', (p) => percentDown(Math.min(...newPoses(p).map((q) => q.efficiency_without)))],
@@ -94,9 +116,12 @@ function figuresTable(reports) {
 
 /** @param {import('../types.js').Report[]} reports */
 function efficiencyText([a, b], why) {
-  if (why) return `${why[0].toUpperCase()}${why.slice(1)}, so their log det cannot be compared; what each is worth to the other’s variant: posewright compare ${shellFile(a.plan.problem.file)} with both plans.`;
+  if (why)
+    return `${why[0].toUpperCase()}${why.slice(1)}, so their log det cannot be compared; what each is worth to the other’s variant: posewright compare ${shellFile(a.plan.problem.file)} with both plans.`;
   const efficiency = efficiencyOf(a, b);
-  return efficiency === null ? '' : `For the parameters of both, B has ${percent(efficiency, 2)} of the information per parameter that A has, and A ${percent(1 / efficiency, 2)} of that of B; over all poses of each, recomputed from their information matrices.`;
+  return efficiency === null
+    ? ''
+    : `For the parameters of both, B has ${percent(efficiency, 2)} of the information per parameter that A has, and A ${percent(1 / efficiency, 2)} of that of B; over all poses of each, recomputed from their information matrices.`;
 }
 
 /** σ of what both estimate. @param {import('../types.js').Report[]} reports */
@@ -105,7 +130,15 @@ function sigmaSection([a, b]) {
   const pairs = a.plan.parameters.filter((p) => p.identifiable && other.has(p.name)).map((p) => [p, other.get(p.name)]);
   const only = (plan, names) => plan.parameters.filter((p) => p.identifiable && !names.has(p.name)).map((p) => p.name);
   const shared = new Set(pairs.map(([p]) => p.name));
-  const rows = pairs.map(([p, q], k) => [String(k + 1), p.name, p.role === 'nuisance' ? 'nuisance' : '', quantity(p.tolerance, p.unit, 3), quantity(p.sigma, p.unit, 3), quantity(q.sigma, q.unit, 3), number(q.sigma / p.sigma, 3)]);
+  const rows = pairs.map(([p, q], k) => [
+    String(k + 1),
+    p.name,
+    p.role === 'nuisance' ? 'nuisance' : '',
+    quantity(p.tolerance, p.unit, 3),
+    quantity(p.sigma, p.unit, 3),
+    quantity(q.sigma, q.unit, 3),
+    number(q.sigma / p.sigma, 3),
+  ]);
   const alone = [a, b].map((r, k) => [letters[k], only(r.plan, shared)]).filter(([, names]) => names.length > 0);
   return section(
     'parameters',
@@ -133,7 +166,15 @@ export function twoPlansPage(report) {
       ['Poses', posesSection(report, lists, common)],
       ['Figures', section('figures', 'Figures', efficiencyText(report.plans, why), figuresTable(report.plans))],
       ['Parameters', sigmaSection(report.plans)],
-      ['Repeat', section('reproduce', 'Each plan alone', 'Lists that can be ticked, moved and saved are on the page of one plan.', h('pre', { tabindex: '0' }, report.files.map((f) => `posewright report ${shellFile(f)}`).join('\n')))],
+      [
+        'Repeat',
+        section(
+          'reproduce',
+          'Each plan alone',
+          'Lists that can be ticked, moved and saved are on the page of one plan.',
+          h('pre', { tabindex: '0' }, report.files.map((f) => `posewright report ${shellFile(f)}`).join('\n')),
+        ),
+      ],
     ],
   };
 }

@@ -29,8 +29,28 @@ export function shareTable(columns, rows, cell, corner, label) {
     h(
       'table',
       { class: 'shares' },
-      h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, corner), columns.map((name) => h('th', { scope: 'col', class: 'number' }, name)))),
-      h('tbody', {}, rows.map((name, r) => h('tr', {}, h('th', { scope: 'row' }, name), columns.map((_, c) => td(r, c))))),
+      h(
+        'thead',
+        {},
+        h(
+          'tr',
+          {},
+          h('th', { scope: 'col' }, corner),
+          columns.map((name) => h('th', { scope: 'col', class: 'number' }, name)),
+        ),
+      ),
+      h(
+        'tbody',
+        {},
+        rows.map((name, r) =>
+          h(
+            'tr',
+            {},
+            h('th', { scope: 'row' }, name),
+            columns.map((_, c) => td(r, c)),
+          ),
+        ),
+      ),
     ),
   );
 }

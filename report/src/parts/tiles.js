@@ -1,8 +1,7 @@
 import { h } from '../dom.js';
 
 /** A figure, what it is, and what to know of it. @param {string} value @param {string} title @param {string} hint */
-export const tile = (value, title, hint) =>
-  h('div', { class: 'tile' }, h('b', {}, value), h('span', {}, title), h('small', {}, hint));
+export const tile = (value, title, hint) => h('div', { class: 'tile' }, h('b', {}, value), h('span', {}, title), h('small', {}, hint));
 
 /** What the reader must know before anything else. @param {string[]} warnings */
 export const warningBox = (warnings) =>

@@ -24,10 +24,16 @@ export function reliancePlots(c) {
           options: {
             series: [{ label: 'times the noise' }, ...scores.map((s, i) => curve(`${s.plan}, mm`, tints[i], true))],
             scales: { x: { time: false }, y: { range: (u, low, high) => [0, 1.1 * high] } },
-            axes: [{ label: 'effect, times the noise of a pose', incrs: [0.5, 1] }, { label: 'position error, mm', size: 66 }],
+            axes: [
+              { label: 'effect, times the noise of a pose', incrs: [0.5, 1] },
+              { label: 'position error, mm', size: 66 },
+            ],
           },
           data: [times, ...scores.map((s) => times.map((t) => error(s, t)))],
-          numbers: () => ({ header: ['plan', ...times.map((t) => `#${t} ×, mm`)], rows: scores.map((s) => [s.plan, ...times.map((t) => number(error(s, t)))]) }),
+          numbers: () => ({
+            header: ['plan', ...times.map((t) => `#${t} ×, mm`)],
+            rows: scores.map((s) => [s.plan, ...times.map((t) => number(error(s, t)))]),
+          }),
         }).element,
       ],
     ];
@@ -48,17 +54,30 @@ export function worthPlot(c) {
     caption: `${places ? 'Position error at the test poses' : 'Root mean square over the parameters that both estimate, in units of tolerance'}, on a logarithmic scale: each pair is one line below, in its order.`,
     options: {
       series: [
-        { label: 'pair', value: (u, v) => (v === null ? '' : `${known[Math.round(v) - 1]?.with} over ${known[Math.round(v) - 1]?.without}`) },
+        {
+          label: 'pair',
+          value: (u, v) => (v === null ? '' : `${known[Math.round(v) - 1]?.with} over ${known[Math.round(v) - 1]?.without}`),
+        },
         dots(`with, ${unit}`, 'plan', 10),
         dots(`without, ${unit}`, 'accent', 10),
       ],
       scales: { x: { time: false, range: around }, y: { distr: 3 } },
-      axes: [namedAxis(known.map((_, k) => k + 1), 'pair'), { label: `error, ${unit}`, size: 66, values: logValues, grid: logGrid }],
+      axes: [
+        namedAxis(
+          known.map((_, k) => k + 1),
+          'pair',
+        ),
+        { label: `error, ${unit}`, size: 66, values: logValues, grid: logGrid },
+      ],
     },
     data: [known.map((_, k) => k + 1), known.map((w) => factor * w.error_with), known.map((w) => factor * w.error_without)],
     numbers: () => ({
       header: ['with', 'without', `#error with, ${unit}`, '#error without', '#of it noise', '#of it bias'],
-      rows: known.map((w) => [w.with, w.without, ...[w.error_with, w.error_without, w.noise_without, w.bias_without].map((v) => number(factor * v))]),
+      rows: known.map((w) => [
+        w.with,
+        w.without,
+        ...[w.error_with, w.error_without, w.noise_without, w.bias_without].map((v) => number(factor * v)),
+      ]),
     }),
   }).element;
 }

@@ -34,7 +34,10 @@ export function histogram({ id, title, headed, caption, histogram: h, axis, coun
         ...marks.map(({ label, tint }) => ({ ...curve(label, tint), value: () => '' })),
       ],
       scales: {
-        x: { time: false, range: () => [Math.min(ends[0], ...marks.map((m) => m.value)), Math.max(ends[1], ...marks.map((m) => 1.02 * m.value))] },
+        x: {
+          time: false,
+          range: () => [Math.min(ends[0], ...marks.map((m) => m.value)), Math.max(ends[1], ...marks.map((m) => 1.02 * m.value))],
+        },
         y: { range: (u, low, high) => [0, 1.1 * Math.max(1, high)] },
       },
       axes: [{ label: axis }, { label: counted, size: 58 }],

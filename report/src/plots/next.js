@@ -40,9 +40,15 @@ export function nextPlot(n) {
       series: [{ label: 'poses' }, ...series.map(([s]) => s)],
       bands: [{ series: [2, 1], fill: () => `color-mix(in srgb, ${colour('plan')} 14%, transparent)` }],
       scales: { x: { time: false, range: around }, y: { distr: 3 } },
-      axes: [{ label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] }, { label: 'error, mm', size: 66, values: logValues, grid: logGrid }],
+      axes: [
+        { label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] },
+        { label: 'error, mm', size: 66, values: logValues, grid: logGrid },
+      ],
     },
     data: [x, ...series.map(([, values]) => values)],
-    numbers: () => ({ header: ['#poses', ...series.map(([s]) => `#${s.label}`)], rows: x.map((poses, k) => [poses, ...series.map(([, values]) => number(values[k]))]) }),
+    numbers: () => ({
+      header: ['#poses', ...series.map(([s]) => `#${s.label}`)],
+      rows: x.map((poses, k) => [poses, ...series.map(([, values]) => number(values[k]))]),
+    }),
   }).element;
 }

@@ -4,8 +4,7 @@ import { axesOf, measuresOf } from '../numerics/residuals.js';
 import { number, shownUnit } from '../text/units.js';
 
 /** @param {any} calibration of calibration.json */
-const beforeText = ({ before }) =>
-  before === 'placed' ? 'with base, tool, targets and nuisance fitted alone' : 'with nominal parameters';
+const beforeText = ({ before }) => (before === 'placed' ? 'with base, tool, targets and nuisance fitted alone' : 'with nominal parameters');
 
 /** Of each pose, before and after. @param {any} c calibration.json */
 export function perPosePlots(c) {
@@ -42,7 +41,10 @@ export function perPosePlots(c) {
             ],
             scales: { x: { time: false, range: around }, y: { distr: 3 } },
             axes: [
-              namedAxis(c.poses.map((p) => p.id), 'pose'),
+              namedAxis(
+                c.poses.map((p) => p.id),
+                'pose',
+              ),
               { label: `error${unit}`, size: 66, values: logValues, grid: logGrid },
             ],
           },
@@ -88,7 +90,13 @@ function alongAxis(c, axis) {
         ...(anyHeld ? [dots(`held back${unit}`, 'accent', 6)] : []),
       ],
       scales: { x: { time: false, range: [0.4, c.poses.length + 0.6] }, y: { range: evenly } },
-      axes: [namedAxis(c.poses.map((p) => p.id), 'pose'), { label: `residual${unit}`, size: 66 }],
+      axes: [
+        namedAxis(
+          c.poses.map((p) => p.id),
+          'pose',
+        ),
+        { label: `residual${unit}`, size: 66 },
+      ],
     },
     data: [points.map((p) => p.x), value(false), ...(anyHeld ? [value(true)] : [])],
     numbers: () => ({
@@ -109,7 +117,10 @@ export const perAxisPlots = (c) =>
   choice(
     'Residuals after calibration:',
     'Along which axis',
-    axesOf(c.readings).map((axis) => [`${axis.key}${axis.key === 'all readings' ? `, ${shownUnit(axis.unit).name}` : ''}`, alongAxis(c, axis)]),
+    axesOf(c.readings).map((axis) => [
+      `${axis.key}${axis.key === 'all readings' ? `, ${shownUnit(axis.unit).name}` : ''}`,
+      alongAxis(c, axis),
+    ]),
   );
 
 /** Poses that were not fitted: what the estimate's covariance lets expect, and what is. @param {any} c */
@@ -132,7 +143,13 @@ export function heldBackPlot(c) {
         dots('by the estimate, mm', 'bar'),
       ],
       scales: { x: { time: false, range: around }, y: { range: (u, low, high) => [0, 1.1 * high] } },
-      axes: [namedAxis(poses.map((p) => p.id), 'pose'), { label: 'error, mm', size: 62 }],
+      axes: [
+        namedAxis(
+          poses.map((p) => p.id),
+          'pose',
+        ),
+        { label: 'error, mm', size: 62 },
+      ],
     },
     data: [poses.map((_, k) => k + 1), observed, noise, estimate],
     numbers: () => ({

@@ -9,7 +9,8 @@ export function sigmaPairsPlot(pairs) {
   return figure({
     id: 'plot-two-sigma',
     title: 'σ / tolerance of both plans',
-    caption: 'One pair of dots a parameter, in the order of the table, on a logarithmic scale; at the dashed line measuring tells no more than the tolerance did.',
+    caption:
+      'One pair of dots a parameter, in the order of the table, on a logarithmic scale; at the dashed line measuring tells no more than the tolerance did.',
     options: {
       series: [
         { label: 'parameter', value: (u, v) => (v === null ? '' : (pairs[v - 1]?.[0].name ?? '')) },
@@ -21,7 +22,10 @@ export function sigmaPairsPlot(pairs) {
       axes: [namedAxis(x, 'parameter'), { label: 'σ / tolerance', size: 66, values: logValues, grid: logGrid }],
     },
     data: [x, ratio(0), ratio(1), x.map(() => 1)],
-    numbers: () => ({ header: ['parameter', '#A', '#B'], rows: pairs.map(([p, q]) => [p.name, number(p.sigma / p.tolerance), number(q.sigma / q.tolerance)]) }),
+    numbers: () => ({
+      header: ['parameter', '#A', '#B'],
+      rows: pairs.map(([p, q]) => [p.name, number(p.sigma / p.tolerance), number(q.sigma / q.tolerance)]),
+    }),
   }).element;
 }
 
@@ -38,11 +42,15 @@ export function growingPlot(reports) {
   return figure({
     id: 'plot-growing',
     title: `Number of poses and ${title}`,
-    caption: 'What is known after so many poses in the order of each plan, on a logarithmic scale; a line begins where all parameters can be identified.',
+    caption:
+      'What is known after so many poses in the order of each plan, on a logarithmic scale; a line begins where all parameters can be identified.',
     options: {
       series: [{ label: 'poses' }, curve('A', 'plan', true), curve('B', 'accent', true)],
       scales: { x: { time: false, range: around }, y: { distr: 3 } },
-      axes: [{ label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] }, { label: axis, size: 66, values: logValues, grid: logGrid }],
+      axes: [
+        { label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] },
+        { label: axis, size: 66, values: logValues, grid: logGrid },
+      ],
     },
     data: [x, ...lines],
     numbers: () => ({ header: ['#poses', '#A', '#B'], rows: x.map((n, k) => [n, number(lines[0][k]), number(lines[1][k])]) }),

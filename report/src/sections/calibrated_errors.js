@@ -30,7 +30,11 @@ function axesTable(c) {
     'div',
     { class: 'by-axis' },
     h('h3', {}, 'By axis'),
-    table(header.slice(0, shown), c.axes.map((a) => axisRow(a).slice(0, shown)), 'Errors by axis'),
+    table(
+      header.slice(0, shown),
+      c.axes.map((a) => axisRow(a).slice(0, shown)),
+      'Errors by axis',
+    ),
     h(
       'p',
       { class: 'note' },

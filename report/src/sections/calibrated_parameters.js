@@ -88,7 +88,16 @@ const turned = (o) =>
 
 /** @param {any} c calibration.json */
 export function calibratedParametersSection(c) {
-  const head = ['Parameter', '#Nominal', '#Calibrated', '#Change', '#σ', '#95 % interval', `Change in tolerances, −${reach} to ${reach}`, ''];
+  const head = [
+    'Parameter',
+    '#Nominal',
+    '#Calibrated',
+    '#Change',
+    '#σ',
+    '#95 % interval',
+    `Change in tolerances, −${reach} to ${reach}`,
+    '',
+  ];
   const hidden = new Set([1, 4, 6]);
   const estimated = c.parameters.filter((p) => p.estimated);
   return section(
@@ -101,12 +110,35 @@ export function calibratedParametersSection(c) {
       h(
         'table',
         { class: 'parameters calibrated' },
-        h('thead', {}, h('tr', {}, head.map((title, k) => h('th', { scope: 'col', class: [title.startsWith('#') && 'number', hidden.has(k) && 'nominal', k === 7 && 'role'].filter(Boolean).join(' ') }, title.replace('#', ''))))),
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            head.map((title, k) =>
+              h(
+                'th',
+                {
+                  scope: 'col',
+                  class: [title.startsWith('#') && 'number', hidden.has(k) && 'nominal', k === 7 && 'role'].filter(Boolean).join(' '),
+                },
+                title.replace('#', ''),
+              ),
+            ),
+          ),
+        ),
         h('tbody', {}, estimated.map(line)),
       ),
     ),
     notEstimated(c),
     c.orientations.length > 0 ? h('ul', { class: 'sentences' }, c.orientations.map(turned)) : null,
-    c.noise_factor > 1 ? h('p', { class: 'note' }, `σ and intervals count the noise that the residuals show, ${number(c.noise_factor, 3)} times the stated one.`) : null,
+    c.noise_factor > 1
+      ? h(
+          'p',
+          { class: 'note' },
+          `σ and intervals count the noise that the residuals show, ${number(c.noise_factor, 3)} times the stated one.`,
+        )
+      : null,
   );
 }

@@ -34,7 +34,7 @@ const kr270 = example('kr270/problem.yaml');
 const quick = ['--candidates', '1000', '--restarts', '1', '--method', 'exchange', '--quiet', '--force', '--poses-csv', '-'];
 run('plan', kr270, '--poses', '18', ...quick, '-o', 'a.json');
 run('plan', kr270, '--poses', '24', ...quick, '-o', 'b.json');
-save('simulation', 'simulate', kr270, 'a.json', '--draws', '1000', '--data', 'measured.csv', '--force');
+save('simulation', 'simulate', kr270, 'a.json', '--draws', '2000', '--data', 'measured.csv', '--force');
 const [problem, data] = readings();
 save('calibration', 'calibrate', problem, data, '--hold-back', '4');
 save(

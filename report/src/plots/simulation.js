@@ -19,7 +19,7 @@ export function sigmaPlot(s) {
   return figure({
     id: 'plot-sigma',
     title: 'σ observed over the draws, beside the predicted one',
-    caption: `One dot a parameter, in the order of the table; 1 is as predicted. Between the dashed lines a difference is no more than chance (three Monte Carlo errors, ± ${number(error, 2)}).`,
+    caption: `One dot a parameter, in the order of the table; 1 is as predicted. Between the dashed lines a difference is no more than chance (three Monte Carlo errors, ± ${number(error, 2)}; of 370 right dots one lies outside all the same).`,
     options: {
       series: [named(parameters), dots('observed / predicted', 'plan'), level('chance', 'ink-soft'), unlisted(level('chance', 'ink-soft'))],
       scales: {

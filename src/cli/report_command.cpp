@@ -12,6 +12,7 @@
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
+#include "signals.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -134,6 +135,8 @@ int follow_result(const CommonOptions& common, const std::filesystem::path& page
   const auto write = [&](bool more) {
     report.refresh = more ? refresh : 0.0;
     write_results({{page, report_html(report)}});
+    // Signals are passed over while files are written; between them one is to be heard.
+    if (more) begin_stage(SignalStage::searching);
   };
   write(!report.ended);
   if (!common.quiet) print_notes({"open " + page.string() + "; it follows " + file.string() + " (Ctrl-C ends)"});

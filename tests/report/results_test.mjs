@@ -5,7 +5,7 @@ import { launch, missing, open, skipped } from './browser.mjs';
 import { about, check, verdict } from './checks.mjs';
 import { makeResults } from './make_results.mjs';
 import { checkLeftovers, overflow } from './reading_checks.mjs';
-import { checkRefresh } from './refresh_checks.mjs';
+import { checkRefresh, checkWatch } from './refresh_checks.mjs';
 import { checkCalibration, checkCalibrations } from './calibration_checks.mjs';
 import * as checks from './results_checks.mjs';
 
@@ -57,4 +57,8 @@ await checkRefresh(
   cases.find((c) => c.name === 'calibration'),
 );
 await browser.close();
+await checkWatch(
+  values.program,
+  cases.find((c) => c.name === 'calibration'),
+);
 process.exitCode = verdict();

@@ -14,7 +14,7 @@ const build = await import('esbuild').then(
 
 const here = new URL('.', import.meta.url);
 const read = (path) => readFileSync(new URL(path, here), 'utf8');
-const styles = ['base', 'parts', 'view', 'list', 'print'];
+const styles = ['base', 'parts', 'view', 'list', 'results', 'print'];
 const bundled = ['three', 'uplot'];
 const placeholder = '@REPORT_DATA@';
 

@@ -20,6 +20,7 @@
 #include "posewright/support/text_file.hpp"
 #include "posewright/tasks/next_state.hpp"
 #include "posewright/tasks/report_problem.hpp"
+#include "posewright/tasks/report_result.hpp"
 
 namespace posewright::python {
 namespace {
@@ -71,7 +72,7 @@ auto json_of(const MadeComparison& m) { return comparison_json(m.problem->proble
 auto json_of(const MadeCompensation& m) { return compensation_json(m.problem->problem, m.value); }
 auto json_of(const MadeNext& m) { return next_json(m.problem->problem, m.options, m.value.next, m.value.history); }
 auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
-auto json_of(const MadeStations& m) { return stations_json(m.value); }
+auto json_of(const MadeStations& m) { return stations_json(m.problem->problem, m.options, m.value); }
 
 /// What all results have.
 template <class M>
@@ -82,6 +83,19 @@ py::class_<M> bind_made(py::module_& m, const char* name, const char* doc) {
       .def(
           "to_json", [](const M& made) { return json_text(json_of(made)); }, "What the command prints with --json.")
       .def("to_dict", [](const M& made) { return parsed(json_text(json_of(made), JsonLayout::one_line)); });
+}
+
+/// Of results with a page of their own.
+template <class M>
+py::class_<M> bind_page(py::class_<M> made) {
+  return made.def(
+      "to_html",
+      [](const M& m) {
+        return report_html(ResultReport{.title = title_of(m.problem->problem.file),
+                                        .file = {},
+                                        .result_json = json_text(json_of(m), JsonLayout::one_line)});
+      },
+      "The page that posewright report makes of it.");
 }
 
 Weighting weighting_named(const py::object& word) {
@@ -400,7 +414,7 @@ Report report(const Shared& problem, const std::filesystem::path& plan, const py
 
 void bind_classes(py::module_& m) {
   using C = MadeCalibration;
-  bind_made<C>(m, "Calibration", "Parameters estimated from measured data; docs/calibrate.md.")
+  bind_page(bind_made<C>(m, "Calibration", "Parameters estimated from measured data; docs/calibrate.md."))
       .def_property_readonly("variant", [](const C& c) { return c.value.variant; })
       .def_property_readonly("converged", [](const C& c) { return c.value.fit.converged; })
       .def_property_readonly(
@@ -425,8 +439,8 @@ void bind_classes(py::module_& m) {
             .format(c.value.variant, c.value.poses, c.value.columns.size());
       });
   using S = MadeSimulation;
-  bind_made<S>(m, "Simulation",
-               "Virtual calibrations with the poses, against what the plan predicts; docs/simulate.md.")
+  bind_page(bind_made<S>(m, "Simulation",
+                         "Virtual calibrations with the poses, against what the plan predicts; docs/simulate.md."))
       .def_property_readonly(
           "confirmed", [](const S& s) { return s.value.confirmed; }, "σ and intervals as predicted")
       .def_property_readonly("verdict", [](const S& s) { return s.value.verdict; })
@@ -435,13 +449,14 @@ void bind_classes(py::module_& m) {
           "of the first draw, as calibrate reads them")
       .def_property_readonly("notes", [](const S& s) { return s.value.notes; });
   using M = MadeComparison;
-  bind_made<M>(m, "Comparison", "Variants against plans; docs/compare.md.")
+  bind_page(bind_made<M>(m, "Comparison", "Variants against plans; docs/compare.md."))
       .def_property_readonly("notes", [](const M& c) { return c.value.notes; });
-  bind_made<MadeStations>(m, "Stations", "Places for the instrument, best first.")
+  bind_page(bind_made<MadeStations>(m, "Stations", "Places for the instrument, best first."))
       .def("__len__", [](const MadeStations& s) { return s.value.size(); });
   py::class_<Report>(m, "Report", "A page to look at; docs/report.md.")
-      .def("to_html", &report_html)
-      .def("to_json", &report_json, "The numbers behind the page.")
+      .def("to_html", [](const Report& r) { return report_html(r); })
+      .def(
+          "to_json", [](const Report& r) { return report_json(r); }, "The numbers behind the page.")
       .def("to_dict", [](const Report& r) { return parsed(report_json(r)); })
       .def_readonly("notes", &Report::notes)
       .def(

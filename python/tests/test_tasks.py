@@ -63,6 +63,9 @@ def test_compare_says_what_the_command_line_says(program, kr270, small_plan, tmp
     theirs = program("compare", kr270.file, tmp_path / "plan.json", *settings)
     mine = pw.compare(kr270, {str(tmp_path / "plan.json"): tmp_path / "plan.json"}, candidates=60)
     assert mine.to_dict() == theirs and mine.summary()
+    page = mine.to_html()
+    data = json.loads(page.split('id="report-data">')[1].split("</script>")[0])
+    assert data["schema"] == "posewright/report-of-result/1" and data["result"] == theirs
     with pytest.raises(pw.InputError):
         pw.compare(kr270, {"a": small_plan}, poses=3)
 

@@ -1,76 +1,44 @@
 import { h } from './dom.js';
-import { PoseList } from './pose_list.js';
+import { showPage } from './page.js';
+import { keepUpToDate } from './refresh.js';
 import { watchTheme } from './theme.js';
-import { percent } from './text/units.js';
-import { summarySection, wordsSection } from './sections/summary.js';
-import { posesSection } from './sections/poses.js';
-import { parametersSection } from './sections/parameters.js';
-import { accuracySection, informationSection } from './sections/plots.js';
-import { correlationSection } from './sections/correlation.js';
-import { certificateSection, searchSection } from './sections/certificate.js';
-import { reproduceSection } from './sections/reproduce.js';
+import { calibrationPage } from './pages/calibration.js';
+import { calibrationsPage } from './pages/calibrations.js';
+import { comparisonPage } from './pages/comparison.js';
+import { nextPage } from './pages/next.js';
+import { planPage } from './pages/plan.js';
+import { simulationPage } from './pages/simulation.js';
+import { stationsPage } from './pages/stations.js';
+import { twoPlansPage } from './pages/two_plans.js';
 
-/** @returns {import('./types.js').Report} */
-function readReport() {
-  const report = JSON.parse(document.getElementById('report-data').textContent);
-  if (report.schema !== 'posewright/report/1')
-    throw new Error(`schema ${report.schema}; posewright/report/1 is expected`);
-  return report;
-}
+/** One row a result that has a page. @type {Object<string, (result: any, report: any) => import('./page.js').Page>} */
+const results = {
+  'posewright/calibration/1': calibrationPage,
+  'posewright/calibrations/1': calibrationsPage,
+  'posewright/comparison/1': comparisonPage,
+  'posewright/simulation/1': simulationPage,
+  'posewright/next/1': nextPage,
+  'posewright/stations/1': stationsPage,
+};
 
-/** That the reader has changed the list, wherever on the page they are. @param {PoseList} list */
-function reminder(list) {
-  const link = h('a', { class: 'reminder', href: '#poses', hidden: true });
-  list.addEventListener('list', () => {
-    link.hidden = !list.changed;
-    link.textContent = `Your list: ${list.ids.length} of ${list.entries.length} poses, ${list.figures.identifiable ? percent(list.efficiency) : 'not identifiable'}`;
-  });
-  return link;
-}
+/** @type {Object<string, (report: any) => import('./page.js').Page>} */
+const pages = {
+  'posewright/report/1': planPage,
+  'posewright/report-of-result/1': (report) => pageOf(results, report.result.schema)(report.result, report),
+  'posewright/report-of-two-plans/1': twoPlansPage,
+};
 
-/** @param {import('./types.js').Report} report */
-function build(report) {
-  document.getElementById('kind').append(`, from ${report.plan.problem.file}`);
-  document.title = `Measurement plan: ${report.title}`;
-  const list = new PoseList(report);
-  const sections = [
-    summarySection(list),
-    posesSection(list),
-    wordsSection(list),
-    parametersSection(list),
-    accuracySection(list),
-    informationSection(list),
-    correlationSection(list),
-    certificateSection(report.plan),
-    searchSection(report.plan),
-    reproduceSection(report),
-  ].filter((s) => s !== null);
-  const titles = {
-    summary: 'In short',
-    poses: 'Poses',
-    words: 'In words',
-    parameters: 'Parameters',
-    accuracy: 'Accuracy',
-    information: 'Information',
-    correlation: 'Correlation',
-    certificate: 'Certificate',
-    search: 'Search',
-    reproduce: 'Repeat',
-  };
-  // A long path may break after its slashes.
-  document
-    .getElementById('title')
-    .replaceChildren(...report.title.split(/(?<=\/)/).flatMap((part) => [part, h('wbr')]));
-  document
-    .getElementById('contents')
-    .append(...sections.map((s) => h('a', { href: `#${s.id}` }, titles[s.id])), reminder(list));
-  document.getElementById('page').append(...sections);
-  document.getElementById('version').textContent = `posewright ${report.version}`;
+/** @param {Object<string, any>} table @param {string} schema */
+function pageOf(table, schema) {
+  if (!Object.hasOwn(table, schema)) throw new Error(`schema ${schema}; ${Object.keys(table).join(', ')} are expected`);
+  return table[schema];
 }
 
 watchTheme();
 try {
-  build(readReport());
+  const report = JSON.parse(document.getElementById('report-data').textContent);
+  showPage(pageOf(pages, report.schema)(report), report.version);
+  keepUpToDate(report);
 } catch (error) {
   document
     .getElementById('page')

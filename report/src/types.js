@@ -1,4 +1,9 @@
 /**
+ * Of a result (posewright/report-of-result/1; schemas/ says what each result holds) and of two plans
+ * (posewright/report-of-two-plans/1).
+ * @typedef {{version: string, title: string, file: string, refresh: number, result: any}} ResultReport refresh: s, 0: never
+ * @typedef {{version: string, title: string, files: [string, string], plans: [Report, Report]}} TwoPlansReport
+ *
  * Shapes of the data, schema posewright/report/1. SI units; 7-vectors are x y z qx qy qz qw in the measurement frame;
  * "packed" is the lower triangle, row by row, of a symmetric matrix.
  *

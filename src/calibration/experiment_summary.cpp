@@ -23,7 +23,9 @@ ParameterErrors errors_of(const Draws& draws, Eigen::Index j) {
   ParameterErrors result;
   const auto count = double(draws.size());
   double squares = 0, inside = 0;
+  std::vector<double> in_sigma;
   for (const auto* draw : draws) {
+    in_sigma.push_back(draw->sigma[j] > 0 ? draw->error[j] / draw->sigma[j] : 0.0);
     result.bias += draw->error[j] / count;
     result.stated += draw->sigma[j] * draw->sigma[j] / count;
     inside += std::abs(draw->error[j]) <= draw->interval * draw->sigma[j] ? 1 : 0;
@@ -33,6 +35,7 @@ ParameterErrors errors_of(const Draws& draws, Eigen::Index j) {
   result.stated = std::sqrt(result.stated);
   result.bias_error = result.observed / std::sqrt(count);
   result.coverage = inside / count;
+  result.histogram = half_sigma_histogram(in_sigma);
   return result;
 }
 
@@ -77,7 +80,9 @@ ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vect
   for (const auto* draw : draws) {
     *summary.mean_square += draw->mean_square / double(draws.size());
     summary.largest = std::max(summary.largest, draw->largest);
+    summary.distances.push_back(std::sqrt(draw->mean_square));
   }
+  std::sort(summary.distances.begin(), summary.distances.end());
   return summary;
 }
 

@@ -113,6 +113,15 @@ double interval_factor(double probability, bool scale_known, int freedom) {
   return student_upper_quantile(tail, freedom);
 }
 
+std::vector<int> half_sigma_histogram(const std::vector<double>& values) {
+  std::vector<int> counts(bins, 0);
+  for (const double value : values) {
+    const double bin = std::floor((value - first_bin) / bin_width);
+    ++counts[std::size_t(std::clamp(bin, 0.0, double(bins - 1)))];
+  }
+  return counts;
+}
+
 ResidualTests test_residuals(const Fit& result) {
   ResidualTests tests;
   if (result.scale_known && result.freedom > 0) {
@@ -126,10 +135,9 @@ ResidualTests test_residuals(const Fit& result) {
       if (std::isfinite(value)) values.push_back(value);
   tests.normality = jarque_bera(values);
   // Residuals of a fit are smaller than the noise: in units of their own size they fill the bins evenly.
-  tests.histogram.assign(bins, 0);
-  const double unit = result.scale > 0 ? result.scale : 1.0;
-  for (const double value : values)
-    ++tests.histogram[std::size_t(std::clamp(int(std::floor((value / unit - first_bin) / bin_width)), 0, bins - 1))];
+  if (result.scale > 0)
+    for (double& value : values) value /= result.scale;
+  tests.histogram = half_sigma_histogram(values);
   return tests;
 }
 

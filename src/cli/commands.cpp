@@ -10,10 +10,10 @@ namespace posewright::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
-      init_command(),     observe_command(),  plan_command(),      select_command(),     evaluate_command(),
-      compare_command(),  simulate_command(), calibrate_command(), next_command(), compensate_command(), route_command(),
-      stations_command(), export_command(),   report_command(),
-      fleet_command(),    merge_command()};
+      init_command(),     observe_command(),    plan_command(),     select_command(),
+      evaluate_command(), compare_command(),    simulate_command(), calibrate_command(),
+      next_command(),     compensate_command(), route_command(),    stations_command(),
+      export_command(),   report_command(),     fleet_command(),    merge_command()};
   return table;
 }
 

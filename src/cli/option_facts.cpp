@@ -39,12 +39,16 @@ Expected expected_of(const std::string& value) {
       {"FILE|DIR", {"*"}},
       {"ROBOT", {"urdf", "xacro"}},
       {"[PLAN...]", {"json", "csv"}},
+      {"RESULT", {"json"}},
+      {"[PLAN]", {"json"}},
+      {"LOG...", {"log"}},
+      {"PROBLEM...", {"yaml", "yml"}},
   };
   Expected expected;
   if (const auto found = files.find(value); found != files.end()) expected.suffixes = found->second;
   else expected.words = literal_words(value);
   expected.folder = value.find("DIR") != std::string::npos;
-  expected.many = value.ends_with("...]");
+  expected.many = value.ends_with("...]") || value.ends_with("...");
   return expected;
 }
 

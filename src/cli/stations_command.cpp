@@ -54,7 +54,7 @@ int run_stations(const po::variables_map& values, const Words& positional) {
           common, time_limit(values),
           [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); }, engine.get())
           .result;
-  if (common.json) fmt::print("{}", json_text(stations_json(ranks)));
+  if (common.json) fmt::print("{}", json_text(stations_json(problem, stations, ranks)));
   else print_report(stations_text(ranks));
   return done;
 }

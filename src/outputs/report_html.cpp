@@ -27,9 +27,7 @@ std::string for_script(const std::string& json) {
   return text;
 }
 
-}  // namespace
-
-std::string report_html(const Report& report) {
+std::string page_with(const std::string& json) {
   const std::string_view page(posewright_report_page, std::size_t(posewright_report_page_end - posewright_report_page));
   const auto at = page.find(slot);
   if (!page.starts_with(doctype) || at == std::string_view::npos)
@@ -37,9 +35,15 @@ std::string report_html(const Report& report) {
   std::string text(doctype);
   text += mark;
   text += page.substr(doctype.size(), at - doctype.size());
-  text += for_script(report_json(report));
+  text += for_script(json);
   text += page.substr(at + slot.size());
   return text;
 }
+
+}  // namespace
+
+std::string report_html(const Report& report) { return page_with(report_json(report)); }
+std::string report_html(const ResultReport& report) { return page_with(report_json(report)); }
+std::string report_html(const TwoPlansReport& report) { return page_with(report_json(report)); }
 
 }  // namespace posewright

@@ -210,9 +210,7 @@ Json bodies_json(const Report& report) {
   return json;
 }
 
-}  // namespace
-
-std::string report_json(const Report& report) {
+Json plan_report(const Report& report) {
   Json json = {{"schema", "posewright/report/1"},
                {"version", version},
                {"title", report.title},
@@ -243,6 +241,29 @@ std::string report_json(const Report& report) {
   for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
   json["prefix"] = Json::array();
   for (const auto& point : report.prefix) json["prefix"].push_back(point ? curve_point_json(*point) : Json(nullptr));
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(const Report& report) { return json_text(plan_report(report), JsonLayout::one_line) + "\n"; }
+
+std::string report_json(const ResultReport& report) {
+  Json json = {{"schema", "posewright/report-of-result/1"},
+               {"version", version},
+               {"title", report.title},
+               {"file", report.file},
+               {"refresh", report.refresh},
+               {"result", parse_ordered_json(report.result_json)}};
+  return json_text(json, JsonLayout::one_line) + "\n";
+}
+
+std::string report_json(const TwoPlansReport& report) {
+  Json json = {{"schema", "posewright/report-of-two-plans/1"},
+               {"version", version},
+               {"title", report.title},
+               {"files", report.files},
+               {"plans", {plan_report(report.plans[0]), plan_report(report.plans[1])}}};
   return json_text(json, JsonLayout::one_line) + "\n";
 }
 

@@ -150,6 +150,7 @@ Json figures_json(const Calibration& c) {
     poses.push_back({{"id", pose.id},
                      {"held_back", pose.held_back},
                      {"weight", pose.weight},
+                     {"before", numbers(pose.before)},
                      {"residuals", numbers(pose.residuals)},
                      {"accuracy", pose_accuracy_json(pose.accuracy)}});
   return {{"variant", c.variant},
@@ -187,6 +188,7 @@ Json figures_json(const Calibration& c) {
           {"in_steps", steps_json(c)},
           {"compensator", c.compensator ? compensator_json(*c.compensator) : Json(nullptr)},
           {"platform", c.platform ? platform_json(*c.platform) : Json(nullptr)},
+          {"before", c.placed ? "placed" : "nominal"},
           {"readings", readings},
           {"spread_within_pose", c.spread.empty() ? Json(nullptr) : numbers(c.spread)},
           {"poses", poses},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "document.hpp"
@@ -49,16 +50,27 @@ Json parameter_json(const SimulatedParameter& p) {
           {"sigma_stated", figure(&ParameterErrors::stated)},
           {"bias", figure(&ParameterErrors::bias)},
           {"bias_error", figure(&ParameterErrors::bias_error)},
-          {"coverage", figure(&ParameterErrors::coverage)}};
+          {"coverage", figure(&ParameterErrors::coverage)},
+          {"histogram", p.errors ? Json(p.errors->histogram) : Json(nullptr)}};
+}
+
+// So many bins show the shape of some hundred draws.
+constexpr int distance_bins = 24;
+
+/// How many draws were how far off, from 0 to the worst.
+Json distances_json(const std::vector<double>& distances) {
+  const double width = distances.empty() ? 0.0 : distances.back() / distance_bins;
+  std::vector<int> counts(distance_bins, 0);
+  for (const double distance : distances)
+    ++counts[std::size_t(width > 0 ? std::min(int(distance / width), distance_bins - 1) : 0)];
+  return {{"from", 0.0}, {"bin_width", width}, {"counts", counts}};
 }
 
 Json accuracy_json(const Simulation& s) {
   if (!s.accuracy) return nullptr;
-  return {{"places", s.accuracy->places},
-          {"of", s.accuracy->test_poses ? "test_poses" : "validation"},
-          {"predicted", s.accuracy->predicted},
-          {"observed", s.accuracy->observed},
-          {"largest", s.accuracy->largest}};
+  return {{"places", s.accuracy->places},       {"of", s.accuracy->test_poses ? "test_poses" : "validation"},
+          {"predicted", s.accuracy->predicted}, {"observed", s.accuracy->observed},
+          {"largest", s.accuracy->largest},     {"histogram", distances_json(s.summary.distances)}};
 }
 
 Json chi_square_json(const ExperimentSummary& summary) {
@@ -81,6 +93,7 @@ Json figures_json(const Simulation& s, const SimulateOptions& options) {
           {"options", options_json(options)},
           {"draws", draws_json(s)},
           {"parameters", parameters},
+          {"histogram", {{"from", -4.5}, {"bin_width", 0.5}}},
           {"sigma_error", s.summary.sigma_error},
           {"coverage_error", s.summary.coverage_error},
           {"accuracy", accuracy_json(s)},

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "document.hpp"
+#include "posewright/model/variant.hpp"
 #include "posewright/outputs/table.hpp"
+#include "station_map.hpp"
 
 namespace posewright {
 namespace {
@@ -56,7 +59,7 @@ std::string stations_text(const std::vector<StationRank>& ranks) {
   return text;
 }
 
-Json stations_json(const std::vector<StationRank>& ranks) {
+Json stations_json(const Problem& problem, const StationOptions& options, const std::vector<StationRank>& ranks) {
   Json list = Json::array();
   for (const StationRank& rank : ranks) {
     Json stations = Json::object();
@@ -78,7 +81,13 @@ Json stations_json(const std::vector<StationRank>& ranks) {
     }
     list.push_back(json);
   }
-  return {{"schema", "posewright/stations/1"}, {"ranking", list}};
+  Json json = begin_document("posewright/stations/1", problem, options.plan.seed);
+  json["variant"] = find_variant(problem, options.plan.variant).name;
+  json["criterion"] = options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
+  json["base"] = base_json(problem);
+  json["obstacles"] = obstacles_json(problem);
+  json["ranking"] = list;
+  return json;
 }
 
 }  // namespace posewright

@@ -25,23 +25,24 @@ void add_axes(const char* which, const std::vector<AxisErrors>& before, const st
     axes.push_back({which, before[a], after[a], required_of(require, after[a].axis)});
 }
 
-void fill_poses(const CalibratedPoses& poses, const Residuals& beyond, Calibration& result) {
+std::vector<double> listed(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+
+/// @param before  of the fitted poses, then of those held back
+/// @param beyond  of those held back, calibrated
+void fill_poses(const CalibratedPoses& poses, const Residuals& before, const Residuals& beyond, Calibration& result) {
   for (std::size_t k = 0; k < poses.fitted.size(); ++k) {
     double weight = 1;
     if (!result.fit.weights.empty())
       for (const double w : result.fit.weights[k]) weight = std::min(weight, w);
-    const Eigen::VectorXd& r = result.fit.residuals[k];
-    result.pose_residuals.push_back({poses.fitted[k].id, false, {r.begin(), r.end()}, weight});
+    result.pose_residuals.push_back(
+        {poses.fitted[k].id, false, listed(before[k]), listed(result.fit.residuals[k]), weight});
   }
   const std::vector<PredictedError> predicted =
       predicted_errors(poses.model, poses.columns, poses.held_back, result.fit);
   const std::vector<PoseError> observed = observed_errors(poses.model, beyond);
   for (std::size_t k = 0; k < poses.held_back.size(); ++k)
-    result.pose_residuals.push_back({poses.held_back[k].id,
-                                     true,
-                                     {beyond[k].begin(), beyond[k].end()},
-                                     1.0,
-                                     PoseAccuracy{predicted[k], observed[k]}});
+    result.pose_residuals.push_back({poses.held_back[k].id, true, listed(before[poses.fitted.size() + k]),
+                                     listed(beyond[k]), 1.0, PoseAccuracy{predicted[k], observed[k]}});
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
   const std::vector<double> nominal(model.parameters().size(), 0.0);
   const std::size_t placing = placing_columns(poses.columns).selected.size();
   result.placed = placing > 0 && placing < poses.columns.selected.size();
-  Residuals beyond;
+  Residuals all_before, beyond;
   for (const std::vector<MeasuredPose>* list : {&poses.fitted, &poses.held_back}) {
     if (list->empty()) continue;
     const char* const which = list == &poses.fitted ? "fitted" : "held back";
@@ -70,8 +71,9 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
       add("interpolated", result.interpolation->others);
     add_axes(which, errors_by_axis(model, *list, before), errors_by_axis(model, *list, after), require, result.axes);
     if (list == &poses.held_back) beyond = after;
+    all_before.insert(all_before.end(), before.begin(), before.end());
   }
-  fill_poses(poses, beyond, result);
+  fill_poses(poses, all_before, beyond, result);
 }
 
 void fill_compensator(const ElastostaticSpec& spec, Calibration& result) {

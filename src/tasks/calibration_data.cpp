@@ -23,7 +23,8 @@ void note_repeats(const MeasuredData& data, int planned, const std::string& befo
     notes.push_back(fmt::format(
         "{}poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own", before,
         data.repeats));
-  else if (data.repeats != planned)
+  // A mean of whole numbers, with the rounding of one.
+  else if (std::lround(data.repeats) != planned)
     notes.push_back(fmt::format("{}{:.0f} readings a pose are averaged, not {} as the problem says", before,
                                 data.repeats, planned));
 }

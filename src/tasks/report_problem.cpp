@@ -17,6 +17,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
+#include "posewright/tasks/report_result.hpp"
 #include "report_neighbours.hpp"
 #include "report_scene.hpp"
 
@@ -71,11 +72,7 @@ class ReportBuilder {
   }
 
   Report make() {
-    // Where the robot has no name: a folder that has it holds one "problem.yaml"; other files have names of their own.
-    report_.title = problem_.file.stem().string();
-    if (const std::string folder = problem_.file.parent_path().filename().string();
-        report_.title == "problem" && !folder.empty())
-      report_.title = folder;
+    report_.title = title_of(problem_.file);
     const Judgement judgement = judge(study_, new_, settings_);
     note_changes(judgement);
     note_effect(judgement);

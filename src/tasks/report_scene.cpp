@@ -66,15 +66,17 @@ class MotionRecorder {
     }
     for (const auto& stop : route.at("poses")) require_same(stop, poses);
     const std::size_t stops = route.at("poses").size();
-    const double settle = stops > 0 ? route.at("seconds").at("settle").get<double>() / double(stops) : 0.0;
+    const Json& all = route.at("seconds");
+    // The file has the sums alone: every stop takes its share, and the last keyframe is at the time of the whole route.
+    const double still = stops > 0 ? (all.at("settle").get<double>() + all.value("reading", 0.0)) / double(stops) : 0.0;
     choose_step(route);
     if (const Json& motions = route.at("motions"); !motions.empty()) {
       const int first = motions.front().at("from").get<int>();
       show(first, with(base(poses, first), motions.front().at("points").front().get<std::vector<double>>()));
-      if (first > 0) seconds_ += settle;
+      if (first > 0) seconds_ += still;
       for (const Json& motion : motions) {
         move(motion, base(poses, motion.at("to").get<int>()));
-        seconds_ += settle;
+        seconds_ += still;
       }
     } else {
       for (const auto& id : route.at("order")) show(id.get<int>(), base(poses, id.get<int>()));

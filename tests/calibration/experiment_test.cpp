@@ -137,6 +137,26 @@ TEST(Experiment, NoiseIsTheSameWhateverElseIsDrawn) {
   EXPECT_GT(missing, 0);
 }
 
+TEST(Experiment, HistogramsHoldEveryDrawWhereItsErrorIs) {
+  ExperimentCase c("kr270/problem.yaml", "", 12, 40);
+  const std::vector<VirtualCalibration> draws = run_experiment(c.experiment, Monitor{});
+  const ExperimentSummary summary = summarise(c.experiment, draws);
+  for (std::size_t j = 0; j < summary.parameters.size(); ++j) {
+    const std::vector<int>& counts = summary.parameters[j].histogram;
+    ASSERT_EQ(counts.size(), 18U);
+    for (int bin = 0; bin < 18; ++bin) {
+      // Half a σ wide, from −4.5 σ; what is beyond counts at the ends.
+      const double lower = bin == 0 ? -1e9 : -4.5 + 0.5 * bin, upper = bin == 17 ? 1e9 : -4.0 + 0.5 * bin;
+      int inside = 0;
+      for (const VirtualCalibration& draw : draws) {
+        const double error = draw.error[Eigen::Index(j)], sigma = draw.sigma[Eigen::Index(j)];
+        inside += error >= lower * sigma && error < upper * sigma ? 1 : 0;
+      }
+      EXPECT_EQ(counts[std::size_t(bin)], inside) << "parameter " << j << ", bin " << bin;
+    }
+  }
+}
+
 TEST(Experiment, WhatIsHiddenIsNeverRead) {
   ExperimentCase c("kr270/problem.yaml", "", 8, 1);
   c.experiment.poses[2].y.segment<3>(3).setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -45,7 +45,9 @@ BEFORE = {
     "docs/export.md": OWN + KR270 + "\nposewright route plan.json -o route.json\n",
     "docs/parameters-file.md": OWN + KR270 + "\n" + READINGS.format("measured.csv")
     + "posewright calibrate problem.yaml measured.csv -o calibrated.yaml\n",
-    "docs/report.md": ROUTED,
+    "docs/report.md": ROUTED + OWN + f"{KR270} -o a.json --poses-csv -\n{KR270} --seed 2 -o b.json --poses-csv -\n"
+    + READINGS.format("measured.csv").replace("plan.json", "a.json")
+    + "posewright calibrate problem.yaml measured.csv --json > calibration.json\n",
     "docs/reproduction-kr270.md": "",
     "docs/reproduction-telescope.md": "",
     "docs/simulate.md": "",

@@ -43,7 +43,7 @@ export function makeReports(program, out, names = cases.map((c) => c.name), full
         ? ['--candidates', '3000']
         : ['--poses', String(c.poses), '--candidates', String(c.candidates ?? 100), '--restarts', '1', '--method', 'exchange'];
       run('plan', problem, ...size, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
-      if (c.route) run('route', plan, '--from-home', '--closed', '-o', route, '--force', '--quiet');
+      if (c.route) run('route', plan, '--from-home', '--closed', '--reading', '4', '-o', route, '--force', '--quiet');
       const data = JSON.parse(
         run('report', plan, ...(c.route ? ['--route', route] : []), '-o', page, '--force', '--quiet', '--json'),
       );

@@ -27,6 +27,13 @@ export async function checkReading(page, { plan }) {
     'the heat map names a pair and its value',
     await page.locator('.readout').textContent(),
   );
+  await checkLeftovers(page);
+  const text = await page.locator('main').innerText();
+  check(text.includes(plan.problem.sha256) && text.includes(`--seed ${plan.seed}`), 'sha256 and seed are there');
+}
+
+/** On every page: controls have names, and nothing of the program shows. @param {any} page */
+export async function checkLeftovers(page) {
   const nameless = await page
     .locator('button, input, select, canvas.heat')
     .evaluateAll((all) =>
@@ -36,7 +43,6 @@ export async function checkReading(page, { plan }) {
     );
   check(nameless.length === 0, 'every control has a name', nameless);
   const text = await page.locator('main').innerText();
-  check(text.includes(plan.problem.sha256) && text.includes(`--seed ${plan.seed}`), 'sha256 and seed are there');
   check(
     !/\b(undefined|NaN|null|Infinity)\b/.test(text),
     'no leftover of the program shows',

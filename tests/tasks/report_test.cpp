@@ -143,6 +143,7 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions route_options;
   route_options.from_home = route_options.closed = true;
+  route_options.reading = 3.0;
   const Route route = route_problem(problem, poses_in(problem, file), route_options, Monitor{});
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
@@ -159,6 +160,15 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   for (const PlannedPose& pose : route.poses) expected.push_back(pose.id);
   expected.push_back(0);
   EXPECT_EQ(stops, expected);
+  // Readings are part of the job: the tracker reads target after target. The robot comes home after the last of them.
+  double whole = 5.0 * double(route.poses.size());
+  const auto read = [&](const std::vector<TargetSight>& sights) {
+    for (const TargetSight& sight : sights) whole += sight.hidden_by.empty() ? 3.0 : 0.0;
+  };
+  for (const PlannedPose& pose : route.poses) read(pose.sights);
+  for (const ReferenceCheck& references : route.references) read(references.sights);
+  for (const RouteMotion& motion : route.motions) whole += motion.seconds + motion.change_seconds;
+  EXPECT_NEAR(report["keyframes"].back()["seconds"].get<double>(), whole, 1e-3);
   EXPECT_FALSE(report["bodies"].empty());
   EXPECT_EQ(report["stations"].size(), 1U);
   // At a stop the tip is where the plan says.

@@ -38,6 +38,13 @@ TEST(Simulate, ArmIsAsPredictedAtThePlacesToo) {
   EXPECT_EQ(s.readings, 18 * 9);
   ASSERT_TRUE(s.accuracy);
   EXPECT_EQ(s.accuracy->places, 10);
+  // Every draw's error is kept: their mean square is the one that is stated, and none is larger than the largest place.
+  ASSERT_EQ(s.summary.distances.size(), 200U);
+  double squares = 0;
+  for (const double distance : s.summary.distances) squares += distance * distance;
+  EXPECT_NEAR(std::sqrt(squares / 200), s.accuracy->observed, 1e-12);
+  EXPECT_TRUE(std::is_sorted(s.summary.distances.begin(), s.summary.distances.end()));
+  EXPECT_LE(s.summary.distances.back(), s.accuracy->largest);
   EXPECT_FALSE(s.accuracy->test_poses);
   EXPECT_NEAR(s.accuracy->observed / s.accuracy->predicted, 1, 0.1);
   EXPECT_LT(s.curvature.largest, curvature_limit);

@@ -15,6 +15,8 @@ struct ParameterErrors {
   double bias = 0.0;      ///< mean of estimate − truth
   double bias_error = 0.0;
   double coverage = 0.0;  ///< share of the 95 % intervals that hold the truth
+  /// Draws by (estimate − truth) / the σ that the draw states for itself, as half_sigma_histogram().
+  std::vector<int> histogram;
 };
 
 struct ExperimentSummary {
@@ -29,6 +31,7 @@ struct ExperimentSummary {
   double rejected_error = 0.0;        ///< binomial
   std::optional<double> mean_square;  ///< distance at the places, m²
   double largest = 0.0;               ///< m
+  std::vector<double> distances;      ///< m, root mean square over the places of each draw that was fitted, ascending
 };
 
 /// Reduced in the order of the draws. Throws CannotDo if fewer than two draws were fitted, saying why.

@@ -35,6 +35,10 @@ struct ResidualTests {
   std::vector<int> histogram;  ///< counts in half-σ bins from −4.5 to 4.5 σ, the ends hold what is beyond too
 };
 
+/// Counts in half-σ bins from −4.5 to 4.5, the ends hold what is beyond too.
+/// @param values  in units of σ
+std::vector<int> half_sigma_histogram(const std::vector<double>& values);
+
 ResidualTests test_residuals(const Fit& result);
 
 /// Fills the correlations over pairs of whitened residuals, 1 in B for each: readings one pose apart, and those of one

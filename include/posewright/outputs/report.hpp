@@ -137,9 +137,29 @@ struct Report {
   std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet
 };
 
-/// Schema posewright/report/1 (docs/report.md).
+/// What another command than plan found, to look at.
+struct ResultReport {
+  std::string title;        ///< the robot
+  std::string file;         ///< where the result was read from
+  std::string result_json;  ///< as the file is
+  bool ended = false;       ///< the result itself says that nothing more comes
+  double refresh = 0.0;     ///< s after which the page reads itself again; 0: never
+};
+
+/// Two plans beside each other.
+struct TwoPlansReport {
+  std::string title;
+  std::array<std::string, 2> files;
+  std::array<Report, 2> plans;
+};
+
+/// Schemas posewright/report/1, posewright/report-of-result/1, posewright/report-of-two-plans/1 (docs/report.md).
 std::string report_json(const Report& report);
+std::string report_json(const ResultReport& report);
+std::string report_json(const TwoPlansReport& report);
 /// The page: one file, no network.
 std::string report_html(const Report& report);
+std::string report_html(const ResultReport& report);
+std::string report_html(const TwoPlansReport& report);
 
 }  // namespace posewright

@@ -13,6 +13,7 @@ namespace posewright {
 std::string stations_text(const std::vector<StationRank>& ranks);
 
 /// The same for machines: schema posewright/stations/1.
-nlohmann::ordered_json stations_json(const std::vector<StationRank>& ranks);
+nlohmann::ordered_json stations_json(const Problem& problem, const StationOptions& options,
+                                     const std::vector<StationRank>& ranks);
 
 }  // namespace posewright

@@ -77,7 +77,8 @@ struct PoseAccuracy {
 struct PoseResidual {
   int id = 0;
   bool held_back = false;
-  std::vector<double> residuals;  ///< SI, NaN if not read
+  std::vector<double> before;     ///< SI, NaN if not read; placed (nominal if nothing is to be placed)
+  std::vector<double> residuals;  ///< calibrated, in the same order
   double weight = 1.0;            ///< smallest of its targets, robust fits
   std::optional<PoseAccuracy> accuracy{};
 };

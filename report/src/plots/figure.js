@@ -52,8 +52,41 @@ export const level = (label, tint) => ({
   points: { show: false },
 });
 
+/** Upright lines at places of the x axis. @param {{value: number, tint: string}[]} marks */
+export const uprights = (marks) => ({
+  hooks: {
+    draw: (plot) => {
+      const { ctx, bbox } = plot;
+      ctx.save();
+      for (const { value, tint } of marks) {
+        const x = plot.valToPos(value, 'x', true);
+        ctx.strokeStyle = colour(tint);
+        ctx.lineWidth = 2 * devicePixelRatio;
+        ctx.beginPath();
+        ctx.moveTo(x, bbox.top);
+        ctx.lineTo(x, bbox.top + bbox.height);
+        ctx.stroke();
+      }
+      ctx.restore();
+    },
+  },
+});
+
+/** Not named in the legend: the caption says what it is. @param {any} series */
+export const unlisted = (series) => ({ ...series, class: 'unlisted' });
+
 /** What the legend shows under the pointer. */
 const shownValue = (plot, value) => (value === null || value === undefined ? '' : number(value));
+
+/** Whole numbers that stand for names, such as poses. @param {(string|number)[]} names at 1, 2, … @param {string} label */
+export const namedAxis = (names, label) => ({
+  label,
+  incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500],
+  values: (plot, splits) => splits.map((v) => (Number.isInteger(v) ? String(names[v - 1] ?? '') : '')),
+});
+
+/** Half a place to either side. */
+export const around = (plot, low, high) => [low - 0.5, high + 0.5];
 
 /**
  * A plot with a caption that says how to read it, and its numbers as a table.

@@ -1,8 +1,7 @@
-import { bars, curve, dots, figure, level, logGrid, logValues } from './figure.js';
+import { around, bars, curve, dots, figure, level, logGrid, logValues } from './figure.js';
 import { number, percent } from '../text/units.js';
 
 const wholeNumbers = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000];
-const around = (u, low, high) => [low - 0.5, high + 0.5];
 
 /** Singular values in units of tolerance. @param {import('../types.js').Report} report */
 export function spectrumPlot(report) {

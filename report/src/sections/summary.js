@@ -1,10 +1,6 @@
-import { h, section } from '../dom.js';
+import { inShort, inWords, tile } from '../parts/tiles.js';
 import { duration, percentDown, quantity } from '../text/units.js';
 import * as say from '../text/sentences.js';
-
-/** @param {string} value @param {string} title @param {string} hint */
-const tile = (value, title, hint) =>
-  h('div', { class: 'tile' }, h('b', {}, value), h('span', {}, title), h('small', {}, hint));
 
 /** The smaller of what is known over the candidates and over the whole workspace: with few candidates the best of them
  * may be far from the best there is. @param {any} certificate */
@@ -29,9 +25,7 @@ function tiles(list) {
   const nuisance = kept.filter((p) => p.role === 'nuisance').length;
   const known = kept.filter((p) => p.role === 'interest');
   const gained = known.filter((p) => p.worth_identifying).length;
-  return h(
-    'div',
-    { class: 'tiles' },
+  return [
     tile(String(say.newPoses(plan).length), 'poses', 'to measure'),
     tile(
       String(kept.length - nuisance),
@@ -43,48 +37,30 @@ function tiles(list) {
       : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
     nearness(plan.certificate),
     jobTime(list.report.route),
-  );
+  ];
 }
 
 /** How long the robot is taken, by the route. @param {any} route */
 function jobTime(route) {
   if (!route || route.motions.length === 0) return null;
-  const { travel, changes, settle } = route.seconds;
+  const { travel, changes, settle, reading = 0 } = route.seconds;
   const parts = [
     `${duration(travel)} moving`,
-    settle > 0 && `${duration(settle)} standing still`,
+    settle > 0 && `${duration(settle)} settling`,
+    reading > 0 && `${duration(reading)} reading`,
     changes > 0 && `${duration(changes)} changes`,
   ].filter(Boolean);
-  return tile(duration(travel + changes + settle), 'for the whole route', parts.join(', '));
+  return tile(duration(travel + changes + settle + reading), 'for the whole route', parts.join(', '));
 }
 
 /** Figures and warnings: the picture comes next, words after it. @param {import('../pose_list.js').PoseList} list */
-export function summarySection(list) {
-  const warnings = say.warnings(list.report);
-  return h(
-    'section',
-    { id: 'summary', class: 'plain', 'aria-label': 'In short' },
-    tiles(list),
-    warnings.length > 0
-      ? h(
-          'div',
-          { class: 'warnings', role: 'note' },
-          h('h3', {}, 'Please note'),
-          h(
-            'ul',
-            {},
-            warnings.map((w) => h('li', {}, w)),
-          ),
-        )
-      : null,
-  );
-}
+export const summarySection = (list) => inShort(tiles(list), say.warnings(list.report));
 
 /** What the figures mean. @param {import('../pose_list.js').PoseList} list */
 export function wordsSection(list) {
   const { report } = list;
   const { plan } = report;
-  const sentences = [
+  return inWords([
     say.what(plan),
     say.accuracy(plan),
     say.worth(plan),
@@ -93,15 +69,5 @@ export function wordsSection(list) {
     say.loss(plan),
     say.clearance(plan, report.route),
     say.dropped(plan),
-  ].filter(Boolean);
-  return section(
-    'words',
-    'In words',
-    null,
-    h(
-      'ul',
-      { class: 'sentences' },
-      sentences.map((s) => h('li', {}, s)),
-    ),
-  );
+  ]);
 }

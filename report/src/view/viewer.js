@@ -36,9 +36,9 @@ function makeView(holder, picture, pick) {
 
 /**
  * The robot in its cell, with a slider through the measuring order.
- * @param {import('../pose_list.js').PoseList} list
+ * @param {import('../pose_list.js').PoseList} list @param {boolean} [movable] whether the reader may move poses
  */
-export function viewer(list) {
+export function viewer(list, movable = true) {
   const { report } = list;
   const picture = new Picture(report);
   const player = new Player(list);
@@ -92,7 +92,7 @@ export function viewer(list) {
     solid ? null : h('p', { class: 'note' }, lines),
     h('div', { class: 'now' }, stop, card),
     cameraPicture(list) ?? '',
-    poseMover(list),
+    movable ? poseMover(list) : '',
   );
   return { element, show: pick };
 }

@@ -1,0 +1,66 @@
+import { number, percent, quantity } from '../text/units.js';
+
+/**
+ * What a place may be coloured by.
+ * @typedef {object} Value
+ * @property {string} name
+ * @property {(rank: any) => number|null} of larger is better unless `least`
+ * @property {(value: number) => string} shown
+ * @property {boolean} [least] smaller is better
+ * @property {number} span differences below it are not worth a colour: relative to the best
+ */
+
+/** How many times as large σ is as from the best place that was planned alike, of a determinant: exp((Φ* − Φ)/(2 m)).
+ * @param {any[]} ranking @param {any} rank */
+export function sigmaRatio(ranking, rank) {
+  const best = Math.max(...alike(ranking, rank).map((r) => r.phi));
+  return Math.exp((best - rank.phi) / (2 * Math.max(rank.parameters, 1)));
+}
+
+/** Whether the criterion is a log-determinant of information, so that its differences are ratios of σ. @param {any} s */
+export const isDeterminant = (s) => s.criterion === 'o1' || s.criterion === 'ds';
+
+/** Places that can be compared with this one. @param {any[]} ranking @param {any} rank */
+const alike = (ranking, rank) => ranking.filter((r) => !r.why_not && r.in_full === rank.in_full && r.parameters === rank.parameters);
+
+/** @param {any} s stations.json @returns {Value[]} */
+export function valuesOf(s) {
+  const good = s.ranking.filter((r) => !r.why_not);
+  return [
+    isDeterminant(s)
+      ? { name: 'σ against the best place', of: (r) => sigmaRatio(s.ranking, r), shown: (v) => `${number(v, 4)} ×`, least: true, span: 0.1 }
+      : { name: `criterion ${s.criterion}`, of: (r) => r.phi, shown: (v) => number(v, 5), span: 0.1 },
+    { name: 'share of feasible configurations', of: (r) => r.feasible_share, shown: (v) => percent(v), span: 0.1 },
+    ...(good.some((r) => r.rho0 !== null)
+      ? [{ name: 'position error', of: (r) => r.rho0, shown: (v) => quantity(v, 'm', 3), least: true, span: 0.1 }]
+      : []),
+  ];
+}
+
+/** Where the colours begin (worst) and end (best). @param {any[]} ranking @param {Value} value @returns {[number, number]|null} */
+export function endsOf(ranking, value) {
+  const all = ranking
+    .filter((r) => !r.why_not)
+    .map(value.of)
+    .filter((v) => v !== null);
+  if (all.length === 0) return null;
+  const [low, high] = [Math.min(...all), Math.max(...all)];
+  return value.least ? [Math.max(high, low * (1 + value.span)), low] : [Math.min(low, high - value.span * Math.abs(high)), high];
+}
+
+/** 0: worst, 1: best. @param {any[]} ranking @param {any} rank @param {Value} value */
+export function shareOf(ranking, rank, value) {
+  const own = value.of(rank);
+  const ends = endsOf(ranking, value);
+  return own === null || ends === null || ends[0] === ends[1] ? null : (own - ends[0]) / (ends[1] - ends[0]);
+}
+
+/** Every place with the best of the sets that it is in. @param {any} s */
+export function placesOf(s) {
+  const places = new Map();
+  s.ranking.forEach((rank, k) => {
+    for (const [name, { position }] of Object.entries(rank.stations))
+      if (!places.has(name)) places.set(name, { name, position, rank, place: k + 1 });
+  });
+  return [...places.values()];
+}

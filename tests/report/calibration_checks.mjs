@@ -1,0 +1,91 @@
+// Pages of calibrations: every figure is recomputed from the residuals that the file holds.
+import { check, near } from './checks.mjs';
+import { mm, plotted, read, rowsOf } from './shown.mjs';
+
+const rms = (list) => Math.sqrt(list.reduce((sum, v) => sum + v * v, 0) / list.length);
+
+/** Distances of the targets P1, P2, P3 at a pose. @param {number[]} r residuals */
+const distances = (r) => [0, 3, 6].map((k) => Math.sqrt(r[k] ** 2 + r[k + 1] ** 2 + r[k + 2] ** 2));
+
+export async function checkCalibration(page, { data }) {
+  const c = data.result;
+  // RMS by axis from the readings of the poses, not from the sums that the program states.
+  const rows = await rowsOf(page, 'Errors by axis');
+  for (const [axis, offset] of [
+    ['x', 0],
+    ['y', 1],
+    ['z', 2],
+  ])
+    for (const held of [false, true]) {
+      const of = (key) => rms(c.poses.filter((p) => p.held_back === held).flatMap((p) => [0, 3, 6].map((k) => p[key][k + offset])));
+      const row = rows.find((r) => r[0] === axis && r[1] === (held ? 'held back' : 'fitted'));
+      near(read(row[2]), mm * of('before'), 2e-3, `${axis} before, ${row[1]}`);
+      near(read(row[3]), mm * of('residuals'), 2e-3, `${axis} after, ${row[1]}`);
+    }
+  const [, before, fitted, heldBack] = await plotted(page, 'plot-per-pose-m');
+  check(before.length === c.poses.length, 'one dot a pose before', before.length);
+  c.poses.forEach((p, k) => {
+    near(before[k], mm * rms(distances(p.before)), 1e-9, `error before at pose ${p.id}`);
+    near((p.held_back ? heldBack : fitted)[k], mm * rms(distances(p.residuals)), 1e-9, `error after at pose ${p.id}`);
+    check((p.held_back ? fitted : heldBack)[k] === null, `pose ${p.id} is drawn once`);
+  });
+  const [, along] = await plotted(page, 'plot-along-z-m');
+  check(along.filter((v) => v !== null).length === 3 * c.poses_fitted, 'one dot a target and fitted pose along z', along.length);
+  const [, counts, expected] = await plotted(page, 'plot-histogram');
+  check(counts.join() === c.histogram.counts.join(), 'the histogram is the file’s');
+  const all = c.poses.filter((p) => !p.held_back).flatMap((p) => p.residuals).length;
+  near(
+    counts.reduce((a, b) => a + b),
+    all,
+    1e-12,
+    'it holds every fitted residual',
+  );
+  near(
+    expected.reduce((a, b) => a + b),
+    all,
+    1e-6,
+    'normal noise would give as many',
+  );
+  // 68.27 % of normal numbers are within one σ, bins 7 to 10 (tables).
+  near(expected.slice(7, 11).reduce((a, b) => a + b) / all, 0.682689, 1e-5, 'of which 68.27 % within 1 σ');
+  await checkParameters(page, c);
+  const tile = page.locator('.tile', { hasText: 'poses not fitted' });
+  near(
+    read(await tile.locator('b').textContent()),
+    mm * rms(c.poses.filter((p) => p.held_back).flatMap((p) => distances(p.residuals))),
+    6e-3,
+    'the tile of poses held back',
+  );
+  const effects = await rowsOf(page, 'Effects that are not fitted');
+  effects.forEach((row, k) => near(read(row[1]), 100 * c.effects_left_out[k].share, 6e-2, `share of ${row[0]}`));
+}
+
+async function checkParameters(page, c) {
+  const estimated = c.parameters.filter((p) => p.estimated);
+  const rows = page.locator('.calibrated tbody tr');
+  check((await rows.count()) === estimated.length, 'one row a parameter that was estimated', await rows.count());
+  for (const p of estimated) {
+    const factor = { m: 1e3, rad: 180 / Math.PI }[p.unit];
+    const cells = await page.locator(`.calibrated tr[data-name="${p.name}"] td`).allTextContents();
+    check(Math.abs(read(cells[1]) - factor * p.value) <= 0.06 * factor * p.sigma, `value of ${p.name}`, cells[1]);
+    near(read(cells[3]), factor * p.sigma, 6e-2, `σ of ${p.name}`);
+    if (p.interval)
+      check(
+        cells[4].includes(' to ') && Math.abs(read(cells[4]) - factor * p.interval[0]) <= 0.06 * factor * p.sigma,
+        `interval of ${p.name}`,
+        cells[4],
+      );
+  }
+}
+
+export async function checkCalibrations(page, { data }) {
+  const all = data.result;
+  const rows = await rowsOf(page, 'Models');
+  check(rows.map((r) => r[0]).join() === all.models.map((c) => c.variant).join(), 'all models are in the table', rows.length);
+  all.models.forEach((c, k) => near(read(rows[k][2]), Math.sqrt(c.chi_square / c.freedom), 6e-3, `residuals over noise of ${c.variant}`));
+  const count = async () => page.locator('.calibrated tbody tr').count();
+  for (const c of all.models) {
+    await page.getByLabel('Model', { exact: true }).selectOption(c.variant);
+    check((await count()) === c.parameters.filter((p) => p.estimated).length, `the parameters of ${c.variant} are shown when it is chosen`);
+  }
+}

@@ -18,6 +18,7 @@ _SHOWN: dict[type, Callable[[Any], str]] = {
     _core.Simulation: _display_data.simulation,
     _core.Comparison: _display_data.comparison,
     _core.Compensation: _display_data.compensation,
+    _core.NextPoses: _display_data.next_poses,
     _core.Stations: _display_data.stations,
     _core.Exported: _display_data.exported,
     _core.Report: _display_data.report,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ._core import Calibration, Comparison, Compensation, Exported, Report, Simulation, Stations, _shown
+from ._core import Calibration, Comparison, Compensation, Exported, NextPoses, Report, Simulation, Stations, _shown
 from ._display_plan import percent
 from ._figures import bars, columns
 from ._markup import folded, frame, listed, shown, table
@@ -39,6 +39,17 @@ def simulation(result: Simulation) -> str:
         listed(json["verdict"]),
         bars("σ observed by σ predicted", ratios, mark=1.0),
         folded(f"{len(rows)} parameters", table(("parameter", "σ predicted", "σ observed", "in the 95 % interval"), rows, " nnn")))
+
+
+def next_poses(result: NextPoses) -> str:
+    json = result.to_dict()
+    curve = [point for point in json["curve"] if point["expected"] is not None]
+    rows = [(point["poses"], _shown(point["expected"], "m"), _shown(point["upper"], "m")) for point in curve]
+    return shown(
+        result.reason,
+        listed(result.notes),
+        columns("predicted error at the places over the number of poses, mm", [(str(point["poses"]), 1e3 * point["expected"]) for point in curve]),
+        folded(f"{len(rows)} numbers of poses", table(("poses", "predicted error", "below with 95 % confidence"), rows, "nnn")))
 
 
 def comparison(result: Comparison) -> str:

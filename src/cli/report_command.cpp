@@ -127,7 +127,7 @@ std::optional<ResultReport> changed_result(const std::filesystem::path& file, st
 /// Writes the page at every change of the result until it says that nothing more comes, or a signal. The last page
 /// stands still.
 int follow_result(const CommonOptions& common, const std::filesystem::path& page, const std::filesystem::path& file) {
-  constexpr auto pause = std::chrono::milliseconds(200);
+  constexpr auto between_looks = std::chrono::milliseconds(200);
   constexpr double refresh = 2.0;
   ResultReport report = report_result(file);
   std::string seen = report.result_json;
@@ -141,7 +141,7 @@ int follow_result(const CommonOptions& common, const std::filesystem::path& page
   write(!report.ended);
   if (!common.quiet) print_notes({"open " + page.string() + "; it follows " + file.string() + " (Ctrl-C ends)"});
   while (!report.ended && !watch.monitor().should_stop()) {
-    std::this_thread::sleep_for(pause);
+    std::this_thread::sleep_for(between_looks);
     std::optional<ResultReport> changed = changed_result(file, seen);
     if (!changed) continue;
     report = std::move(*changed);

@@ -35,8 +35,8 @@ TEST_P(InitOfSharedRobots, FindsTheChainAndPlansForTrackerAndCamera) {
     EXPECT_THAT(made.out, HasSubstr(GetParam().chain));
     EXPECT_EQ(made.err, "") << "the meshes are there";
     // Fewer candidates and no proof: the test asks whether it plans, not how well.
-    const ProgramRun plan =
-        run_program(folder.path(), {"plan", "problem.yaml", "--candidates", "60", "--restarts", "1", "--proof-time", "0", "--force"});
+    const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--candidates", "60", "--restarts", "1",
+                                                        "--proof-time", "0", "--force"});
     EXPECT_EQ(plan.exit_code, 0) << plan.err;
   }
 }

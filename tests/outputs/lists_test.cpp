@@ -167,8 +167,8 @@ TEST(PoseLists, HandEyeSamplesHaveTheRobotAsTheirToolWritesItAndWaitForWhatIsTra
       const YAML::Node sample = root["samples"][k];
       const Eigen::Isometry3d robot = transform_of(sample["robot"]["translation"], sample["robot"]["rotation"]);
       // Of a camera at the base the tool looks up the base in the effector's frame.
-      const Eigen::Isometry3d product = in_hand ? robot.inverse() * *sequence.poses[k].tool_pose
-                                                : robot * *sequence.poses[k].tool_pose;
+      const Eigen::Isometry3d product =
+          in_hand ? robot.inverse() * *sequence.poses[k].tool_pose : robot * *sequence.poses[k].tool_pose;
       EXPECT_TRUE(product.isApprox(Eigen::Isometry3d::Identity(), 1e-9)) << k;
       EXPECT_TRUE(std::isnan(sample["tracking"]["translation"]["x"].as<double>()));
       EXPECT_TRUE(std::isnan(sample["tracking"]["rotation"]["w"].as<double>()));

@@ -5,8 +5,8 @@
 
 namespace posewright {
 
-/// How all tables of the process are written: aligned, or as Markdown (GitHub Flavored Markdown 4.10) with an empty line
-/// before and after. A program sets it before it prints anything; the library never does.
+/// How all tables of the process are written: aligned, or as Markdown (GitHub Flavored Markdown 4.10) with an empty
+/// line before and after. A program sets it before it prints anything; the library never does.
 enum class TableLayout { aligned, markdown };
 void set_table_layout(TableLayout layout);
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "posewright/model/propose_chain.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
+#include "posewright/problem/problem.hpp"
 #include "posewright/tasks/init_problem.hpp"
 
 namespace posewright {

@@ -97,11 +97,15 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
   const std::string broken =
       inputs.write("broken.yaml", "posewright: 1\nrobot: {urdf: x.urdf, colour: red}\n").string();
   const std::vector<BadCommand> table = {
-      {{"paln", telescope}, 2, "unknown command 'paln'; commands of this version: observe, plan, select"},
+      {{"paln", telescope},
+       2,
+       "unknown command 'paln' (did you mean 'plan'?); commands of this version: init, observe, plan, select"},
       {{"plan"}, 2, "PROBLEM is missing"},
       {{"plan", telescope, "another"}, 2, "unexpected argument 'another'"},
-      {{"plan", telescope, "--pose", "4"}, 2, "unrecognised option '--pose' (--poses?); see posewright help plan"},
-      {{"plan", telescope, "--criteron", "o1"}, 2, "(--criterion?); see posewright help plan"},
+      {{"plan", telescope, "--pose", "4"},
+       2,
+       "unrecognised option '--pose' (did you mean '--poses'?); see posewright help plan"},
+      {{"plan", telescope, "--criteron", "o1"}, 2, "(did you mean '--criterion'?); see posewright help plan"},
       {{"plan", telescope, "--poses"}, 2, "--poses"},
       {{"plan", telescope, "--poses", "many"}, 2, "--poses many; a whole number from 1"},
       {{"plan", telescope, "--poses", "0"}, 2, "a whole number from 1"},
@@ -144,7 +148,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
     const std::string words = testing::PrintToString(bad.words);
     EXPECT_EQ(run.exit_code, bad.exit_code) << words << run.err;
     EXPECT_THAT(run.err, HasSubstr(bad.expected)) << words;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << words << run.err;
+    EXPECT_EQ(messages_in(run.err), 1) << words << run.err;
     EXPECT_EQ(run.out, "") << words;
     EXPECT_EQ(folder.count_files(), 0U) << words;
   }

@@ -83,7 +83,7 @@ TEST(CompareCommand, BadUsageIsToldInOneLine) {
     EXPECT_EQ(run.exit_code, 2) << bad.message;
     EXPECT_EQ(run.out, "");
     EXPECT_THAT(run.err, HasSubstr(bad.message));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(messages_in(run.err), 1) << run.err;
   }
 }
 

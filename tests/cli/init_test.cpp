@@ -163,7 +163,7 @@ TEST(Init, WhatIsMissingOrWrongIsOneLine) {
     const ProgramRun run = init(folder, words);
     EXPECT_EQ(run.exit_code, 2) << message;
     EXPECT_THAT(run.err, HasSubstr(message));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(messages_in(run.err), 1) << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "problem.yaml"));
   }
 }

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <thread>
 
 namespace posewright {
@@ -53,6 +54,13 @@ ProgramRun run_program(const std::filesystem::path& folder, const std::vector<st
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   return run;
+}
+
+int messages_in(const std::string& err) {
+  std::istringstream in(err);
+  int count = 0;
+  for (std::string line; std::getline(in, line);) count += line.starts_with("  ") ? 0 : 1;
+  return count;
 }
 
 }  // namespace posewright

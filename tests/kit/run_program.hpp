@@ -16,4 +16,7 @@ struct ProgramRun {
 ProgramRun run_program(const std::filesystem::path& folder, const std::vector<std::string>& words,
                        double interrupt_after = 0, int signals = 1);
 
+/// Lines of what went to stderr without those that show a line of a file and the caret under it.
+int messages_in(const std::string& err);
+
 }  // namespace posewright

@@ -115,7 +115,8 @@ TEST(KnownControllers, RefuseOtherRobotsAndNamesThatNobodyKnows) {
       run_program(folder.path(), {"export", (source / "tests/outputs/golden/plan.json").string(), "--to", "kuka-krl",
                                   "--controller", "kuka-kr-c9", "--unchecked"});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("is neither a file nor a known one; known: abb-irb120, "));
+  EXPECT_THAT(unknown.err,
+              HasSubstr("is neither a file nor a known one (did you mean 'kuka-kr-c4'?); known: abb-irb120, "));
   EXPECT_EQ(folder.count_files(), 0U);
 }
 

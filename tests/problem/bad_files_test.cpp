@@ -59,7 +59,8 @@ const BadFile root[] = {
     {"VersionMissing", arm, "posewright: 1\n", "", 1, "the file has no key 'posewright'; it is required"},
     {"VersionUnknown", arm, "posewright: 1", "posewright: 2", 1, "is '2'; the only known schema version is 1"},
     {"RootKeyUnknown", arm, "design:", "desing:", 31,
-     "unknown key 'desing'; allowed: posewright, robot, measurement, variants, workspace, design"},
+     "unknown key 'desing' (did you mean 'design'?); allowed: posewright, robot, measurement, variants, workspace, "
+     "design"},
     {"RootKeyTwice", arm, "design:", "robot:", 31, "duplicate key 'robot'; first given on line 2"},
     {"KeyIsAList", arm, "  base: base_link", "  [base]: base_link", 4, "a key of robot is a list"},
     {"SectionMissing", arm, arm.c_str(), "posewright: 1\nrobot: {urdf: a}\n", 1,
@@ -70,7 +71,8 @@ const BadFile root[] = {
 
 const BadFile serial_robot[] = {
     {"RobotKeyUnknown", arm, "base: base_link", "bse: base_link", 4,
-     "unknown key 'bse'; allowed: urdf, xacro, srdf, group, base, tip, placement, encoder_noise, parameter_names, "
+     "unknown key 'bse' (did you mean 'base'?); allowed: urdf, xacro, srdf, group, base, tip, placement, "
+     "encoder_noise, parameter_names, "
      "elastostatic"},
     {"RobotKeyTwice", arm, "tip: flange", "base: flange", 5, "duplicate key 'base'; first given on line 4"},
     {"RobotIsText", arm, arm.c_str(), "posewright: 1\nrobot: six_pus\n", 2, "robot is 'six_pus'; a mapping"},
@@ -125,7 +127,8 @@ const BadFile measurements[] = {
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
      "unknown key 'targets'; allowed: type, components, device, repeats, repeatability, load"},
-    {"TargetsForPosition", arm, "type: points", "type: position", 11, "unknown key 'targets'; allowed: type, target,"},
+    {"TargetsForPosition", arm, "type: points", "type: position", 11,
+     "unknown key 'targets' (did you mean 'target'?); allowed: type, target,"},
     {"TargetTwice", arm, "    P2:", "    P1:", 13, "duplicate key 'P1'; first given on line 12"},
     {"TargetTooShort", arm, "[0.27649, -0.04825, 0.09405]", "[1, 2]", 13, "P2 has 2 entries; expected 3 numbers"},
     {"TargetNameGlob", arm, "    P2:", "    'P*':", 13, "a plain name is expected"},
@@ -203,7 +206,8 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "bad.yaml:36: unknown key 'candidate'; allowed: variant, variants, truth, criterion, method, poses, "
+        "bad.yaml:36: unknown key 'candidate' (did you mean 'candidates'?); allowed: variant, variants, truth, "
+        "criterion, method, poses, "
         "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
         "fixed, test_poses");
   }

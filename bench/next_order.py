@@ -145,7 +145,7 @@ def draw_panel(rows, title, left, floor):
     values = [v for r in rows for v in (r["next"], r["lower quartile"], r["upper quartile"], floor) if math.isfinite(v)]
     low, high = math.log10(min(values)) - 0.05, math.log10(min(max(values), 20 * floor)) + 0.05
     n0, n1 = math.log10(rows[0]["poses"]), math.log10(rows[-1]["poses"])
-    width, top, bottom = 190, 40, 270
+    width, top, bottom = 190, 44, 270
 
     def x(n):
         return left + width * (math.log10(n) - n0) / (n1 - n0)
@@ -153,13 +153,15 @@ def draw_panel(rows, title, left, floor):
     def y(value):
         return bottom - (min(math.log10(value), high) - low) / (high - low) * (bottom - top) if math.isfinite(value) else top
 
-    text = [f'<text x="{left}" y="22" fill="#222">{title}</text>']
+    text = [f'<text x="{left}" y="22" fill="#222">{title}</text>',
+            f'<text x="{left + width}" y="288" text-anchor="end" fill="#444">poses</text>',
+            f'<text x="{left}" y="37" fill="#444">mm</text>']
     for tick in (m * 10.0 ** e for e in range(-3, 4) for m in (1, 2, 5)):
         if low <= math.log10(tick) <= high:
             text.append(f'<line x1="{left}" x2="{left + width}" y1="{y(tick):.1f}" y2="{y(tick):.1f}" stroke="#ddd"/>'
                         f'<text x="{left - 5}" y="{y(tick) + 4:.1f}" text-anchor="end" fill="#444">{tick:g}</text>')
     for n in (5, 10, 20, 50, 100):
-        if rows[0]["poses"] <= n <= rows[-1]["poses"]:
+        if rows[0]["poses"] <= n <= 0.6 * rows[-1]["poses"]:
             text.append(f'<text x="{x(n):.1f}" y="288" text-anchor="middle" fill="#444">{n}</text>')
     band = [(r["poses"], r["upper quartile"]) for r in rows] + [(r["poses"], r["lower quartile"]) for r in reversed(rows)]
     text.append(f'<polygon points="{" ".join(f"{x(n):.1f},{y(v):.1f}" for n, v in band)}" fill="#b3541e" fill-opacity="0.2"/>')
@@ -176,7 +178,7 @@ def write_svg(path, panels):
     legend = ('<path d="M54 314h24" stroke="#1f6f8b" stroke-width="2"/><text x="84" y="318" fill="#222">order of next</text>'
               '<rect x="190" y="307" width="24" height="14" fill="#b3541e" fill-opacity="0.2"/><path d="M190 314h24" stroke="#b3541e" '
               'stroke-width="2"/><text x="220" y="318" fill="#222">random orders: quartiles, median</text>'
-              '<path d="M440 314h24" stroke="#444" stroke-dasharray="4 3"/><text x="470" y="318" fill="#222">all poses fitted, + 10 %</text>')
+              '<path d="M478 314h24" stroke="#444" stroke-dasharray="4 3"/><text x="508" y="318" fill="#222">all poses fitted, + 10 %</text>')
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {max(width, 700)} 335" font-family="sans-serif" font-size="13">'
                     f'<rect width="{max(width, 700)}" height="335" fill="#ffffff"/>\n' + "\n".join(panels) + "\n" + legend + "</svg>\n",
                     encoding="utf-8")

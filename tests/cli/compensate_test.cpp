@@ -80,7 +80,7 @@ TEST_F(CompensateCommand, TakesTheRobotThatWasCalibratedAndNoOther) {
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("cal.yaml:3: p.yaml has sha256 "));
   EXPECT_THAT(other.err, HasSubstr("or --problem FILE if it is the same robot"));
-  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1);
+  EXPECT_EQ(messages_in(other.err), 1);
   EXPECT_FALSE(is_there("out.csv"));
   EXPECT_EQ(run({"cal.yaml", "list.csv", "-o", "out.csv", "--problem", "p.yaml"}).exit_code, 0);
 

@@ -75,7 +75,7 @@ Outcome search(const DesignTask& task, std::vector<int> start, const Monitor& mo
 Design DetmaxPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   return run_restarts(task, options, monitor, "detmax",
                       [](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
-                        return search(part, start_of_restart(part, i, random, watch), watch);
+                        return search(part, raw_start(part, i, random), watch);
                       });
 }
 

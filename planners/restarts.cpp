@@ -94,14 +94,14 @@ int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
   return int(std::clamp(most_products / (passes * pass * options.restarts), 0.0, double(options.kicks)));
 }
 
-namespace {
-
 std::vector<int> raw_start(const DesignTask& task, std::size_t index, Random& random) {
   const bool weights = task.approximate != nullptr && !task.approximate->support.empty();
   if (weights && index == 0) return rounded_start(task);
   if (weights && index % 2 == 1) return weighted_start(task, random);
   return uniform_start(task, random);
 }
+
+namespace {
 
 std::vector<int> settle_smoothly(const Criterion& criterion, const CandidateView& candidates, std::vector<int> members,
                                  const Monitor& monitor) {

@@ -35,6 +35,7 @@ def results(kr270, small_plan, examples, tmp_path_factory):
         "simulation": simulation,
         "calibration": calibration,
         "compensation": pw.compensate(calibrated, small_plan),
+        "next": pw.next_poses(kr270, folder / "measured.csv", poses=2, candidates=60),
         "comparison": pw.compare(kr270, {"planned <1>": small_plan, "first": small_plan.configurations[:14]}, candidates=60),
         "stations": pw.stations(pw.Problem(examples / "cell" / "problem.yaml"), candidates=20, restarts=1, full=0),
         "block evaluation": pw.evaluate_blocks(blocks, nuisance=2),
@@ -144,6 +145,10 @@ def test_the_other_results_show_what_their_json_says(results, pages):
     assert [value for _, value in values(pages["block evaluation"], "singular values")] == results["block evaluation"].singular_values.tolist()
     assert [value for _, value in values(pages["route"], "seconds of each motion")] == [m["seconds"] for m in json_["route"]["motions"]]
     assert len(table(pages["route"], ["from", "to"])) == 18
+    curve = [point for point in json_["next"]["curve"] if point["expected"] is not None]
+    assert len(curve) > 5
+    assert [value for _, value in values(pages["next"], "predicted error at the places over the number of poses, mm")] == [
+        1e3 * point["expected"] for point in curve]
     ratios = dict(values(pages["simulation"], "σ observed by σ predicted"))
     for p in json_["simulation"]["parameters"]:
         assert ratios[p["name"]] == p["sigma_observed"] / p["sigma_predicted"]

@@ -2,6 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # cmake -D SOURCE=… -P check_layers.cmake: every #include follows the table of docs/architecture.md.
 set(may_support "")
+set(may_processes support)
 set(may_blocks support)
 set(may_controller support)
 set(may_problem support controller)

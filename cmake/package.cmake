@@ -1,5 +1,5 @@
 # `cpack -G DEB` in the build folder: the packages posewright, libposewright-dev and, with POSEWRIGHT_BUILD_PYTHON,
-# python3-posewright. scripts/apt-repository makes a repository of them.
+# python3-posewright, with POSEWRIGHT_MPI posewright-mpi. scripts/apt-repository makes a repository of them.
 set(POSEWRIGHT_MAINTAINER "the posewright developers <developers@posewright.example>" CACHE STRING "Name <address> of who builds the package")
 
 # Debian wants compressed pages, a change log of its own and the licence in one form.
@@ -49,5 +49,8 @@ include(cmake/packaging/program.cmake)
 include(cmake/packaging/development.cmake)
 if(POSEWRIGHT_BUILD_PYTHON)
   include(cmake/packaging/python.cmake)
+endif()
+if(POSEWRIGHT_MPI)
+  include(cmake/packaging/processes.cmake)
 endif()
 include(CPack)

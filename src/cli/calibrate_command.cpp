@@ -194,7 +194,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
 Command calibrate_command() {
   return {
       "calibrate",
-      "PROBLEM DATA.csv [MORE.csv…]",
+      "PROBLEM DATA.csv [MORE.csv...]",
       "Estimates a variant's parameters from measured data: values, intervals, residuals, tests of the model. Several "
       "files are campaigns: one robot, and for each file a base of its own.",
       calibrate_command_options,

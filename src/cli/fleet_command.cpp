@@ -23,11 +23,11 @@ namespace fs = std::filesystem;
 
 po::options_description fleet_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                        //
-      ("output-dir", text("DIR"), "folder for NAME.plan.json and NAME.poses.csv of each (.)")  //
-      ("poses", text("N"), "number of poses of every plan (design: poses of each problem)")    //
-      ("restarts", text("k"), "starts of each search (10)")                                    //
-      ("force", "replace files that posewright did not write")                                 //
+  options.add_options()                                                                                         //
+      ("output-dir", text("DIR"), "folder for NAME.plan.json and NAME.poses.csv of each, made if need be (.)")  //
+      ("poses", text("N"), "number of poses of every plan (design: poses of each problem)")                     //
+      ("restarts", text("k"), "starts of each search (10)")                                                     //
+      ("force", "replace files that posewright did not write")                                                  //
       ("time-limit", text("S"), "stop after S seconds; what is planned by then is written");
   options.add(task_options()).add(package_options());
   return options;
@@ -119,7 +119,11 @@ int run_fleet(const po::variables_map& values, const Words& positional) {
     files.push_back({folder / (name + ".plan.json"), folder / (name + ".poses.csv")});
     outputs.insert(outputs.end(), {files.back().plan, files.back().poses});
   }
-  check_output_files(values, outputs, inputs);
+  std::error_code code;
+  if (engine->writes()) {
+    fs::create_directories(folder, code);
+    check_output_files(values, outputs, inputs);
+  }
   const auto render = [&](const Plan& plan, std::size_t i) {
     const std::string csv = poses_csv(plan);
     ByteWriter bytes;
@@ -147,7 +151,7 @@ Command fleet_command() {
           "PROBLEM...",
           "Plans several robots, each by its own problem file.",
           fleet_command_options,
-          "posewright fleet cells/*.yaml --output-dir plans",
+          "posewright fleet examples/delta/problem.yaml examples/gough/problem.yaml --output-dir plans",
           run_fleet,
           true};
 }

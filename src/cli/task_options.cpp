@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <string_view>
 
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
@@ -15,9 +16,9 @@ namespace posewright::cli {
 namespace {
 
 // They change how a result is made, shown or kept, and not the result.
-constexpr std::array<const char*, 14> of_no_account = {"threads",    "json",      "quiet",     "verbose", "output",
-                                                       "output-dir", "poses-csv", "force",     "resume",  "shard",
-                                                       "time-limit", "data",      "positional"};
+constexpr auto of_no_account =
+    std::to_array<std::string_view>({"threads", "json", "markdown", "quiet", "verbose", "output", "output-dir",
+                                     "poses-csv", "force", "resume", "shard", "time-limit", "data", "positional"});
 
 /// What is computed: command, options and all files that were read.
 std::string computation(const po::variables_map& values, const std::string& command, const std::filesystem::path& log) {

@@ -22,6 +22,7 @@ SLOW = {
     "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000": "--draws 200",
     "posewright simulate examples/telescope/problem.yaml plan.json": "--draws 20",
     "posewright simulate examples/telescope/problem.yaml rigid.json": "--draws 20",
+    "posewright simulate problem.yaml plan.json --draws 100000": "--draws 40",
     "posewright plan problem.yaml --parameters": "--time-limit 3",
     "posewright plan problem.yaml --poses 12 --candidates-from": "--time-limit 3",
     "posewright select blocks.npy": "--time-limit 3",
@@ -39,6 +40,8 @@ BEFORE = {
     "docs/calibrate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + READINGS.format("later.csv --seed 2"),
     "docs/commands.md": OWN + BLOCKS.format("blocks.npy") + KR270 + " --poses 40\n" + READINGS.format("measured.csv")
     + READINGS.format("more.csv --seed 2") + f"posewright plan examples/kr270/problem.yaml {QUICK} --poses 20 -o - --poses-csv data.csv\n",
+    "docs/cluster.md": OWN + KR270 + "\n",
+    "docs/next.md": OWN,
     "docs/compensate.md": OWN + KR270 + "\n" + READINGS.format("measured.csv") + "posewright route plan.json -o route.json\n"
     + "posewright export route.json --to kuka-krl --controller kuka-kr-c4 -o WELD.src\n",
     "docs/compare.md": TELESCOPE + "\n" + TELESCOPE + " --seed 2 -o - --poses-csv mine.csv\n",
@@ -65,6 +68,7 @@ BETWEEN = {
     ("docs/commands.md", "posewright evaluate examples/telescope"): f"{TELESCOPE} -o - --poses-csv poses.csv --force\n",
     ("docs/commands.md", "posewright simulate"): f"{KR270} -o plan.json --poses-csv - --force\n",
     ("docs/commands.md", "posewright export"): ROUTED.replace("-o plan.json", "-o plan.json --poses-csv - --force"),
+    ("docs/next.md", "posewright next problem.yaml --data measured.csv -k 2"): "posewright simulate problem.yaml next.csv --draws 2 --data measured.csv\n",
     ("docs/simulate.md", "posewright simulate examples/telescope"): f"{TELESCOPE} --variant rigid -o plan.json --poses-csv - --force\n",
 }
 

@@ -29,5 +29,5 @@ def packages(folder):
     found = {file.name.split("_")[0]: file for file in folder.glob("*.deb")}
     if not found:
         skip(f"{folder} holds no packages: what makes them was skipped")
-    assert set(found) == {"posewright", "libposewright-dev", "python3-posewright"}, f"packages: {sorted(found)}"
+    assert set(found) == {"posewright", "libposewright-dev", "python3-posewright", "posewright-mpi"}, f"packages: {sorted(found)}"
     return found

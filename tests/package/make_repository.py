@@ -18,6 +18,6 @@ with tempfile.TemporaryDirectory() as home:  # a key of this run alone; paths of
     subprocess.run(["gpgconf", "--kill", "all"], env=keys)
 names = {file.name for file in folder.iterdir()}
 assert {"Packages", "Packages.gz", "Release", "InRelease", "Release.gpg", "posewright.asc"} < names, names
-assert len([name for name in names if name.endswith(".deb")]) == 3 and not any(name.startswith(".new") for name in names)
+assert len([name for name in names if name.endswith(".deb")]) == 4 and not any(name.startswith(".new") for name in names)
 assert f"deb [signed-by={folder}/posewright.asc] file:{folder} ./" in said, said
-assert folder.joinpath("Packages").read_text().count("\nFilename: ./") == 3
+assert folder.joinpath("Packages").read_text().count("\nFilename: ./") == 4

@@ -20,12 +20,10 @@ std::string command_names() {
 
 std::string general_help() {
   std::string text = fmt::format("posewright: {}\n\nUsage: posewright COMMAND [options]\n\nCommands:\n", purpose);
-  // What leaves no room for its summary has it on a line of its own.
   constexpr std::size_t column = 28;
   for (const Command& command : commands()) {
     const std::string call = command.name + " " + command.arguments;
-    text += call.size() < column ? fmt::format("  {:<{}}{}\n", call, column, command.summary)
-                                 : fmt::format("  {}\n  {:<{}}{}\n", call, "", column, command.summary);
+    text += fmt::format("  {:<{}}{}{}\n", call, column, call.size() < column ? "" : "  ", command.summary);
   }
   text += fmt::format(
       "  {:<28}{}\n  {:<28}{}\n  {:<28}{}\n\nExample:\n  {}\n\n"

@@ -30,7 +30,7 @@ std::filesystem::path module_file() {
   std::error_code code;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", code);
   // Beside the build tree's program, and where it is installed.
-  for (const char* folder : {"../lib/posewright", installed_module_folder}) {
+  for (const char* folder : {"../lib/posewright/modules", installed_module_folder}) {
     const auto file = program.parent_path() / folder / "posewright_mpi.so";
     if (std::filesystem::exists(file, code)) return file;
   }

@@ -21,7 +21,7 @@ HELD = {
         "usr/lib/ARCH/libposewright.a", "usr/lib/ARCH/cmake/posewright/posewright-config.cmake",
         "usr/lib/ARCH/cmake/posewright/posewright-targets.cmake", "usr/lib/ARCH/cmake/posewright/dependencies.cmake"],
     "python3-posewright": ["usr/lib/python3/dist-packages/posewright/__init__.py", "usr/lib/python3/dist-packages/posewright/py.typed"],
-    "posewright-mpi": ["usr/lib/ARCH/posewright/posewright_mpi.so"]}
+    "posewright-mpi": ["usr/lib/posewright/modules/posewright_mpi.so"]}
 LIBRARIES = ("libc6", "libompl16", "libfcl0.7", "libnlopt0", "libyaml-cpp0.7")
 
 

@@ -18,7 +18,7 @@ import time
 import unittest
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv.pop(1)).resolve(), pathlib.Path(sys.argv.pop(1)).resolve()
-MODULE = PROGRAM.parent.parent / "lib" / "posewright" / "posewright_mpi.so"
+MODULE = PROGRAM.parent.parent / "lib" / "posewright" / "modules" / "posewright_mpi.so"
 MPIRUN = shutil.which("mpirun")
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_btl_base_warn_component_unused": "0"}

@@ -20,12 +20,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A process that has nothing to do looks this often if there is something.
-constexpr auto glance = 100us;
+// A process looks for messages this often: soon after the last one, then less and less, because looking takes time from
+// the tasks.
+constexpr std::chrono::microseconds first_pause = 100us, longest_pause = 2ms;
 // After an error the others are waited for no longer.
 constexpr auto patience = 2s;
 // Tasks beside those that its threads are at, so that no thread waits for a message.
-constexpr std::size_t ahead = 1;
+constexpr std::size_t ahead = 4;
 // Broadcasts in pieces: MPI counts in int.
 constexpr std::size_t piece = std::size_t(1) << 30;
 
@@ -48,10 +49,10 @@ class Pool {
     open_.push_back(index);
     wanted_.notify_one();
   }
-  /// The next result, if there is one within a glance. Throws what a task threw.
-  bool take(std::pair<std::size_t, std::string>& found) {
+  /// The next result, if there is one within this time. Throws what a task threw.
+  bool take(std::pair<std::size_t, std::string>& found, std::chrono::microseconds pause) {
     std::unique_lock lock(mutex_);
-    ready_.wait_for(lock, glance, [&] { return error_ || !done_.empty(); });
+    ready_.wait_for(lock, pause, [&] { return error_ || !done_.empty(); });
     if (error_) std::rethrow_exception(error_);
     if (done_.empty()) return false;
     found = std::move(done_.front());
@@ -87,6 +88,16 @@ class Pool {
   std::deque<std::pair<std::size_t, std::string>> done_;
   std::exception_ptr error_;
   std::vector<std::jthread> threads_;  // last: they end before what they use
+};
+
+/// How long to wait for the next message.
+class Pause {
+ public:
+  std::chrono::microseconds length() const { return length_; }
+  void after(bool something_came) { length_ = something_came ? first_pause : std::min(2 * length_, longest_pause); }
+
+ private:
+  std::chrono::microseconds length_ = first_pause;
 };
 
 class MpiWorkers : public Workers {
@@ -128,7 +139,7 @@ class MpiWorkers : public Workers {
       MPI_Test(&together, &all, MPI_STATUS_IGNORE);
       if (all == 0 && exit_code != 0 && std::chrono::steady_clock::now() - begin > patience)
         MPI_Abort(MPI_COMM_WORLD, exit_code);
-      if (all == 0) std::this_thread::sleep_for(glance);
+      if (all == 0) std::this_thread::sleep_for(longest_pause);
     }
     MPI_Finalize();
   }
@@ -145,11 +156,14 @@ class MpiWorkers : public Workers {
     int working = processes_ - 1;  // that have not been told that nothing is left
     std::pair<std::size_t, std::string> own;
     std::size_t running = 0;
+    Pause pause;
     while (open > 0 || working > 0) {
       for (; running < here + ahead && next < indices.size(); ++running) pool.give(indices[next++]);
-      while (answer(indices, next, open, working, finished)) {
-      }
-      if (!pool.take(own)) continue;
+      bool came = false;
+      while (answer(indices, next, open, working, finished)) came = true;
+      const bool took = pool.take(own, pause.length());
+      pause.after(came || took);
+      if (!took) continue;
       --running;
       --open;
       finished(own.first, own.second);
@@ -187,6 +201,7 @@ class MpiWorkers : public Workers {
   void work_off(std::size_t here, Pool& pool) {
     std::size_t running = 0;
     bool more = true, asked = false;
+    Pause pause;
     std::pair<std::size_t, std::string> own;
     while (more || running > 0) {
       if (more && !asked && running < here + ahead) {
@@ -194,8 +209,11 @@ class MpiWorkers : public Workers {
         MPI_Send(&wanted, int(sizeof wanted), MPI_BYTE, 0, asks, MPI_COMM_WORLD);
         asked = true;
       }
-      if (asked && take_tasks(pool, running, more)) asked = false;
-      if (!pool.take(own)) continue;
+      const bool came = asked && take_tasks(pool, running, more);
+      if (came) asked = false;
+      const bool took = pool.take(own, pause.length());
+      pause.after(came || took);
+      if (!took) continue;
       --running;
       std::string message(reinterpret_cast<const char*>(&own.first), sizeof own.first);
       message += own.second;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -13,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/process_module.hpp"
 
 namespace posewright {
@@ -20,17 +22,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A process looks for messages this often: soon after the last one, then less and less, because looking takes time from
-// the tasks.
-constexpr std::chrono::microseconds first_pause = 100us, longest_pause = 2ms;
+// A process looks for messages this often: soon at first and where threads wait, then less and less, because looking
+// takes time from the tasks.
+constexpr std::chrono::nanoseconds first_pause = 100us, longest_pause = 2ms;
 // After an error the others are waited for no longer.
 constexpr auto patience = 2s;
-// Tasks beside those that its threads are at, so that no thread waits for a message.
-constexpr std::size_t ahead = 4;
+// A process has tasks ahead for so long, so that no thread waits for a message. Of long tasks none: at the end another
+// process would wait for them.
+constexpr double seconds_ahead = 8e-3, long_task = 0.2;
+constexpr double most_ahead = 4096;
 // Broadcasts in pieces: MPI counts in int.
 constexpr std::size_t piece = std::size_t(1) << 30;
 
 enum Tag : int { asks = 1, tasks = 2, result = 3 };
+
+using Results = std::vector<std::pair<std::size_t, std::string>>;
 
 /// Threads that take indices from a queue and put results into another.
 class Pool {
@@ -44,23 +50,36 @@ class Pool {
     wanted_.notify_all();
   }
 
-  void give(std::size_t index) {
+  void give(const std::size_t* indices, std::size_t count) {
     const std::scoped_lock lock(mutex_);
-    open_.push_back(index);
-    wanted_.notify_one();
+    open_.insert(open_.end(), indices, indices + count);
+    running_ += count;
+    for (std::size_t i = 0; i < count; ++i) wanted_.notify_one();
   }
-  /// The next result, if there is one within this time. Throws what a task threw.
-  bool take(std::pair<std::size_t, std::string>& found, std::chrono::microseconds pause) {
+  /// What is finished after this time, or as soon as there is something and no task in the queue. Throws what a task
+  /// threw.
+  Results take(std::chrono::nanoseconds pause) {
     std::unique_lock lock(mutex_);
-    ready_.wait_for(lock, pause, [&] { return error_ || !done_.empty(); });
+    ready_.wait_for(lock, pause, [&] { return error_ || worth_waking(); });
     if (error_) std::rethrow_exception(error_);
-    if (done_.empty()) return false;
-    found = std::move(done_.front());
-    done_.pop_front();
-    return true;
+    running_ -= done_.size();
+    return std::exchange(done_, {});
+  }
+  /// Tasks that were given and not taken.
+  std::size_t running() const { return running_; }
+  /// How many more it should be given now.
+  std::size_t wanted() {
+    const std::scoped_lock lock(mutex_);
+    const auto threads = double(threads_.size());
+    const double mean = finished_ > 0 ? seconds_ / double(finished_) : long_task;
+    const double ahead = mean < long_task ? std::min(std::ceil(seconds_ahead * threads / mean), most_ahead) : 0.0;
+    const std::size_t enough = threads_.size() + std::size_t(ahead);
+    const std::size_t has = running_ - done_.size();
+    return has < enough ? enough - has : 0;
   }
 
  private:
+  bool worth_waking() const { return open_.empty() && !done_.empty(); }
   void work(int worker, const Task& task, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (wanted_.wait(lock, stop, [&] { return !open_.empty(); })) {
@@ -69,15 +88,19 @@ class Pool {
       lock.unlock();
       std::string bytes;
       std::exception_ptr error;
+      const auto begin = std::chrono::steady_clock::now();
       try {
         bytes = task(index, worker);
       } catch (...) {
         error = std::current_exception();
       }
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
       lock.lock();
+      seconds_ += seconds.count();
+      ++finished_;
       if (error) error_ = error;
       else done_.emplace_back(index, std::move(bytes));
-      ready_.notify_one();
+      if (error || worth_waking()) ready_.notify_one();
     }
   }
 
@@ -85,20 +108,75 @@ class Pool {
   std::condition_variable_any wanted_;
   std::condition_variable ready_;
   std::deque<std::size_t> open_;
-  std::deque<std::pair<std::size_t, std::string>> done_;
+  Results done_;
   std::exception_ptr error_;
+  std::size_t running_ = 0;  // of the caller's thread
+  double seconds_ = 0.0;
+  long finished_ = 0;
   std::vector<std::jthread> threads_;  // last: they end before what they use
 };
 
 /// How long to wait for the next message.
 class Pause {
  public:
-  std::chrono::microseconds length() const { return length_; }
-  void after(bool something_came) { length_ = something_came ? first_pause : std::min(2 * length_, longest_pause); }
+  /// @param busy  all threads have something to do
+  std::chrono::nanoseconds length(bool busy) const {
+    constexpr int part = 8;
+    const std::chrono::nanoseconds since = std::chrono::steady_clock::now() - (busy ? begin_ : last_);
+    return std::clamp(since / part, first_pause, longest_pause);
+  }
+  void something_came() { last_ = std::chrono::steady_clock::now(); }
 
  private:
-  std::chrono::microseconds length_ = first_pause;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), last_ = begin_;
 };
+
+/// Waits until the others are that far. MPI's own waiting keeps a core busy that another process of this machine may
+/// need; this one looks often at first, and then adds no more than a part of what was waited for.
+void wait(MPI_Request& request) {
+  constexpr int looks_at_once = 200, part = 8;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int looks = 1;; ++looks) {
+    int there = 0;
+    MPI_Test(&request, &there, MPI_STATUS_IGNORE);
+    if (there != 0) return;
+    if (looks < looks_at_once) continue;
+    const auto waited = std::chrono::steady_clock::now() - begin;
+    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / part, longest_pause));
+  }
+}
+
+/// Messages on their way. MPI's own sending waits, on a busy core, until the other process looks for them.
+class Outbox {
+ public:
+  void send(std::string bytes, int to, int tag) {
+    Letter& letter = letters_.emplace_back(std::move(bytes), MPI_REQUEST_NULL);
+    MPI_Isend(letter.bytes.data(), int(letter.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD, &letter.request);
+    forget_arrived();
+  }
+  void forget_arrived() {
+    for (int gone = 1; gone != 0 && !letters_.empty();) {
+      MPI_Test(&letters_.front().request, &gone, MPI_STATUS_IGNORE);
+      if (gone != 0) letters_.pop_front();
+    }
+  }
+  void wait_for_all() {
+    for (Letter& letter : letters_) wait(letter.request);
+    letters_.clear();
+  }
+
+ private:
+  struct Letter {
+    std::string bytes;
+    MPI_Request request;
+  };
+  std::deque<Letter> letters_;  // its elements stay where they are
+};
+
+template <class T>
+std::string bytes_of(const T* values, std::size_t count) {
+  return {reinterpret_cast<const char*>(values), count * sizeof(T)};
+}
 
 class MpiWorkers : public Workers {
  public:
@@ -123,10 +201,10 @@ class MpiWorkers : public Workers {
 
   void share(std::string& bytes) override {
     unsigned long long size = bytes.size();
-    MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+    broadcast(&size, sizeof size);
     bytes.resize(size);
     for (std::size_t at = 0; at < size; at += piece)
-      MPI_Bcast(bytes.data() + at, int(std::min<std::size_t>(piece, size - at)), MPI_BYTE, 0, MPI_COMM_WORLD);
+      broadcast(bytes.data() + at, std::min<std::size_t>(piece, size - at));
     // A tree of messages: every other process gets it once.
     count(2L * (processes_ - 1), long(size + sizeof size) * (processes_ - 1));
   }
@@ -145,6 +223,12 @@ class MpiWorkers : public Workers {
   }
 
  private:
+  static void broadcast(void* bytes, std::size_t size) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(bytes, int(size), MPI_BYTE, 0, MPI_COMM_WORLD, &request);
+    wait(request);
+  }
+
   void count(long messages, long bytes) {
     traffic_.messages += messages;
     traffic_.bytes += bytes;
@@ -152,77 +236,86 @@ class MpiWorkers : public Workers {
 
   /// The first process: its own threads take tasks as the others do.
   void hand_out(const std::vector<std::size_t>& indices, std::size_t here, Pool& pool, const TaskResult& finished) {
-    std::size_t next = 0, open = indices.size();
-    int working = processes_ - 1;  // that have not been told that nothing is left
-    std::pair<std::size_t, std::string> own;
-    std::size_t running = 0;
+    Open open{indices, 0, indices.size(), processes_ - 1};
     Pause pause;
-    while (open > 0 || working > 0) {
-      for (; running < here + ahead && next < indices.size(); ++running) pool.give(indices[next++]);
+    while (open.results > 0 || open.working > 0) {
+      const std::size_t given = std::min(pool.wanted(), indices.size() - open.next);
+      pool.give(indices.data() + open.next, given);
+      open.next += given;
       bool came = false;
-      while (answer(indices, next, open, working, finished)) came = true;
-      const bool took = pool.take(own, pause.length());
-      pause.after(came || took);
-      if (!took) continue;
-      --running;
-      --open;
-      finished(own.first, own.second);
+      while (answer(open, finished)) came = true;
+      const Results own = pool.take(pause.length(pool.running() >= here));
+      if (came || !own.empty()) pause.something_came();
+      open.results -= own.size();
+      for (const auto& [index, bytes] : own) finished(index, bytes);
     }
+    outbox_.wait_for_all();
   }
 
+  /// Of a group, as the first process sees it.
+  struct Open {
+    const std::vector<std::size_t>& indices;
+    std::size_t next, results;  // to be given, to come
+    int working;                // processes that have not been told that nothing is left
+  };
+
   /// One message of another process, if there is one.
-  bool answer(const std::vector<std::size_t>& indices, std::size_t& next, std::size_t& open, int& working,
-              const TaskResult& finished) {
+  bool answer(Open& open, const TaskResult& finished) {
     int there = 0;
     MPI_Status status;
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
     if (there == 0) return false;
     const std::string message = received(status);
     count(1, long(message.size()));
+    ByteReader from(message);
     if (status.MPI_TAG == result) {
-      std::size_t index = 0;
-      std::copy_n(message.data(), sizeof index, reinterpret_cast<char*>(&index));
-      --open;
-      finished(index, std::string_view(message).substr(sizeof index));
+      std::string bytes;
+      while (!from.at_end()) {
+        const auto index = from.get<std::size_t>();
+        from.get(bytes);
+        --open.results;
+        finished(index, bytes);
+      }
       return true;
     }
     // It asks for so many; an empty answer: nothing is left.
-    std::size_t wanted = 0;
-    std::copy_n(message.data(), sizeof wanted, reinterpret_cast<char*>(&wanted));
-    const std::size_t given = std::min(wanted, indices.size() - next);
-    MPI_Send(indices.data() + next, int(given * sizeof(std::size_t)), MPI_BYTE, status.MPI_SOURCE, tasks,
-             MPI_COMM_WORLD);
+    const std::size_t given = std::min(from.get<std::size_t>(), open.indices.size() - open.next);
+    outbox_.send(bytes_of(open.indices.data() + open.next, given), status.MPI_SOURCE, tasks);
     count(1, long(given * sizeof(std::size_t)));
-    next += given;
-    if (given == 0) --working;
+    open.next += given;
+    if (given == 0) --open.working;
     return true;
   }
 
   void work_off(std::size_t here, Pool& pool) {
-    std::size_t running = 0;
     bool more = true, asked = false;
     Pause pause;
-    std::pair<std::size_t, std::string> own;
-    while (more || running > 0) {
-      if (more && !asked && running < here + ahead) {
-        const std::size_t wanted = here + ahead - running;
-        MPI_Send(&wanted, int(sizeof wanted), MPI_BYTE, 0, asks, MPI_COMM_WORLD);
-        asked = true;
+    while (more || pool.running() > 0) {
+      outbox_.forget_arrived();
+      if (more && !asked)
+        if (const std::size_t wanted = pool.wanted(); wanted > 0) {
+          outbox_.send(bytes_of(&wanted, 1), 0, asks);
+          asked = true;
+        }
+      if (asked && take_tasks(pool, more)) {
+        asked = false;
+        pause.something_came();
       }
-      const bool came = asked && take_tasks(pool, running, more);
-      if (came) asked = false;
-      const bool took = pool.take(own, pause.length());
-      pause.after(came || took);
-      if (!took) continue;
-      --running;
-      std::string message(reinterpret_cast<const char*>(&own.first), sizeof own.first);
-      message += own.second;
-      MPI_Send(message.data(), int(message.size()), MPI_BYTE, 0, result, MPI_COMM_WORLD);
+      const Results own = pool.take(pause.length(pool.running() >= here));
+      if (own.empty()) continue;
+      pause.something_came();
+      ByteWriter message;
+      for (const auto& [index, bytes] : own) {
+        message.put(index);
+        message.put(bytes);
+      }
+      outbox_.send(message.take(), 0, result);
     }
+    outbox_.wait_for_all();
   }
 
   /// The answer to what was asked, if it has come.
-  static bool take_tasks(Pool& pool, std::size_t& running, bool& more) {
+  static bool take_tasks(Pool& pool, bool& more) {
     int there = 0;
     MPI_Status status;
     MPI_Iprobe(0, tasks, MPI_COMM_WORLD, &there, &status);
@@ -231,8 +324,7 @@ class MpiWorkers : public Workers {
     std::vector<std::size_t> indices(message.size() / sizeof(std::size_t));
     std::copy_n(message.data(), message.size(), reinterpret_cast<char*>(indices.data()));
     more = !indices.empty();
-    running += indices.size();
-    for (const std::size_t index : indices) pool.give(index);
+    pool.give(indices.data(), indices.size());
     return true;
   }
 
@@ -245,6 +337,7 @@ class MpiWorkers : public Workers {
   }
 
   int rank_ = 0, processes_ = 1;
+  Outbox outbox_;
   Traffic traffic_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "continuous.hpp"
@@ -10,6 +11,7 @@
 #include "extended_task.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
 #include "reduced_task.hpp"
 #include "restarts.hpp"
 #include "starts.hpp"
@@ -31,13 +33,17 @@ constexpr int new_candidate_starts = 2, new_candidate_kicks = 0;
 constexpr double candidate_round_gain = 1e-4;
 constexpr std::uint64_t most_candidate_rounds = 8;
 
-/// The caller's monitor with an earlier deadline.
+/// The caller's monitor with an earlier deadline. Where there is one, tasks are this process's own: what comes after
+/// would rest on what each got done.
 class Part {
  public:
   Part(const Monitor& whole, double share, bool silent = false) {
     monitor_.interrupted = whole.interrupted;
     if (!silent) monitor_.on_progress = [&whole](const Progress& progress) { whole.report(progress); };
-    if (!whole.deadline) return;
+    if (!whole.deadline) {
+      if (!silent) monitor_.engine = whole.engine;
+      return;
+    }
     const auto now = Clock::now();
     monitor_.deadline = now + std::chrono::duration_cast<Clock::duration>(share * (*whole.deadline - now));
   }
@@ -50,7 +56,7 @@ class Part {
 class Run {
  public:
   Run(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor)
-      : task_(task), options_(options), monitor_(monitor), begin_(Clock::now()) {
+      : task_(task), options_(options), whole_(monitor, 1.0), monitor_(whole_.monitor()), begin_(Clock::now()) {
     best_.value = -std::numeric_limits<double>::infinity();
   }
 
@@ -85,6 +91,16 @@ class Run {
   }
 
  private:
+  /// One task an outcome; after a stop all but the first may be left out.
+  void carry_out(const std::string& name, std::vector<Outcome>& outcomes, const Monitor& monitor,
+                 const std::function<Outcome(std::size_t)>& search) {
+    TaskGroup group{name, outcomes.size(), options_.threads, [](std::size_t, std::string_view) {}};
+    group.first_always = true;
+    run_tasks(
+        group, [&](std::size_t i, int) { return bytes_of(search(i)); },
+        [&](std::size_t i, std::string_view bytes) { outcomes[i] = outcome_in(bytes); }, monitor);
+  }
+
   void record(const char* stage) {
     const double value = moved_ ? std::max(moved_->value, best_.value) : best_.value;
     const std::chrono::duration<double> passed = Clock::now() - begin_;
@@ -134,10 +150,9 @@ class Run {
     const ReducedTask reduced(task_, best_.members);
     const std::vector<int> start = reduced.reduced(best_.members);
     std::vector<Outcome> outcomes(tabu_starts);
-    parallel_for(outcomes.size(), thread_count(options_.threads), [&](std::size_t i, int) {
-      if (i > 0 && part.monitor().should_stop()) return;
+    carry_out("tabu", outcomes, part.monitor(), [&](std::size_t i) {
       Random random(mix_bits(seed) + 1, i);
-      outcomes[i] = tabu_search(reduced.task(), start, tabu_patience(reduced.task(), options_), random, part.monitor());
+      return tabu_search(reduced.task(), start, tabu_patience(reduced.task(), options_), random, part.monitor());
     });
     for (Outcome& outcome : outcomes) {
       if (!outcome.done || !(outcome.value > best_.value + smallest_gain)) continue;
@@ -187,15 +202,14 @@ class Run {
   /// The best few local optima of different value, from one given set (if any) and from the weights.
   std::vector<Outcome> settled(const DesignTask& task, const std::vector<int>& given) {
     std::vector<Outcome> found(std::clamp(std::size_t(options_.restarts), settled_starts, most_settled_starts));
-    parallel_for(found.size(), thread_count(options_.threads), [&](std::size_t i, int) {
-      if (i > 0 && monitor_.should_stop()) return;
+    carry_out("local optima", found, monitor_, [&](std::size_t i) {
       Random random(options_.seed, i);
       // Rounded weights first, then draws by them.
       const auto state = task.criterion->start(
           task.candidates,
           i == 1 && !given.empty() ? given : start_of_restart(task, i == 0 ? 0 : 2 * i + 1, random, monitor_));
       const long exchanges = settle(*state, monitor_);
-      found[i] = outcome_of(*state, exchanges);
+      return outcome_of(*state, exchanges);
     });
     std::erase_if(found, [](const Outcome& outcome) { return !outcome.done; });
     for (const Outcome& outcome : found) best_.exchanges += outcome.exchanges;
@@ -265,6 +279,7 @@ class Run {
 
   const DesignTask& task_;
   const PlannerOptions& options_;
+  Part whole_;
   const Monitor& monitor_;
   Clock::time_point begin_;
   Design best_;

@@ -54,6 +54,19 @@ class BestOutcomes {
   long exchanges_ = 0;
 };
 
+/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
+/// whole task.
+void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
+            const Monitor& monitor) {
+  parallel_for(outcomes.size(), threads, [&](std::size_t i, int) {
+    const auto state = task.criterion->start(task.candidates, reduced.original(outcomes[i].members));
+    const long more = settle(*state, monitor);
+    outcomes[i] = outcome_of(*state, more);
+  });
+}
+
+}  // namespace
+
 std::string bytes_of(const Outcome& outcome) {
   ByteWriter bytes;
   bytes.put(outcome.members);
@@ -72,19 +85,6 @@ Outcome outcome_in(std::string_view from) {
   bytes.get(outcome.done);
   return outcome;
 }
-
-/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
-/// whole task.
-void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
-            const Monitor& monitor) {
-  parallel_for(outcomes.size(), threads, [&](std::size_t i, int) {
-    const auto state = task.criterion->start(task.candidates, reduced.original(outcomes[i].members));
-    const long more = settle(*state, monitor);
-    outcomes[i] = outcome_of(*state, more);
-  });
-}
-
-}  // namespace
 
 int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
   // A kick costs two passes or so; counted and not timed, so that a plan is the same on any machine.

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "local_search.hpp"
 
@@ -15,6 +16,10 @@ using Search = std::function<Outcome(const DesignTask&, std::size_t, Random&, co
 /// of threads does not matter. The first start always runs: whoever interrupts still gets a plan.
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search);
+
+/// An outcome as the result of a task.
+std::string bytes_of(const Outcome& outcome);
+Outcome outcome_in(std::string_view bytes);
 
 /// Kicks of a restart that so many candidates, poses and parameters leave time for, at most `kicks`: all restarts
 /// together make some 10¹⁰ products of scanning for swaps.

@@ -9,6 +9,7 @@
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
+#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
@@ -24,7 +25,7 @@ po::options_description compare_command_options() {
       ("candidates", text("n"), "feasible configurations to compare with (as plan)")                        //
       ("restarts", text("k"), "starts of a search (as plan)")                                               //
       ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
-  options.add(problem_options());
+  options.add(resume_option()).add(problem_options());
   return options;
 }
 
@@ -61,8 +62,11 @@ int run_compare(const po::variables_map& values, const Words& positional) {
   if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
   const Problem problem = given_problem(positional.front(), values);
   const CompareOptions compare = options_of(problem, values, positional, common);
+  const auto engine = engine_of(values, "compare");
   const Comparison result =
-      watched(common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }).result;
+      watched(
+          common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }, engine.get())
+          .result;
   print_notes(result.notes);
   if (!common.json) {
     print_report(comparison_text(result, !compare.truth.empty()));
@@ -80,7 +84,8 @@ Command compare_command() {
           "Variants against plans: efficiency, σ, accuracy, what one variant's effects do to another.",
           compare_command_options,
           "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix",
-          run_compare};
+          run_compare,
+          true};
 }
 
 }  // namespace posewright::cli

@@ -9,6 +9,7 @@
 #include "posewright/support/repeats.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "problem_source.hpp"
+#include "task_options.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -36,7 +37,7 @@ po::options_description plan_command_options() {
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
           "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(
           "proof-time", text("S"), "seconds for that proof; 0: none (an amount of work, some seconds)");
-  options.add(output_options(true));
+  options.add(output_options(true)).add(resume_option());
   options.add(problem_options());
   return options;
 }
@@ -83,6 +84,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   if (!fixed.empty()) inputs.push_back(fixed);
   if (!list.empty()) inputs.push_back(list);
   const std::optional<int> validation = whole_number(values, "validation", 1, 1000000);
+  const auto engine = engine_of(values, "plan");
   const Outputs outputs(values, inputs, true, validation.has_value());
   std::function<Plan(const Plan&, const Monitor&)> validate;
   if (validation)
@@ -91,7 +93,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
     };
   return outputs.search_and_write(
       common, time_limit(values), [&](const Monitor& monitor) { return plan_problem(problem, plan_options, monitor); },
-      validate);
+      validate, engine.get());
 }
 
 }  // namespace
@@ -102,7 +104,8 @@ Command plan_command() {
           "Searches for the poses to measure; writes the plan and the pose list.",
           plan_command_options,
           "posewright plan examples/kr270/problem.yaml --poses 18 -o plan.json --poses-csv poses.csv",
-          run_plan};
+          run_plan,
+          true};
 }
 
 }  // namespace posewright::cli

@@ -56,11 +56,17 @@ std::optional<TaskEngine::Shard> shard_of(const po::variables_map& values) {
 
 }  // namespace
 
-po::options_description task_options() {
+po::options_description resume_option() {
   po::options_description options("Large computations");
-  options.add_options()                                                                                      //
-      ("resume", text("LOG"), "keep finished tasks in LOG, and take up those that it has (none: begin it)")  //
-      ("shard", text("i/n"), "do the i-th of n shares of the tasks alone; posewright merge joins the logs");
+  options.add_options()("resume", text("LOG"),
+                        "keep finished tasks in LOG, and take up those that it has (none: begin it)");
+  return options;
+}
+
+po::options_description task_options() {
+  po::options_description options = resume_option();
+  options.add_options()("shard", text("i/n"),
+                        "do the i-th of n shares of the tasks alone; posewright merge joins the logs");
   return options;
 }
 

@@ -7,6 +7,8 @@
 
 namespace posewright::cli {
 
+/// --resume LOG, of commands whose tasks follow one from another.
+po::options_description resume_option();
 /// --resume LOG and --shard i/n, of commands whose work splits into tasks.
 po::options_description task_options();
 

@@ -4,6 +4,7 @@
 
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/repeats.hpp"
+#include "processes.hpp"
 #include "result_files.hpp"
 #include "terminal.hpp"
 
@@ -74,7 +75,9 @@ Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesys
     validation_plan_ = for_validation(plan_);
     validation_poses_ = for_validation(poses_);
   }
-  check_output_files(values, {plan_, poses_, validation_plan_, validation_poses_}, inputs);
+  // Several processes that try the same file would be in each other's way.
+  if (started_workers()->rank() == 0)
+    check_output_files(values, {plan_, poses_, validation_plan_, validation_poses_}, inputs);
 }
 
 std::string Outputs::write(const Plan& plan, const std::filesystem::path& json, const std::filesystem::path& csv) {

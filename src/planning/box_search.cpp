@@ -4,13 +4,35 @@
 #include <cmath>
 #include <queue>
 
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright {
 namespace {
 
 // Boxes of one round; more threads than this would have nothing to do.
 constexpr std::size_t boxes_a_round = 16;
+
+/// What a judge says of a box.
+std::string bytes_of(const SearchBox& box, const LargestFound& found) {
+  ByteWriter bytes;
+  bytes.put(box.bound);
+  bytes.put(box.longest);
+  bytes.put(found.value);
+  bytes.put(found.where);
+  bytes.put(found.function);
+  return bytes.take();
+}
+
+void take(std::string_view from, SearchBox& box, LargestFound& found) {
+  ByteReader bytes(from);
+  bytes.get(box.bound);
+  bytes.get(box.longest);
+  bytes.get(found.value);
+  bytes.get(found.where);
+  bytes.get(found.function);
+}
 
 }  // namespace
 
@@ -29,18 +51,29 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
   while (true) {
     std::vector<LargestFound> found(round.size(), result.found);
     const double enough = enough_now();
-    parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
-      // Boxes that are not judged keep an infinite bound.
-      if (monitor.should_stop()) return;
-      judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
-    });
+    // Boxes that are not judged keep an infinite bound.
+    if (options.shared && monitor.engine != nullptr) {
+      result.stopped = run_tasks(
+          {"boxes", round.size(), threads, [](std::size_t, std::string_view) {}},
+          [&](std::size_t i, int thread) {
+            judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+            return bytes_of(round[i], found[i]);
+          },
+          [&](std::size_t i, std::string_view bytes) { take(bytes, round[i], found[i]); }, monitor);
+    } else {
+      parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
+        if (monitor.should_stop()) return;
+        judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+      });
+      result.stopped = monitor.should_stop();
+    }
     result.boxes += long(round.size());
     for (LargestFound& one : found)
       if (one.value > result.found.value) result.found = std::move(one);
     for (SearchBox& box : round) open.push(std::move(box));
     round.clear();
     result.complete = open.top().bound <= enough_now();
-    if (result.complete || monitor.should_stop() || result.boxes >= options.most_boxes) break;
+    if (result.complete || result.stopped || result.boxes >= options.most_boxes) break;
     for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough_now(); ++i) {
       const SearchBox box = open.top();
       open.pop();

@@ -80,6 +80,8 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
   Monitor own;
   own.interrupted = monitor.interrupted;
   own.deadline = monitor.deadline;
+  own.engine = monitor.engine;
+  limits.shared = moving > std::ptrdiff_t(quick_axes);
   if (options.proof.seconds) {
     const auto end = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
                                                  std::chrono::duration<double>(*options.proof.seconds));
@@ -88,9 +90,9 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
   }
   const BoxSearchResult most = largest_enclosed(space, result.factor, limits, own);
   proof.boxes = most.boxes;
-  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
+  if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
-    proof.why_not = own.should_stop() ? "stopped" : "parts of the workspace near which the robot cannot be enclosed";
+    proof.why_not = most.stopped ? "stopped" : "parts of the workspace near which the robot cannot be enclosed";
     return true;
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);

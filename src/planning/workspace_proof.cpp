@@ -11,6 +11,7 @@
 #include "posewright/planning/enclosed_proof.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright {
 namespace {
@@ -25,6 +26,8 @@ constexpr double proof_work = 3e8;
 constexpr long fewest_boxes = 3000, fewest_large_boxes = 300;
 // A box of more coefficients than this takes some ten milliseconds.
 constexpr double large_box = 1e6;
+// And of more than this some milliseconds: worth sharing.
+constexpr double shared_box = 1e5;
 // A bound that is loose by more is not worth its time.
 constexpr double most_loose = 0.05;
 
@@ -107,7 +110,9 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   Monitor own;
   own.interrupted = monitor.interrupted;
   own.deadline = monitor.deadline;
-  set_deadline(own, options.proof.seconds);
+  own.engine = monitor.engine;
+  // Several processes would not come to the same end of what they all compute: their time ends the boxes.
+  if (!several_processes(monitor)) set_deadline(own, options.proof.seconds);
   std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
   for (const auto& form : forms.forms) {
     functions.push_back(
@@ -116,7 +121,10 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
     proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
   }
+  if (several_processes(monitor)) set_deadline(own, options.proof.seconds);
   BoxSearchOptions limits;
+  limits.shared = std::any_of(functions.begin(), functions.end(),
+                              [](const auto& f) { return double(f->size()) > shared_box; });
   limits.tolerance = options.tolerance;
   limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
   limits.threads = options.threads;
@@ -128,9 +136,9 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   }
   const BoxSearchResult most = largest_value(functions, limits, own);
   proof.boxes = most.boxes;
-  if (!most.complete) proof.ended = own.should_stop() ? "stopped by time" : "stopped there";
+  if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
-    proof.why_not = own.should_stop() ? "stopped" : "an instrument that may stand within the arm's reach";
+    proof.why_not = most.stopped ? "stopped" : "an instrument that may stand within the arm's reach";
     return;
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);

@@ -5,7 +5,9 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/space.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright {
 
@@ -49,23 +51,38 @@ SearchRequest request_for(const Study& study, const Variant& variant, const Sett
 }
 
 PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor) {
-  PlansToCompare result;
   const Configurations& candidates = study.configurations;
-  for (const Variant& variant : study.variants) {
-    if (!variant.why_not.empty()) continue;
-    const std::string& name = variant.spec->name;
+  std::vector<const Variant*> variants;
+  for (const Variant& variant : study.variants)
+    if (variant.why_not.empty()) variants.push_back(&variant);
+  PlansToCompare result;
+  const auto values_of = [&](const Variant& variant) {
     const SearchResult found =
         search(search_parts(variant, candidates, settings.planner.threads),
-               request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, name));
+               request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, variant.spec->name));
     Configurations poses;
     poses.dimension = candidates.dimension;
     for (const int i : found.design.members)
       append(poses, std::size_t(i) < candidates.count()
                         ? candidates[std::size_t(i)]
                         : std::span<const double>(found.design.added[std::size_t(i) - candidates.count()]));
-    result.plans.push_back({"best for " + name, name, int(poses.count())});
-    result.poses.push_back(std::move(poses));
-  }
+    ByteWriter bytes;
+    bytes.put(poses.values);
+    return bytes.take();
+  };
+  // One at a time in each process: the parts of a plan keep its threads busy.
+  run_tasks(
+      {"variants", variants.size(), 1, [](std::size_t, std::string_view) {}},
+      [&](std::size_t v, int) { return values_of(*variants[v]); },
+      [&](std::size_t v, std::string_view bytes) {
+        Configurations poses;
+        poses.dimension = candidates.dimension;
+        ByteReader(bytes).get(poses.values);
+        const std::string& name = variants[v]->spec->name;
+        result.plans.push_back({"best for " + name, name, int(poses.count())});
+        result.poses.push_back(std::move(poses));
+      },
+      monitor);
   return result;
 }
 

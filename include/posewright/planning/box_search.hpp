@@ -40,6 +40,8 @@ struct BoxSearchOptions {
   double enough = -std::numeric_limits<double>::infinity();  ///< or where the bound is at most this
   long most_boxes = 20000;                                   ///< stop then, with the bound reached
   int threads = 0;
+  /// Boxes take a millisecond or more each: worth sharing with other processes. Judges keep nothing but the box then.
+  bool shared = false;
 };
 
 struct BoxSearchResult {
@@ -48,11 +50,12 @@ struct BoxSearchResult {
   LargestFound found{};   ///< where
   long boxes = 0;         ///< judged
   bool complete = false;  ///< not stopped before its tolerance
+  bool stopped = false;   ///< by the monitor
 };
 
 /// Branch and bound: the boxes of the largest bound are halved until no bound exceeds the largest value found by more
-/// than the tolerance. Stopped at any time it leaves a bound. Boxes are judged in rounds of a fixed number, so that
-/// threads do not matter.
+/// than the tolerance. Stopped at any time it leaves a bound. Boxes are judged in rounds of a fixed number, each by what
+/// the rounds before found, so that threads and processes (support/tasks.hpp) do not matter.
 /// @param first  boxes to begin with, together everything
 BoxSearchResult largest_value(std::vector<SearchBox> first, const std::function<std::unique_ptr<BoxJudge>()>& make,
                               const BoxSearchOptions& options, const Monitor& monitor);

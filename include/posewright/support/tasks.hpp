@@ -66,6 +66,11 @@ struct ShardDone {
   std::size_t done = 0, of = 0;
 };
 
+/// Whether tasks are shared with other processes: then what all of them compute must not be ended by a clock.
+inline bool several_processes(const Monitor& monitor) {
+  return monitor.engine != nullptr && monitor.engine->workers().processes() > 1;
+}
+
 /// Runs task(i) for every index of the group, then merge(i, bytes) in order of i, on every process alike; so everything
 /// that follows is the same for any number of threads and processes. After a stop tasks that were not begun are left
 /// out, and results that came after it are not logged: they may be cut short.

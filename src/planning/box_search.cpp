@@ -14,9 +14,11 @@ namespace {
 // Boxes of one round; more threads than this would have nothing to do.
 constexpr std::size_t boxes_a_round = 16;
 
-/// What a judge says of a box.
+/// What a judge says of a box, and left of it.
 std::string bytes_of(const SearchBox& box, const LargestFound& found) {
   ByteWriter bytes;
+  bytes.put(box.lower);
+  bytes.put(box.upper);
   bytes.put(box.bound);
   bytes.put(box.longest);
   bytes.put(found.value);
@@ -27,6 +29,8 @@ std::string bytes_of(const SearchBox& box, const LargestFound& found) {
 
 void take(std::string_view from, SearchBox& box, LargestFound& found) {
   ByteReader bytes(from);
+  bytes.get(box.lower);
+  bytes.get(box.upper);
   bytes.get(box.bound);
   bytes.get(box.longest);
   bytes.get(found.value);

@@ -96,16 +96,43 @@ class SeveralProcesses(unittest.TestCase):
                     self.assertEqual(int(told[2]), processes)
                     self.assertGreater(int(told[3]), 2 * (processes - 1) - 1)
 
-    def test_places_and_robots_of_a_fleet_are_shared(self):
+    def the_same_in_any_number_of_processes(self, *command, more=lambda: None):
+        alone = self.result(0, command), more()
+        for processes in (1, 2, 3, 5):
+            with self.subTest(command=command[0], processes=processes):
+                self.assertEqual((self.result(processes, command, ["--threads", "1"]), more()), alone)
+
+    def test_places_are_shared(self):
         self.needs_processes()
         shutil.copytree(SOURCE / "examples" / "cell", self.folder / "cell")
+        self.the_same_in_any_number_of_processes("stations", "cell/problem.yaml", "--poses", "10", "--candidates", "150",
+                                                 "--full", "1")
+
+    def test_robots_of_a_fleet_are_shared(self):
+        self.needs_processes()
         shutil.copytree(SOURCE / "examples" / "delta", self.folder / "delta")
-        stations = ["stations", "cell/problem.yaml", "--poses", "10", "--candidates", "150", "--full", "1"]
-        fleet = ["fleet", "delta/problem.yaml", "kr270/elastostatic.yaml", "--poses", "8", "--output-dir"]
-        alone = [self.result(0, stations), self.result(0, [*fleet, self.folder]), self.files_of_fleet()]
-        shared = [self.result(2, stations, ["--threads", "1"]), self.result(2, [*fleet, self.folder]),
-                  self.files_of_fleet()]
-        self.assertEqual(shared, alone)
+        self.the_same_in_any_number_of_processes("fleet", "delta/problem.yaml", "kr270/elastostatic.yaml", "--poses", "8",
+                                                 "--restarts", "1", "--output-dir", ".", more=self.files_of_fleet)
+
+    def test_variants_of_a_comparison_are_shared(self):
+        self.needs_processes()
+        self.the_same_in_any_number_of_processes("compare", "kr270/elastostatic.yaml", "--poses", "20", "--candidates",
+                                                 "150", "--restarts", "1")
+
+    def test_restarts_and_boxes_of_a_plan_are_shared(self):
+        self.needs_processes()
+        files = ["-o", "-", "--poses-csv", "-"]
+        self.the_same_in_any_number_of_processes("plan", "kr270/problem.yaml", "--method", "tabu", "--restarts", "5",
+                                                 "--candidates", "200", "--proof-time", "0", *files)
+        # Six axes: boxes that take some milliseconds each.
+        shutil.copytree(SOURCE / "examples" / "telescope", self.folder / "telescope")
+        boxes = ["plan", "telescope/problem.yaml", "--variant", "rigid", "--method", "greedy", "--candidates", "1000",
+                 "--poses", "30", "--gap", "50", *files]
+        alone = self.result(0, boxes)
+        self.assertGreater(alone["certificate"]["workspace"]["boxes"], 100)
+        done = run(self.folder, 3, *boxes, "--json", "--verbose", "--threads", "1")
+        self.assertEqual(without_times(json.loads(done.stdout)), alone)
+        self.assertGreater(int(re.search(r"(\d+) tasks done", done.stderr)[1]), 100)
 
     def files_of_fleet(self):
         return [without_times(json.loads((self.folder / f"{name}.plan.json").read_text(encoding="utf-8")))
@@ -137,21 +164,23 @@ class SeveralProcesses(unittest.TestCase):
 
     def test_a_killed_process_ends_all_and_nothing_finished_is_lost(self):
         self.needs_processes()
-        command = [*self.commands()["draws"][:3], "--draws", "2000"]
+        command = [*self.commands()["draws"][:3], "--draws", "500"]
         alone = self.result(0, command)
-        log = self.folder / "rank.log"
-        with subprocess.Popen(started(2, *command, "--resume", log, "--threads", "1"), cwd=self.folder, env=ENVIRONMENT,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            while process.poll() is None and (not log.exists() or log.read_bytes().count(b"result ") < 50):
-                time.sleep(0.02)
-            children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
-            os.kill(int(children.stdout.split()[-1]), signal.SIGKILL)
-            self.assertNotEqual(process.wait(20), 0)
-        known = log.read_bytes().count(b"\nresult ")
-        self.assertGreaterEqual(known, 49)
-        again = run(self.folder, 0, *command, "--resume", log, "--json", "--verbose")
-        self.assertEqual(without_times(json.loads(again.stdout)), alone)
-        self.assertRegex(again.stderr, r"\d+ known before")
+        draw = random.Random(12)
+        for moment in range(5):
+            log, finished, victim = self.folder / f"rank{moment}.log", draw.randrange(50, 350), draw.randrange(2)
+            with self.subTest(moment=moment, finished=finished, victim=victim):
+                with subprocess.Popen(started(2, *command, "--resume", log, "--threads", "1"), cwd=self.folder,
+                                      env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+                    while process.poll() is None and (not log.exists() or log.read_bytes().count(b"\nresult ") < finished):
+                        time.sleep(0.01)
+                    children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
+                    os.kill(int(children.stdout.split()[victim]), signal.SIGKILL)
+                    self.assertNotEqual(process.wait(20), 0)
+                self.assertGreaterEqual(log.read_bytes().count(b"\nresult "), finished - 1)
+                again = run(self.folder, 0, *command, "--resume", log, "--json", "--verbose")
+                self.assertEqual(without_times(json.loads(again.stdout)), alone)
+                self.assertGreaterEqual(int(re.search(r"(\d+) known before", again.stderr)[1]), finished - 1)
 
     def test_shares_of_a_job_array_are_merged(self):
         command = self.commands()["draws"]

@@ -178,6 +178,17 @@ class Outputs(unittest.TestCase):
         self.check("next", second)
         self.check("next", json.loads((self.folder / "next.json").read_text()))
 
+    def test_fleet_with_a_robot_that_cannot_be_planned(self):
+        few = SMALLEST.replace("candidates: 300", "candidates: 2").replace("poses: auto", "poses: 8")
+        (self.folder / "few.yaml").write_text(few)
+        run = subprocess.run([program, "fleet", "smallest.yaml", "few.yaml", "--poses", "8", "--restarts", "1", "--json"],
+                             cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        fleet = json.loads(run.stdout)
+        self.assertEqual(["why_not" in plan for plan in fleet["plans"]], [False, True])
+        self.check("fleet", fleet)
+        self.check("plan", json.loads((self.folder / fleet["plans"][0]["plan"]).read_text()))
+
     def test_plan_route_and_stations_of_a_cell(self):
         cell = self.folder / "cell.yaml"
         text = (EXAMPLES / "cell/problem.yaml").read_text().replace("../kr270/", f"{EXAMPLES}/kr270/")

@@ -40,7 +40,7 @@ struct BoxSearchOptions {
   double enough = -std::numeric_limits<double>::infinity();  ///< or where the bound is at most this
   long most_boxes = 20000;                                   ///< stop then, with the bound reached
   int threads = 0;
-  /// Boxes take a millisecond or more each: worth sharing with other processes. Judges keep nothing but the box then.
+  /// Boxes take a millisecond or more each: worth sharing with other processes. Then a judge says all by box and found.
   bool shared = false;
 };
 

@@ -123,8 +123,8 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   }
   if (several_processes(monitor)) set_deadline(own, options.proof.seconds);
   BoxSearchOptions limits;
-  limits.shared = std::any_of(functions.begin(), functions.end(),
-                              [](const auto& f) { return double(f->size()) > shared_box; });
+  limits.shared =
+      std::any_of(functions.begin(), functions.end(), [](const auto& f) { return double(f->size()) > shared_box; });
   limits.tolerance = options.tolerance;
   limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
   limits.threads = options.threads;

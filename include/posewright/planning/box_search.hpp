@@ -54,8 +54,8 @@ struct BoxSearchResult {
 };
 
 /// Branch and bound: the boxes of the largest bound are halved until no bound exceeds the largest value found by more
-/// than the tolerance. Stopped at any time it leaves a bound. Boxes are judged in rounds of a fixed number, each by what
-/// the rounds before found, so that threads and processes (support/tasks.hpp) do not matter.
+/// than the tolerance. Stopped at any time it leaves a bound. Boxes are judged in rounds of a fixed number, each by
+/// what the rounds before found, so that threads and processes (support/tasks.hpp) do not matter.
 /// @param first  boxes to begin with, together everything
 BoxSearchResult largest_value(std::vector<SearchBox> first, const std::function<std::unique_ptr<BoxJudge>()>& make,
                               const BoxSearchOptions& options, const Monitor& monitor);

@@ -1,5 +1,6 @@
 #include "posewright/support/distributions.hpp"
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_chi_squared.hpp>
@@ -46,6 +47,12 @@ double normal_upper_quantile(double tail) { return bm::quantile(bm::complement(b
 
 double student_upper_quantile(double tail, double freedom) {
   return bm::quantile(bm::complement(bm::students_t(freedom), tail));
+}
+
+double student_exceeded(double value, double freedom) { return exceeded(bm::students_t(freedom), value); }
+
+double binomial_exceeded(int value, int draws, double probability) {
+  return value < 0 ? 1.0 : exceeded(bm::binomial(draws, probability), value);
 }
 
 }  // namespace posewright

@@ -6,26 +6,39 @@
 #include <cmath>
 
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/support/distributions.hpp"
 
 namespace posewright {
 namespace {
 
 // What counts as another σ or coverage, if Monte Carlo error does not explain it.
-constexpr double sigma_margin = 0.05, coverage_margin = 0.01, monte_carlo_errors = 3.0;
+constexpr double sigma_margin = 0.05, coverage_margin = 0.01;
 // A bias of this share of σ costs coverage.
 constexpr double bias_margin = 0.1;
+// Chance that a simulation of a right model is refused, all its tests together.
+constexpr double refused_by_chance = 0.01;
 constexpr std::size_t names_shown = 4;
 
 /// Judges one simulation.
 class Verdict {
  public:
   Verdict(const Simulation& simulation, const SimulateOptions& options) : s_(simulation), options_(options) {
-    for (const SimulatedParameter& p : s_.parameters) {
-      if (!p.errors) continue;
-      if (differs(p.errors->observed / p.predicted)) wrong_sigma_.push_back(&p);
-      if (beyond(uncovered(p), coverage_margin, s_.summary.coverage_error)) wrong_coverage_.push_back(&p);
-      if (beyond(p.errors->bias, bias_margin * p.predicted, p.errors->bias_error)) biased_.push_back(&p);
+    std::vector<const SimulatedParameter*> judged;
+    for (const SimulatedParameter& p : s_.parameters)
+      if (p.errors) judged.push_back(&p);
+    std::vector<double> chances;
+    for (const SimulatedParameter* p : judged) {
+      chances.push_back(chance_of_sigma(p->errors->observed / p->predicted));
+      chances.push_back(chance_of_coverage(p->errors->coverage, s_.summary.fitted));
+      chances.push_back(chance_of_bias(*p));
     }
+    const std::vector<bool> refused = refused_together(chances, refused_by_chance);
+    for (std::size_t j = 0; j < judged.size(); ++j) {
+      if (refused[3 * j]) wrong_sigma_.push_back(judged[j]);
+      if (refused[3 * j + 1]) wrong_coverage_.push_back(judged[j]);
+      if (refused[3 * j + 2]) biased_.push_back(judged[j]);
+    }
+    largest_chance_ = chances.empty() ? 1 : refused_by_chance / double(chances.size());
   }
 
   bool confirmed() const {
@@ -44,15 +57,38 @@ class Verdict {
     }
     describe_ends();
     describe_chi_square();
+    if (!s_.summary.parameters.empty())
+      say(fmt::format("(σ, coverage and bias of {} parameters are {} tests: together they refuse a right model with at "
+                      "most {:.0f} % chance, Holm 1979)",
+                      s_.parameters.size(), 3 * s_.parameters.size(), 100 * refused_by_chance));
     if (!wrong_sigma_.empty() || !wrong_coverage_.empty() || !biased_.empty()) causes();
     return std::move(words_);
   }
 
  private:
-  static bool beyond(double difference, double margin, double error) {
-    return std::abs(difference) > margin && std::abs(difference) > monte_carlo_errors * error;
+  double freedom() const { return std::max(1.0, double(s_.summary.fitted - 1)); }
+  /// Of an observed σ so many times the predicted one, or farther off, if it is within the margin of it in truth:
+  /// (n − 1) s²/σ² is χ² of n − 1 degrees.
+  double chance_of_sigma(double ratio) const {
+    if (std::abs(ratio - 1) <= sigma_margin) return 1;
+    const double sum = freedom() * std::pow(ratio / (ratio > 1 ? 1 + sigma_margin : 1 - sigma_margin), 2);
+    const double above = chi_square_exceeded(sum, freedom());
+    return std::min(1.0, 2 * (ratio > 1 ? above : 1 - above));
   }
-  bool differs(double ratio) const { return beyond(ratio - 1, sigma_margin, s_.summary.sigma_error); }
+  static double chance_of_coverage(double coverage, int draws) {
+    if (std::abs(coverage - interval_probability) <= coverage_margin) return 1;
+    const int inside = int(std::lround(coverage * draws));
+    return std::min(1.0, 2 * (coverage < interval_probability
+                                  ? 1 - binomial_exceeded(inside, draws, interval_probability - coverage_margin)
+                                  : binomial_exceeded(inside - 1, draws, interval_probability + coverage_margin)));
+  }
+  /// Student's t of what the mean error is beyond the margin.
+  double chance_of_bias(const SimulatedParameter& p) const {
+    const double beyond = std::abs(p.errors->bias) - bias_margin * p.predicted;
+    if (!(beyond > 0)) return 1;
+    return p.errors->bias_error > 0 ? std::min(1.0, 2 * student_exceeded(beyond / p.errors->bias_error, freedom())) : 0;
+  }
+  bool differs(double ratio) const { return chance_of_sigma(ratio) <= largest_chance_; }
   void say(std::string text) { words_.push_back(std::move(text)); }
 
   template <class Figure>
@@ -171,10 +207,21 @@ class Verdict {
   const Simulation& s_;
   const SimulateOptions& options_;
   std::vector<const SimulatedParameter*> wrong_sigma_, wrong_coverage_, biased_;
+  double largest_chance_ = 0.0;  ///< of one test alone
   std::vector<std::string> words_;
 };
 
 }  // namespace
+
+std::vector<bool> refused_together(const std::vector<double>& chances, double level) {
+  std::vector<std::size_t> order(chances.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return chances[a] < chances[b]; });
+  std::vector<bool> refused(chances.size(), false);
+  for (std::size_t k = 0; k < order.size() && chances[order[k]] <= level / double(order.size() - k); ++k)
+    refused[order[k]] = true;
+  return refused;
+}
 
 void judge_simulation(Simulation& simulation, const SimulateOptions& options) {
   Verdict verdict(simulation, options);

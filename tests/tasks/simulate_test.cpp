@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <random>
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/variant.hpp"
@@ -13,6 +14,7 @@
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 #include "posewright/workspace/candidates.hpp"
+#include "src/tasks/simulation_verdict.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
 
@@ -107,6 +109,46 @@ TEST(Simulate, RefusesWhatDoesNotDetermineTheParameters) {
                CannotDo);
   EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 18)), quick("none", 5), Monitor{}),
                InputError);
+}
+
+TEST(SimulationVerdict, TestsTogetherRefuseWronglyAtTheirLevelAndNotOftener) {
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> uniform;
+  constexpr int rounds = 20'000, tests = 30;
+  int together = 0, alone = 0, found = 0;
+  for (int i = 0; i < rounds; ++i) {
+    std::vector<double> chances(tests);
+    for (double& chance : chances) chance = uniform(generator);
+    const auto any = [](const std::vector<bool>& refused) {
+      return std::any_of(refused.begin(), refused.end(), [](bool r) { return r; });
+    };
+    together += any(refused_together(chances, 0.05)) ? 1 : 0;
+    alone += *std::min_element(chances.begin(), chances.end()) <= 0.05 ? 1 : 0;
+    chances[3] = 1e-3 * uniform(generator);  // a difference that is there
+    found += refused_together(chances, 0.05)[3] ? 1 : 0;
+  }
+  // 1 − (1 − 0.05/30)³⁰ = 4.88 %, and 1 − 0.95³⁰ = 78.5 % of the tests one by one; error 0.15 %.
+  EXPECT_NEAR(double(together) / rounds, 0.0488, 0.006);
+  EXPECT_NEAR(double(alone) / rounds, 0.785, 0.012);
+  EXPECT_EQ(found, rounds);
+}
+
+TEST(SimulationVerdict, ARightModelIsHardlyEverRefusedAndAWrongOneFound) {
+  const Problem problem = example("kr270/problem.yaml");
+  const PoseList poses = given_poses(problem, list_of(problem, 18));
+  SimulateOptions options = quick("geometric", 40);
+  options.validation = 1;
+  int refused = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    options.experiment.seed = seed;
+    refused += simulate_problem(problem, poses, options, Monitor{}).confirmed ? 0 : 1;
+  }
+  // At most 1 % each: 4 or more of 50 have a chance of 0.2 %. One by one at three errors a quarter were refused.
+  EXPECT_LE(refused, 3);
+  options.truth_noise.repeatability = 30e-6;
+  const Simulation wrong = simulate_problem(problem, poses, options, Monitor{});
+  EXPECT_FALSE(wrong.confirmed);
+  EXPECT_THAT(wrong.verdict, Contains(HasSubstr("other noise than the problem states")));
 }
 
 }  // namespace

@@ -23,5 +23,9 @@ double normal_exceeded(double value);
 double normal_upper_quantile(double tail);
 /// What Student's t of `freedom` degrees exceeds with the probability `tail`.
 double student_upper_quantile(double tail, double freedom);
+/// Chance that Student's t of `freedom` degrees is larger than `value`.
+double student_exceeded(double value, double freedom);
+/// Chance that of `draws` more than `value` are hits, each with this probability; 1 if `value` < 0.
+double binomial_exceeded(int value, int draws, double probability);
 
 }  // namespace posewright

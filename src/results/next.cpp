@@ -34,6 +34,7 @@ std::string shown_coordinate(const NamedValue& v) {
 std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : unit == "m" ? "mm" : unit; }
 
 std::string now_text(const NextPoint& now, const NextPoses& r) {
+  if (!now.expected) return "there is no place at which to predict an error";
   std::string text = fmt::format("the predicted error at the {} is {}", where(r), length(*now.expected));
   if (now.upper) text += fmt::format(", below {} with 95 % confidence", length(*now.upper));
   return text;
@@ -65,6 +66,38 @@ std::string gain_text(const NextPoses& r) {
     return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), then);
   return fmt::format(" P{} lower{} it from {} to {}.", ids, more == 1 ? "s" : "", length(*r.curve.back().expected),
                      then);
+}
+
+std::string required_count(const NextPoses& r) {
+  return fmt::format("{} requirement{}", r.requirements.size(), r.requirements.size() == 1 ? "" : "s");
+}
+
+/// How many of those beside the accuracy are not met, and which is farthest off.
+std::string not_met_text(const NextPoses& r) {
+  int open = 0;
+  const NextRequirement* worst = nullptr;
+  const auto times = [](const NextRequirement& one) { return one.upper ? *one.upper / one.required : HUGE_VAL; };
+  for (const NextRequirement& one : r.requirements) {
+    if (one.what == "accuracy" || one.met()) continue;
+    ++open;
+    if (worst == nullptr || times(one) > times(*worst)) worst = &one;
+  }
+  if (worst == nullptr) return {};
+  return fmt::format("; {} of {} not met with 95 % confidence, farthest off {}", open, required_count(r), worst->what);
+}
+
+std::string requirements_text(const NextPoses& r) {
+  const auto shown = [](const std::optional<double>& value, const std::string& unit) {
+    if (!value) return std::string("unknown");
+    const double factor = unit == "rad" ? 180 / std::numbers::pi : unit == "m" ? 1e3 : 1;
+    return fmt::format("{:.4g} {}", factor * *value, unit_of(unit));
+  };
+  using enum Table::Align;
+  Table table({"required", "predicted", "below with 95 %", "at most", "met"}, {left, right, right, right, left});
+  for (const NextRequirement& one : r.requirements)
+    table.row({one.what, shown(one.expected, one.unit), shown(one.upper, one.unit), shown(one.required, one.unit),
+               one.met() ? "yes" : "no"});
+  return table.text();
 }
 
 Json point_json(const NextPoint& p) {
@@ -135,28 +168,33 @@ std::string verdict_name(NextVerdict verdict) {
 
 std::string next_reason(const NextPoses& r) {
   if (r.verdict == NextVerdict::not_determined) return not_determined_text(r) + gain_text(r);
-  const NextPoint& now = r.curve.back();
+  const NextPoint now = r.curve.empty() ? NextPoint{} : r.curve.back();
   const std::string required = r.required ? fmt::format("required {}", length(*r.required)) : "";
-  if (r.verdict == NextVerdict::reached) return fmt::format("Stop: {}; {}.", now_text(now, r), required);
+  if (r.verdict == NextVerdict::reached && r.requirements.size() == 1 && !required.empty())
+    return fmt::format("Stop: {}; {}.", now_text(now, r), required);
+  if (r.verdict == NextVerdict::reached)
+    return fmt::format("Stop: all that is required ({}) is met with 95 % confidence.", required_count(r));
   const std::string three =
       r.with_three && r.with_three->expected
           ? fmt::format("{} more would bring it to {}", poses_text(r.with_three->poses - r.measured),
                         length(*r.with_three->expected))
           : "";
   if (r.verdict == NextVerdict::flat)
-    return fmt::format("Stop: the curve is flat, {}, less than {:.0f} % lower. {}{}{}.", three, 100 * least_gain,
-                       "T" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required,
+    return fmt::format("Stop: the curve is flat, {}, less than {:.0f} % lower. {}{}{}{}.", three, 100 * least_gain,
+                       "T" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required, not_met_text(r),
                        required.empty() || (now.expected && *now.expected <= *r.required)
                            ? ""
                            : ", which more poses like these do not reach: a better instrument, more readings a pose, "
                              "or a model with more parameters may");
-  return fmt::format("Go on: {}{}.{}", now_text(now, r), required.empty() ? "" : "; " + required, gain_text(r));
+  return fmt::format("Go on: {}{}{}.{}", now_text(now, r), required.empty() ? "" : "; " + required, not_met_text(r),
+                     gain_text(r));
 }
 
 std::string next_text(const NextPoses& r) {
   std::string text = next_reason(r) + "\n";
-  if (r.verdict == NextVerdict::go_on && !r.required)
-    text += "No accuracy is required (design: require: accuracy, or --required): only a flat curve says stop.\n";
+  if (r.verdict == NextVerdict::go_on && r.requirements.empty())
+    text += "Nothing is required (design: require, or --required): only a flat curve says stop.\n";
+  if (r.requirements.size() > 1 || (r.requirements.size() == 1 && !r.required)) text += "\n" + requirements_text(r);
   text += fmt::format("\n{} measured ({} readings), variant {}, {} parameters", poses_text(r.measured), r.readings,
                       r.variant, r.parameters);
   if (r.fitted && r.freedom > 0)
@@ -188,6 +226,14 @@ Json next_json(const Problem& problem, const NextOptions& options, const NextPos
   json["unmodelled"] = r.effect ? Json{{"size", r.effect->size}, {"length", r.effect->length}} : Json(nullptr);
   json["places"] = {{"count", r.places}, {"test_poses", r.places_stated}};
   json["required"] = optional(r.required);
+  json["requirements"] = Json::array();
+  for (const NextRequirement& one : r.requirements)
+    json["requirements"].push_back({{"what", one.what},
+                                    {"unit", one.unit},
+                                    {"required", one.required},
+                                    {"expected", optional(one.expected)},
+                                    {"upper", optional(one.upper)},
+                                    {"met", one.met()}});
   json["confidence"] = 0.95;
   json["curve"] = points_json(r.curve);
   json["ahead"] = points_json(r.ahead);

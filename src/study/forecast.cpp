@@ -72,6 +72,13 @@ double upper_error(double sum, double squares, double freedom) {
   return std::sqrt(sum * quantile);
 }
 
+double upper_of_axis(double sigma, double freedom) { return upper_error(sigma * sigma, std::pow(sigma, 4), freedom); }
+
+double upper_of_sigma(double sigma, double freedom) {
+  if (!(freedom > 0)) return std::numeric_limits<double>::infinity();
+  return std::isinf(freedom) ? sigma : sigma * std::sqrt(freedom / chi_square_quantile(1 - confidence, freedom));
+}
+
 Eigen::MatrixXd known_information(const Variant& variant, const std::vector<PoseRows>& poses, Prior prior,
                                   double noise_factor) {
   const auto m = Eigen::Index(variant.columns.selected.size());
@@ -99,17 +106,23 @@ Eigen::MatrixXd known_information(const Variant& variant, const std::vector<Pose
 /// poses.
 class ForecastOfError::Sum {
  public:
-  Sum(const ForecastOfError& of, const std::vector<PoseRows>& poses)
-      : variant_(of.variant_), noise_(of.noise_), weights_(of.weights_), unit_(tolerances(variant_.columns)) {
+  /// @param turns  of the orientation at the test poses in place of the position
+  Sum(const ForecastOfError& of, const std::vector<PoseRows>& poses, bool turns = false)
+      : variant_(of.variant_),
+        noise_(of.noise_),
+        weights_(of.weights_),
+        unit_(tolerances(variant_.columns)),
+        turns_(turns) {
     m_ = unit_.size();
     for (const PoseRows& pose : poses) first_.push_back(first_.back() + pose.block.rows());
     J_.resize(first_.back(), m_);
     for (std::size_t k = 0; k < poses.size(); ++k)
       J_.middleRows(first_[k], poses[k].block.rows()) = poses[k].block.leftCols(m_) * unit_.asDiagonal();
     A_.resize(3 * weights_.size(), m_);
-    for (Eigen::Index t = 0; t < weights_.size(); ++t)
-      A_.middleRows<3>(3 * t) =
-          std::sqrt(weights_[t]) * variant_.test_points[std::size_t(t)].A.leftCols(m_) * unit_.asDiagonal();
+    for (Eigen::Index t = 0; t < weights_.size(); ++t) {
+      const TestPoint& point = variant_.test_points[std::size_t(t)];
+      A_.middleRows<3>(3 * t) = std::sqrt(weights_[t]) * (turns ? point.turn : point.A).leftCols(m_) * unit_.asDiagonal();
+    }
     start();
     if (variant_.effect != nullptr) correlate(poses);
   }
@@ -124,10 +137,35 @@ class ForecastOfError::Sum {
     if (Y_.size() > 0) C_.noalias() += J.transpose() * Y_.middleRows(first_[pose], rows);
   }
 
-  std::optional<ForecastError> error() const {
-    if (R_.rows() < m_) return std::nullopt;
+  bool determined() const {
+    if (R_.rows() < m_) return false;
     const Eigen::VectorXd length = R_.colwise().norm();
-    if (!((R_.diagonal().cwiseAbs().array() > told_at_all * length.array()).all())) return std::nullopt;
+    return (R_.diagonal().cwiseAbs().array() > told_at_all * length.array()).all();
+  }
+
+  /// Of the columns, SI.
+  Eigen::VectorXd sigmas() const {
+    const Eigen::MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m_, m_));
+    return noise_.factor * unit_.cwiseProduct(inverse.rowwise().norm());
+  }
+
+  /// Largest σ over the test poses along (or about) x, y, z.
+  Eigen::Vector3d worst_axes() const {
+    const Eigen::MatrixXd X =
+        R_.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd(A_.transpose())).transpose();
+    Eigen::VectorXd squares = X.rowwise().squaredNorm();
+    if (Y_.size() > 0) {
+      const Eigen::MatrixXd follows = R_.triangularView<Eigen::Upper>().transpose().solve(C_);
+      squares += K_.diagonal() - 2 * X.cwiseProduct(follows.transpose()).rowwise().sum();
+    }
+    Eigen::Vector3d most = Eigen::Vector3d::Zero();
+    for (Eigen::Index t = 0; t < weights_.size(); ++t)
+      most = most.cwiseMax(squares.segment<3>(3 * t) / weights_[t]);
+    return noise_.factor * most.cwiseMax(0.0).cwiseSqrt();
+  }
+
+  std::optional<ForecastError> error() const {
+    if (!determined()) return std::nullopt;
     // A_ M⁻¹ A_ᵀ = X Xᵀ, M = RᵀR.
     const Eigen::MatrixXd X =
         R_.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd(A_.transpose())).transpose();
@@ -190,7 +228,7 @@ class ForecastOfError::Sum {
     std::vector<Eigen::MatrixXd> moved, there;
     for (Eigen::Index t = 0; t < tests; ++t) {
       const TestPlace& place = variant_.test_places[std::size_t(t)];
-      Eigen::MatrixXd B = std::sqrt(weights_[t]) * place.twists.topLeftCorner(3, effect.twists());
+      Eigen::MatrixXd B = std::sqrt(weights_[t]) * place.twists.block(turns_ ? 3 : 0, 0, 3, effect.twists());
       effect.take_sizes(B);
       moved.push_back(std::move(B));
       there.emplace_back(effect.place(place.q));
@@ -218,6 +256,7 @@ class ForecastOfError::Sum {
   const ForecastNoise& noise_;
   const Eigen::VectorXd& weights_;
   Eigen::VectorXd unit_;
+  bool turns_ = false;
   Eigen::Index m_ = 0;
   std::vector<Eigen::Index> first_{0};
   Eigen::MatrixXd J_, A_, R_;
@@ -228,7 +267,27 @@ class ForecastOfError::Sum {
 ForecastOfError::ForecastOfError(const Variant& variant, const ForecastNoise& noise)
     : variant_(variant), noise_(noise), weights_(Eigen::Index(variant.test_points.size())) {
   for (Eigen::Index t = 0; t < weights_.size(); ++t) weights_[t] = variant.test_points[std::size_t(t)].weight;
-  weights_ /= weights_.sum();
+  if (weights_.size() > 0) weights_ /= weights_.sum();
+}
+
+std::optional<ForecastSigmas> ForecastOfError::sigmas(const std::vector<PoseRows>& poses, bool axes) const {
+  ForecastSigmas result;
+  Sum sum(*this, poses);
+  for (std::size_t k = 0; k < poses.size(); ++k) sum.add(k);
+  if (!sum.determined()) return std::nullopt;
+  result.parameters = sum.sigmas();
+  result.worse = std::max(noise_.factor, std::max(1.0, noise_.scale)) / noise_.factor;
+  if (!axes || weights_.size() == 0) return result;
+  const Eigen::Vector3d along = sum.worst_axes();
+  std::copy(along.begin(), along.end(), result.axes.begin());
+  const bool turned = std::all_of(variant_.test_points.begin(), variant_.test_points.end(),
+                                  [](const TestPoint& point) { return point.turn.size() > 0; });
+  if (!turned) return result;
+  Sum turns(*this, poses, true);
+  for (std::size_t k = 0; k < poses.size(); ++k) turns.add(k);
+  const Eigen::Vector3d about = turns.worst_axes();
+  std::copy(about.begin(), about.end(), result.axes.begin() + 3);
+  return result;
 }
 
 std::vector<std::optional<ForecastError>> ForecastOfError::after_each(const std::vector<PoseRows>& poses,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -10,6 +11,7 @@
 #include "fill_plan.hpp"
 #include "next_known.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/model/variant.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/forecast.hpp"
 #include "posewright/support/error.hpp"
@@ -33,6 +35,7 @@ class NextRun {
     const SearchParts parts = parts_for(result_.criterion);
     const Configurations chosen = search_for(parts, result_.criterion, options_.poses);
     forecast(chosen);
+    fill_requirements();
     fill_poses(chosen);
     judge();
     result_.interrupted = monitor_.was_interrupted();
@@ -191,12 +194,61 @@ class NextRun {
     }
   }
 
+  void fill_requirements() {
+    const RequirementSpec& require = known_.fit().problem.design.require;
+    if (!judged()) return;
+    if (result_.required && !result_.curve.empty())
+      result_.requirements.push_back(
+          {"accuracy", "m", *result_.required, result_.curve.back().expected, result_.curve.back().upper});
+    if (!require.of_axes() && require.sigma.empty()) return;
+    const auto sigmas = ForecastOfError(study_.first(), noise()).sigmas(known_.rows(), require.of_axes());
+    if (!sigmas) return;
+    require_axes(require, *sigmas);
+    require_sigmas(require, *sigmas);
+  }
+
+  void require_axes(const RequirementSpec& require, const ForecastSigmas& sigmas) {
+    constexpr std::array<const char*, 6> names = {"position x", "position y", "position z",
+                                                  "rotation x", "rotation y", "rotation z"};
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (!require.axes[k]) continue;
+      NextRequirement one{names[k], k < 3 ? "m" : "rad", *require.axes[k], sigmas.axes[k]};
+      if (one.expected) one.upper = finite(upper_of_axis(sigmas.worse * *one.expected, noise().freedom));
+      result_.requirements.push_back(one);
+    }
+  }
+
+  void require_sigmas(const RequirementSpec& require, const ForecastSigmas& sigmas) {
+    const VariantColumns& columns = study_.first().columns;
+    const auto wanted = values_by_pattern(columns, require.sigma, known_.fit().problem, "the required σ");
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      if (!wanted[j]) continue;
+      const double sigma = sigmas.parameters[Eigen::Index(j)];
+      result_.requirements.push_back({"sigma " + columns.parameters[j].name, columns.parameters[j].unit, *wanted[j],
+                                      sigma, finite(upper_of_sigma(sigmas.worse * sigma, noise().freedom))});
+    }
+  }
+
+  static std::optional<double> finite(double value) {
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+  bool judged() const { return known_.determined() && known_.fit().fitted; }
+
   void judge() {
-    if (!known_.determined() || !known_.fit().fitted || result_.curve.empty() || !result_.curve.back().expected) return;
+    if (!judged()) return;
+    const auto& required = result_.requirements;
+    const bool met = !required.empty() && std::all_of(required.begin(), required.end(),
+                                                      [](const NextRequirement& one) { return one.met(); });
+    if (met) {
+      result_.verdict = NextVerdict::reached;
+      return;
+    }
+    if (!required.empty()) result_.verdict = NextVerdict::go_on;
+    if (result_.curve.empty() || !result_.curve.back().expected) return;
     const NextPoint& now = result_.curve.back();
     result_.verdict = NextVerdict::go_on;
-    if (result_.required && now.upper && *now.upper <= *result_.required) result_.verdict = NextVerdict::reached;
-    else if (result_.with_three && result_.with_three->expected &&
+    if (result_.with_three && result_.with_three->expected &&
              *result_.with_three->expected > (1 - least_gain) * *now.expected)
       result_.verdict = NextVerdict::flat;
   }

@@ -279,6 +279,62 @@ TEST_F(NextPosesOfAnArm, ItStopsWhereTheLimitIsRequiredAndWhereTheCurveIsFlat) {
   EXPECT_GT(*flat.with_three->expected, 0.98 * *flat.curve.back().expected);
 }
 
+TEST_F(NextPosesOfAnArm, EveryRequirementIsJudgedByTheDefinitionAndAllMustBeMet) {
+  const Eigen::Matrix4d V = information(poses).inverse();
+  Eigen::Vector2d axes = Eigen::Vector2d::Zero();
+  for (const Vector2d& q : tests)
+    axes = axes.cwiseMax((accuracy(q) * V * accuracy(q).transpose()).diagonal().cwiseSqrt());
+  const Vector4d turn(1, 1, 0, 0);  // the tip turns by the sum of both zero positions
+  const std::vector<double> expected = {axes[0], axes[1], std::sqrt(turn.dot(V * turn)), std::sqrt(V(0, 0)),
+                                        std::sqrt(V(2, 2))};
+  // Each larger than its limit by a thousandth, but for one that is smaller.
+  std::vector<double> limits(5, 1.0);
+  const auto judged = [&](std::size_t too_small) {
+    std::vector<double> at = limits;
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] *= k == too_small ? 0.999 : 1.001;
+    const Problem p = problem(fmt::format(", candidates: 300, require: {{position: {{x: \"{} m\", y: \"{} m\"}}, rotation: "
+                                          "{{z: \"{} rad\"}}, sigma: {{q1.offset: \"{} rad\", q2.x: \"{} m\"}}}}",
+                                          at[0], at[1], at[2], at[3], at[4]));
+    return next_poses(p, options(readings(poses)), Monitor{});
+  };
+  const NextPoses first = judged(5);
+  ASSERT_EQ(first.requirements.size(), 5U);
+  const std::vector<std::string> names = {"position x", "position y", "rotation z", "sigma q1.offset", "sigma q2.x"};
+  // 95 % for 6 degrees of freedom, by tables: t = 2.447; χ² of 5 % = 1.635.
+  const double worse = std::max(1.0, first.noise);
+  ASSERT_EQ(first.freedom, 6);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const NextRequirement& one = first.requirements[k];
+    EXPECT_EQ(one.what, names[k]);
+    EXPECT_NEAR(*one.expected / expected[k], 1, 3e-3) << names[k];
+    EXPECT_NEAR(*one.upper / *one.expected, worse * (k < 3 ? 2.4469 : std::sqrt(6 / 1.63538)), 1e-3) << names[k];
+    limits[k] = *one.upper;
+  }
+  EXPECT_EQ(judged(5).verdict, NextVerdict::reached);
+  EXPECT_THAT(next_reason(judged(5)), HasSubstr("all that is required (5 requirements) is met with 95 % confidence"));
+  for (std::size_t k = 0; k < 5; ++k) {
+    const NextPoses open = judged(k);
+    EXPECT_EQ(open.verdict, NextVerdict::go_on) << names[k];
+    EXPECT_THAT(next_reason(open), HasSubstr("1 of 5 requirements not met with 95 % confidence, farthest off " + names[k]));
+    EXPECT_THAT(next_text(open), HasSubstr("below with 95 %"));
+  }
+}
+
+TEST(LimitsOfAForecast, HoldIn95PercentOfDrawnCalibrationsWhoseNoiseIsEstimated) {
+  Random random(3, 1);
+  constexpr int draws = 40'000, freedom = 6;
+  int within = 0, below = 0;
+  for (int i = 0; i < draws; ++i) {
+    double squares = 0;
+    for (int k = 0; k < freedom; ++k) squares += std::pow(random.normal(), 2);
+    const double found = std::sqrt(squares / freedom);
+    within += std::abs(random.normal()) <= upper_of_axis(found, freedom) ? 1 : 0;
+    below += 1 <= upper_of_sigma(found, freedom) ? 1 : 0;
+  }
+  EXPECT_NEAR(double(within) / draws, 0.95, 0.004);  // error 0.0011
+  EXPECT_NEAR(double(below) / draws, 0.95, 0.004);
+}
+
 TEST_F(NextPosesOfAnArm, ARowOfAnotherRobotIsNamedByItsLine) {
   const Problem p = problem(", candidates: 200");
   std::vector<Vector2d> list = poses;

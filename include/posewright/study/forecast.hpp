@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -30,6 +31,15 @@ struct ForecastError {
   double upper = 0.0;
 };
 
+/// 1σ of what a calibration leaves, SI, and by how much the noise that the residuals show makes it larger.
+struct ForecastSigmas {
+  Eigen::VectorXd parameters;  ///< of the variant's columns
+  /// Along x, y, z (m) and about them (rad): the largest over the test poses; none without test poses, or where nothing
+  /// turns there.
+  std::array<std::optional<double>, 6> axes{};
+  double worse = 1.0;  ///< κ over the factor that σ counts already, theory.md eq. (51)
+};
+
 /// What is known of noise and parameters beside the poses.
 struct ForecastNoise {
   Prior prior = Prior::manufactured;  ///< tolerances that count
@@ -41,12 +51,16 @@ struct ForecastNoise {
 /// Error of a calibration at the variant's test poses, from its poses alone, theory.md eq. (34) and (51).
 class ForecastOfError {
  public:
-  /// @param variant  with test points; must outlive this
+  /// @param variant  with test points, but for sigmas(); must outlive this
   ForecastOfError(const Variant& variant, const ForecastNoise& noise);
 
   /// After the first `from`, from + 1, … and all poses; none where these do not determine all parameters.
   /// One factorisation serves all.
   std::vector<std::optional<ForecastError>> after_each(const std::vector<PoseRows>& poses, std::size_t from = 0) const;
+
+  /// After all poses; none where these do not determine all parameters.
+  /// @param axes  asked for: costs as much as after_each once more for the turns
+  std::optional<ForecastSigmas> sigmas(const std::vector<PoseRows>& poses, bool axes) const;
 
  private:
   class Sum;
@@ -65,5 +79,9 @@ Eigen::MatrixXd known_information(const Variant& variant, const std::vector<Pose
 /// @param sum      Σλ, expected mean square
 /// @param squares  Σλ²
 double upper_error(double sum, double squares, double freedom);
+/// What a normal error of this σ stays below in size with 95 % confidence: d = 1, Student's t of ν degrees.
+double upper_of_axis(double sigma, double freedom);
+/// What σ itself stays below: d → ∞, only the noise is uncertain: σ √(ν/χ²_{5 %}(ν)).
+double upper_of_sigma(double sigma, double freedom);
 
 }  // namespace posewright

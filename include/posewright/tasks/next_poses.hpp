@@ -43,7 +43,7 @@ struct NextOptions {
 enum class NextVerdict {
   not_determined,  ///< the poses do not tell all parameters yet
   go_on,
-  reached,  ///< the error is at most the required one with 95 % confidence
+  reached,  ///< all that is required is met with 95 % confidence
   flat,     ///< three more poses lower the expected error by less than 2 %
 };
 
@@ -51,6 +51,17 @@ enum class NextVerdict {
 struct NextPoint {
   int poses = 0;
   std::optional<double> expected{}, upper{};  ///< upper: 95 %; none where nothing was left to judge the noise by
+};
+
+/// One of the things that a problem requires, after the measured poses. SI.
+struct NextRequirement {
+  std::string what;  ///< "accuracy", "position x" … "rotation z", "sigma NAME"
+  std::string unit;
+  double required = 0.0;
+  std::optional<double> expected{};  ///< ρ0; 1σ along or about the axis at the worst test pose; σ of the parameter
+  std::optional<double> upper{};     ///< 95 %, what is compared; none: nothing was left to judge the noise by
+
+  bool met() const { return upper && *upper <= required; }
 };
 
 struct NextPoses {
@@ -71,6 +82,8 @@ struct NextPoses {
   std::vector<NextPoint> ahead;              ///< with 1, 2, … of `poses`
   std::optional<NextPoint> with_three{};     ///< with the three that lower the error most
   std::optional<double> required{};
+  /// All that is required, if the poses determine all parameters and there was a fit: reached means that each is met.
+  std::vector<NextRequirement> requirements;
   NextVerdict verdict = NextVerdict::not_determined;
   std::vector<PlannedPose> poses;
   std::string candidates;  ///< how many, and where from, for people

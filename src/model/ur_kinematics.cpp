@@ -37,6 +37,10 @@ UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, V
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
                      "' is none of a Universal Robots arm (shoulder_pan_joint, shoulder_lift_joint, elbow_joint, "
                      "wrist_1_joint, wrist_2_joint, wrist_3_joint)");
+    if (joint->axis.x != 0 || joint->axis.y != 0 || !(joint->axis.z > 0))
+      throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
+                     "' does not turn about z: the file is for ur_description's arms, whose joints all do; in another "
+                     "URDF its numbers would mean another robot (--urdf corrects this one)");
     const Eigen::Isometry3d X = isometry(joint->parent_to_joint_origin_transform) * correction.joints[next].X;
     const Eigen::Vector3d p = X.translation(), rpy = rpy_of(X.linear());
     result.text += fmt::format("  {}:\n    x: {}\n    y: {}\n    z: {}\n    roll: {}\n    pitch: {}\n    yaw: {}\n",

@@ -249,15 +249,20 @@ std::string candidates_text(const Plan& plan) {
   return text;
 }
 
+/// Nothing for a list that is given: what it prints is then the same in every run.
+std::string search_text(const Plan& plan) {
+  if (plan.method == "given") return {};
+  return fmt::format("Search ({}): {} restarts, {} exchanges, {:.1f} s\n", plan.method, plan.statistics.restarts,
+                     plan.statistics.exchanges, plan.statistics.seconds);
+}
+
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
   return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) +
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
-         stages_text(plan) +
-         fmt::format("Search ({}): {} restarts, {} exchanges, {:.1f} s\n", plan.method, plan.statistics.restarts,
-                     plan.statistics.exchanges, plan.statistics.seconds);
+         stages_text(plan) + search_text(plan);
 }
 
 }  // namespace posewright

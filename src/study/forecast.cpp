@@ -121,7 +121,8 @@ class ForecastOfError::Sum {
     A_.resize(3 * weights_.size(), m_);
     for (Eigen::Index t = 0; t < weights_.size(); ++t) {
       const TestPoint& point = variant_.test_points[std::size_t(t)];
-      A_.middleRows<3>(3 * t) = std::sqrt(weights_[t]) * (turns ? point.turn : point.A).leftCols(m_) * unit_.asDiagonal();
+      A_.middleRows<3>(3 * t) =
+          std::sqrt(weights_[t]) * (turns ? point.turn : point.A).leftCols(m_) * unit_.asDiagonal();
     }
     start();
     if (variant_.effect != nullptr) correlate(poses);
@@ -159,8 +160,7 @@ class ForecastOfError::Sum {
       squares += K_.diagonal() - 2 * X.cwiseProduct(follows.transpose()).rowwise().sum();
     }
     Eigen::Vector3d most = Eigen::Vector3d::Zero();
-    for (Eigen::Index t = 0; t < weights_.size(); ++t)
-      most = most.cwiseMax(squares.segment<3>(3 * t) / weights_[t]);
+    for (Eigen::Index t = 0; t < weights_.size(); ++t) most = most.cwiseMax(squares.segment<3>(3 * t) / weights_[t]);
     return noise_.factor * most.cwiseMax(0.0).cwiseSqrt();
   }
 

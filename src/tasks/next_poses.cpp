@@ -249,7 +249,7 @@ class NextRun {
     const NextPoint& now = result_.curve.back();
     result_.verdict = NextVerdict::go_on;
     if (result_.with_three && result_.with_three->expected &&
-             *result_.with_three->expected > (1 - least_gain) * *now.expected)
+        *result_.with_three->expected > (1 - least_gain) * *now.expected)
       result_.verdict = NextVerdict::flat;
   }
 

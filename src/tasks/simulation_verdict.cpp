@@ -58,7 +58,8 @@ class Verdict {
     describe_ends();
     describe_chi_square();
     if (!s_.summary.parameters.empty())
-      say(fmt::format("(σ, coverage and bias of {} parameters are {} tests: together they refuse a right model with at "
+      say(
+          fmt::format("(σ, coverage and bias of {} parameters are {} tests: together they refuse a right model with at "
                       "most {:.0f} % chance, Holm 1979)",
                       s_.parameters.size(), 3 * s_.parameters.size(), 100 * refused_by_chance));
     if (!wrong_sigma_.empty() || !wrong_coverage_.empty() || !biased_.empty()) causes();

@@ -292,9 +292,10 @@ TEST_F(NextPosesOfAnArm, EveryRequirementIsJudgedByTheDefinitionAndAllMustBeMet)
   const auto judged = [&](std::size_t too_small) {
     std::vector<double> at = limits;
     for (std::size_t k = 0; k < at.size(); ++k) at[k] *= k == too_small ? 0.999 : 1.001;
-    const Problem p = problem(fmt::format(", candidates: 300, require: {{position: {{x: \"{} m\", y: \"{} m\"}}, rotation: "
-                                          "{{z: \"{} rad\"}}, sigma: {{q1.offset: \"{} rad\", q2.x: \"{} m\"}}}}",
-                                          at[0], at[1], at[2], at[3], at[4]));
+    const Problem p =
+        problem(fmt::format(", candidates: 300, require: {{position: {{x: \"{} m\", y: \"{} m\"}}, rotation: "
+                            "{{z: \"{} rad\"}}, sigma: {{q1.offset: \"{} rad\", q2.x: \"{} m\"}}}}",
+                            at[0], at[1], at[2], at[3], at[4]));
     return next_poses(p, options(readings(poses)), Monitor{});
   };
   const NextPoses first = judged(5);
@@ -315,7 +316,8 @@ TEST_F(NextPosesOfAnArm, EveryRequirementIsJudgedByTheDefinitionAndAllMustBeMet)
   for (std::size_t k = 0; k < 5; ++k) {
     const NextPoses open = judged(k);
     EXPECT_EQ(open.verdict, NextVerdict::go_on) << names[k];
-    EXPECT_THAT(next_reason(open), HasSubstr("1 of 5 requirements not met with 95 % confidence, farthest off " + names[k]));
+    EXPECT_THAT(next_reason(open),
+                HasSubstr("1 of 5 requirements not met with 95 % confidence, farthest off " + names[k]));
     EXPECT_THAT(next_text(open), HasSubstr("below with 95 %"));
   }
 }

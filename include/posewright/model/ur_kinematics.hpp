@@ -19,7 +19,8 @@ struct UrKinematics {
 /// @param arm         its URDF made by ur_description: joints shoulder_pan_joint … wrist_3_joint, maybe with a prefix
 /// @param convention  whose names the values have
 /// @param hash        stands for the controller's own calibration, which the driver compares with the robot's
-/// Throws as corrected_urdf(), CannotDo for an arm with other joints, or joints that do not turn about z: frames of ur_description all do.
+/// Throws as corrected_urdf(), CannotDo for an arm with other joints, or joints that do not turn about z: frames of
+/// ur_description all do.
 UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
                            const std::vector<CalibratedValue>& values, const std::string& hash);
 

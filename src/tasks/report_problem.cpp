@@ -28,6 +28,8 @@ namespace {
 constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
 // Enough for a curve that shows what a few poses more bring.
 constexpr int curve_restarts = 1;
+// Of weights that are starts for a search, and of what the page shows of candidates to three digits.
+constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-5;
 // Relative difference of log det that rounding of written configurations cannot make.
 constexpr double same_log_det = 1e-6;
 
@@ -192,6 +194,12 @@ class ReportBuilder {
     fill_neighbours(report_, study_, drawing, open, options_.threads, monitor_);
   }
 
+  SearchRequest request(int poses, double tolerance) const {
+    SearchRequest request = spaced_request(study_, settings_, poses);
+    request.bound_tolerance = tolerance;
+    return request;
+  }
+
   /// Made once for all searches.
   std::vector<SearchPart> parts_of_candidates() {
     if (parts_.empty()) parts_ = search_parts(study_, settings_.criterion, study_.configurations, options_.threads);
@@ -213,7 +221,7 @@ class ReportBuilder {
   void fill_candidates() {
     const Configurations& pool = study_.configurations;
     if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    Bound bound = bound_only(parts_of_candidates(), spaced_request(study_, settings_, settings_.poses), monitor_);
+    Bound bound = bound_only(parts_of_candidates(), request(settings_.poses, shown_tolerance), monitor_);
     if (monitor_.should_stop()) {
       report_.notes.emplace_back("Stopped early: what each candidate could add is left out.");
       return;
@@ -236,7 +244,7 @@ class ReportBuilder {
   std::optional<CurvePoint> curve_at(int poses) const {
     const Configurations& pool = study_.configurations;
     try {
-      const SearchResult found = search(copied_parts(parts_), spaced_request(study_, settings_, poses), monitor_);
+      const SearchResult found = search(copied_parts(parts_), request(poses, start_tolerance), monitor_);
       if (monitor_.should_stop()) return std::nullopt;  // not the best plan of so many
       Configurations list;
       list.dimension = pool.dimension;

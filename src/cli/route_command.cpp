@@ -29,7 +29,7 @@ po::options_description route_command_options() {
       ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                         //
       ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                        //
       ("force", "replace files that posewright did not write")                                                     //
-      ("time-limit", text("S"), "stop after S seconds with the best order so far")                                                         //
+      ("time-limit", text("S"), "stop after S seconds with the best order so far")                                 //
       ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;

@@ -18,7 +18,7 @@ class NuisanceState : public DesignState {
   }
 
   double value() const override { return rest_.value(); }
-  double loss(int position) const override { 
+  double loss(int position) const override {
     return rest_.sensitivities()[std::size_t(members()[std::size_t(position)])];
   }
 
@@ -44,8 +44,7 @@ class NuisanceState : public DesignState {
     rest_.leave(k);
     Swap best{-1, min_gain};
     const std::size_t count = blocks().count();
-    for (std::size_t j = rest_.next(0, best.gain, blocked()); j < count;
-         j = rest_.next(j + 1, best.gain, blocked())) {
+    for (std::size_t j = rest_.next(0, best.gain, blocked()); j < count; j = rest_.next(j + 1, best.gain, blocked())) {
       const double gain = rest_.gain(int(j));
       if (gain > best.gain) best = {int(j), gain};
     }

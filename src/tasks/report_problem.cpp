@@ -26,7 +26,8 @@ namespace {
 
 // Other numbers of poses, as shares of the plan's own.
 constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
-// Enough for a curve that shows what a few poses more bring: five times as many kicks gain 0.01 in log det, 0.03 % in σ.
+// Enough for a curve that shows what a few poses more bring: five times as many kicks gain 0.01 in log det, 0.03 % in
+// σ.
 constexpr int curve_restarts = 1, curve_kicks = 10;
 // Of weights that are starts for a search, and of what the page shows of candidates to three digits.
 constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-5;

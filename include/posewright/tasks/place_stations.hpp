@@ -34,9 +34,9 @@ struct StationOptions {
 
 /// Chooses among the places of workspace.stations: a quick plan from each, full ones from the best. All sets of so many
 /// stations are tried if they are at most 100 or all are asked for; else the best one gets the best second, and so on.
-/// Best first. If the search is stopped, what is known by then is ranked, and the rest is marked. Throws InputError if the
-/// problem names no places or its instrument has no stations, CannotDo if none of them gives a plan, and if the search
-/// is stopped before a place is known, or before all but the last of several stations.
+/// Best first. If the search is stopped, what is known by then is ranked, and the rest is marked. Throws InputError if
+/// the problem names no places or its instrument has no stations, CannotDo if none of them gives a plan, and if the
+/// search is stopped before a place is known, or before all but the last of several stations.
 std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

@@ -86,11 +86,13 @@ def stations(result: Stations) -> str:
     def named(entry: dict) -> str:  # type: ignore[type-arg]
         return ", ".join(f"{name} ({', '.join(f'{1e3 * x:.0f}' for x in place['position'])} mm)" for name, place in entry["stations"].items())
 
+    planned = [r for r in ranking if "why_not" not in r]
     rows = [(i, named(r), f"{r['sigma_ratio']:.3f}" if r["sigma_ratio"] is not None else None, percent(r["feasible_share"]), r["main_rejection"])
-            for i, r in enumerate(ranking, 1)]
+            for i, r in enumerate(planned, 1)]
     return shown(
         f"{len(ranking)} places for the instrument, the best first",
-        bars("σ by σ of the best", [(", ".join(r["stations"]), r["sigma_ratio"]) for r in ranking], mark=1.0),
+        bars("σ by σ of the best", [(", ".join(r["stations"]), r["sigma_ratio"]) for r in planned], mark=1.0),
+        listed([f"{', '.join(r['stations'])}: {r['why_not']}" for r in ranking if "why_not" in r]),
         table(("", "where", "σ by σ of the best", "poses possible", "most others fail by"), rows, "n nn "))
 
 

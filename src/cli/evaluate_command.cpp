@@ -57,11 +57,10 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return evaluate_problem(problem, poses, evaluate, monitor);
   });
-  if (was_interrupted) return interrupted;
   print_notes(result.notes);
   if (common.json) fmt::print("{}", json_text(evaluation_json(result)));
   else print_report(evaluation_text(result));
-  return done;
+  return was_interrupted ? interrupted : done;
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ po::options_description report_command_options() {
       ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates, moved poses")  //
       ("watch", "of a result: write the page anew whenever the file changes; the open page follows")          //
       ("force", "replace files that posewright did not write")                                                //
-      ("time-limit", text("S"), "begin no other number of poses after S seconds");
+      ("time-limit", text("S"), "stop after S seconds with a page of what there is");
   options.add(problem_options());
   return options;
 }

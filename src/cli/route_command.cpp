@@ -29,7 +29,7 @@ po::options_description route_command_options() {
       ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                         //
       ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                        //
       ("force", "replace files that posewright did not write")                                                     //
-      ("time-limit", text("S"), "give up after S seconds")                                                         //
+      ("time-limit", text("S"), "stop after S seconds with the best order so far")                                 //
       ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;
@@ -61,9 +61,9 @@ int run_route(const po::variables_map& values, const Words& positional) {
   inputs.push_back(plan);
   check_output_files(values, {json, csv}, inputs);
   const PoseList poses = read_poses(plan, pose_coordinates(problem), from);
-  const Route route = watched(common, time_limit(values), [&](const Monitor& monitor) {
-                        return route_problem(problem, poses, route_options, monitor);
-                      }).result;
+  const auto [route, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
+    return route_problem(problem, poses, route_options, monitor);
+  });
   print_notes(route.notes);
   std::vector<FileToWrite> files;
   if (!csv.empty()) files.push_back({csv, route_csv(route)});
@@ -72,7 +72,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
   write_results(files);
   if (common.json) fmt::print("{}", text);
   else print_report(route_summary(route) + written_text({json, csv}));
-  return done;
+  return was_interrupted ? interrupted : done;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ po::options_description stations_command_options() {
           "candidates", text("n"),
           help_with_default("feasible configurations of the full plans", default_candidates).c_str())  //
       ("restarts", text("k"), "starts of the search of the full plans (10)")                           //
-      ("time-limit", text("S"), "give up after S seconds");
+      ("time-limit", text("S"), "stop after S seconds with what is known of the places");
   options.add(task_options()).add(problem_options());
   return options;
 }
@@ -49,14 +49,12 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   }
   const auto engine = engine_of(values, "stations");
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
-  const std::vector<StationRank> ranks =
-      watched(
-          common, time_limit(values),
-          [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); }, engine.get())
-          .result;
+  const auto [ranks, was_interrupted] = watched(
+      common, time_limit(values), [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); },
+      engine.get());
   if (common.json) fmt::print("{}", json_text(stations_json(problem, stations, ranks)));
   else print_report(stations_text(ranks));
-  return done;
+  return was_interrupted ? interrupted : done;
 }
 
 }  // namespace

@@ -18,13 +18,16 @@ class NuisanceState : public DesignState {
   }
 
   double value() const override { return rest_.value(); }
-  double loss(int position) const override { return d_[std::size_t(members()[std::size_t(position)])]; }
+  double loss(int position) const override {
+    return rest_.sensitivities()[std::size_t(members()[std::size_t(position)])];
+  }
 
   Swap best_addition() override {
     rest_.leave(-1);
+    const std::vector<double>& d = rest_.sensitivities();
     Swap best{-1, -infinity};
     for (int j = 0; j < int(blocks().count()); ++j) {
-      if (blocked()[std::size_t(j)] != 0 || d_[std::size_t(j)] <= best.gain) continue;
+      if (blocked()[std::size_t(j)] != 0 || d[std::size_t(j)] <= best.gain) continue;
       const double gain = rest_.gain(j);
       if (gain > best.gain) best = {j, gain};
     }
@@ -33,11 +36,7 @@ class NuisanceState : public DesignState {
 
   double removal(int position) override { return rest_.exact(members()[std::size_t(position)], -1) - rest_.value(); }
 
-  bool refresh() override {
-    const bool regular = rest_.set_members(members());
-    rest_.sensitivities(d_);
-    return regular;
-  }
+  bool refresh() override { return rest_.set_members(members()); }
 
  private:
   Swap do_best_swap(int position, double min_gain) override {
@@ -45,8 +44,7 @@ class NuisanceState : public DesignState {
     rest_.leave(k);
     Swap best{-1, min_gain};
     const std::size_t count = blocks().count();
-    for (std::size_t j = rest_.next(0, best.gain, d_, blocked()); j < count;
-         j = rest_.next(j + 1, best.gain, d_, blocked())) {
+    for (std::size_t j = rest_.next(0, best.gain, blocked()); j < count; j = rest_.next(j + 1, best.gain, blocked())) {
       const double gain = rest_.gain(int(j));
       if (gain > best.gain) best = {int(j), gain};
     }
@@ -57,13 +55,9 @@ class NuisanceState : public DesignState {
     return gain > min_gain ? Swap{best.enter, gain} : Swap{};
   }
 
-  void do_change(int leave, int enter) override {
-    rest_.exchange(leave, enter);
-    rest_.sensitivities(d_);
-  }
+  void do_change(int leave, int enter) override { rest_.exchange(leave, enter); }
 
   LeaveOneOut rest_;
-  std::vector<double> d_;
 };
 
 }  // namespace

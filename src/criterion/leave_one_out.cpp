@@ -63,12 +63,17 @@ void LeaveOneOut::factorise() {
   if (!std::isfinite(value_)) factor.compute(information_ + ridge * Eigen::MatrixXd::Identity(m, m));
   reference_ = interest_log_det(factor, nuisance_);
   inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
+  d_is_of_now_ = false;
 }
 
-void LeaveOneOut::sensitivities(std::vector<double>& d) const {
+const std::vector<double>& LeaveOneOut::sensitivities() const {
+  // Of several changes in a row, as a perturbation makes them, nobody asks in between.
+  if (d_is_of_now_) return d_;
   Eigen::MatrixXd T = inverse_factor_.transpose();
   T.leftCols(nuisance_).setZero();
-  posewright::sensitivities(blocks_, T, 1, d);
+  posewright::sensitivities(blocks_, T, 1, d_);
+  d_is_of_now_ = true;
+  return d_;
 }
 
 void LeaveOneOut::leave(int k) {
@@ -107,8 +112,8 @@ void LeaveOneOut::prepare_bound(int k, bool regular) {
   }
 }
 
-std::size_t LeaveOneOut::next(std::size_t first, double wanted, const std::vector<double>& d,
-                              const std::vector<unsigned char>& blocked) const {
+std::size_t LeaveOneOut::next(std::size_t first, double wanted, const std::vector<unsigned char>& blocked) const {
+  const std::vector<double>& d = sensitivities();
   const int r = blocks_.rows();
   double least = leaving_ < 0 ? wanted : d[std::size_t(leaving_)] + wanted;
   if (std::isfinite(value_)) least = std::max(least, (1 - rounding) * r * std::expm1(wanted / r) - rounding);

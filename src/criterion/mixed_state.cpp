@@ -43,14 +43,8 @@ class Share {
   Share& operator=(const Share&) = delete;
 
   double weight() const { return group_.weight; }
-  void set_members(const std::vector<int>& members) {
-    rest_->set_members(members);
-    rest_->sensitivities(d_);
-  }
-  void exchange(int leave, int enter) {
-    rest_->exchange(leave, enter);
-    rest_->sensitivities(d_);
-  }
+  void set_members(const std::vector<int>& members) { rest_->set_members(members); }
+  void exchange(int leave, int enter) { rest_->exchange(leave, enter); }
   void leave(int k) { rest_->leave(k); }
 
   /// ln e_v; −∞ where singular.
@@ -58,11 +52,12 @@ class Share {
   /// The same with the ridge of a singular design: what gains count from.
   double reference() const { return of(rest_->reference()); }
   /// ∂ ln e_v per unit of weight on candidate j.
-  double sensitivity(int j) const { return d_[std::size_t(j)] / interest_; }
+  double sensitivity(int j) const { return rest_->sensitivities()[std::size_t(j)] / interest_; }
   /// No less than gain(j): Φ is concave, and no swap gains more than adding alone.
   double most(int j, int leaving) const {
-    const double d = d_[std::size_t(j)], r = blocks_.rows();
-    return std::min(d - (leaving < 0 ? 0.0 : d_[std::size_t(leaving)]), r * std::log1p(d / r)) / interest_;
+    const std::vector<double>& all = rest_->sensitivities();
+    const double d = all[std::size_t(j)], r = blocks_.rows();
+    return std::min(d - (leaving < 0 ? 0.0 : all[std::size_t(leaving)]), r * std::log1p(d / r)) / interest_;
   }
   double gain(int j) { return rest_->gain(j) / interest_; }
   /// ln e_v with j in the place of k, from scratch.
@@ -76,7 +71,6 @@ class Share {
   BlockArray blocks_;
   Eigen::MatrixXd prior_;
   std::unique_ptr<LeaveOneOut> rest_;
-  std::vector<double> d_;
 };
 
 /// A swap changes each ln e_v by its own determinant formula (LeaveOneOut). Candidates come by what they gain at most,

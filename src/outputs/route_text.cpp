@@ -135,6 +135,7 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
                {"plan", route.plan_file},
                {"problem", problem_json(route.problem_file, route.problem_sha256, route.parameters_file)},
                {"problem_changed", route.problem_changed},
+               {"interrupted", route.interrupted},
                {"closed", route.closed},
                {"from_home", route.from_home},
                {"names", route.names},
@@ -182,6 +183,7 @@ std::string route_summary(const Route& route) {
     text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
                         seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
                         route.optimal ? "; no order of such motions is shorter" : "");
+  if (route.interrupted) text += "The search was ended early; this is the shortest order by then.\n";
   text += "\n" + steps_table(route) + nearest_text(route.motions, between_stops) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)
     text += fmt::format("Pose {} is left out: {}.\n", skipped.pose, skipped.reason);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "document.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/table.hpp"
@@ -27,6 +29,15 @@ std::string places_of(const StationRank& rank) {
   return places;
 }
 
+/// What an end before everything was known left open; empty: nothing.
+std::string ended_early(const std::vector<StationRank>& ranks) {
+  const auto count = [&](auto&& which) { return std::count_if(ranks.begin(), ranks.end(), which); };
+  if (count([](const StationRank& r) { return r.stopped; }) == 0) return {};
+  return fmt::format("Ended early: {} of {} looked at, {} planned in full.\n",
+                     count([](const StationRank& r) { return !r.stopped || r.why_not.empty(); }), ranks.size(),
+                     count([](const StationRank& r) { return r.in_full; }));
+}
+
 }  // namespace
 
 std::string stations_text(const std::vector<StationRank>& ranks) {
@@ -48,8 +59,9 @@ std::string stations_text(const std::vector<StationRank>& ranks) {
       "feasible: share of the configurations drawn; where the instrument sees its targets from few of them, views of "
       "the "
       "targets are drawn instead.\n";
+  text += ended_early(ranks);
   for (const StationRank& rank : ranks)
-    if (!rank.why_not.empty()) text += fmt::format("{}: no plan: {}\n", names_of(rank), rank.why_not);
+    if (!rank.why_not.empty() && !rank.stopped) text += fmt::format("{}: no plan: {}\n", names_of(rank), rank.why_not);
   text += "\nFor measurement: device:\n  stations:\n";
   for (const StationSpec& station : ranks.front().stations) {
     const Eigen::Vector3d &p = station.placement.position, &r = station.placement.rpy;
@@ -86,6 +98,7 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
   json["criterion"] = options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
   json["base"] = base_json(problem);
   json["obstacles"] = obstacles_json(problem);
+  json["interrupted"] = !ended_early(ranks).empty();
   json["ranking"] = list;
   return json;
 }

@@ -38,6 +38,7 @@ struct Joined {
 ApproximateDesignOptions bound_options(const SearchRequest& request, const Eigen::MatrixXd& prior) {
   ApproximateDesignOptions options;
   options.cap = std::min(1.0, double(request.repeats.most) / request.poses);
+  options.tolerance = request.bound_tolerance;
   if (prior.size() > 0) options.prior = prior / double(request.poses);
   options.threads = request.planner.threads;
   return options;

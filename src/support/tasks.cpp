@@ -88,6 +88,7 @@ TaskEngine::Results TaskEngine::results_of(const TaskGroup& group, const Task& t
   const auto indices = open.get<std::vector<std::size_t>>();
   std::atomic<bool> failed = false;
   std::size_t done = results.size();
+  if (!group.finished && !indices.empty()) monitor.report({group.name, double(done), double(group.count), {}, {}, {}});
   workers_->compute(
       indices, group.threads,
       [&](std::size_t i, int worker) {

@@ -31,6 +31,7 @@ class ListEvaluation {
         settings_(settings_of(problem, numbered(options.plan))) {
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
+    if (monitor.should_stop()) throw CannotDo("stopped before there were all candidates to compare with");
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
     require_fits(list, coordinates);
     notes_ = study_.notes;
@@ -74,9 +75,15 @@ class ListEvaluation {
     shape.without = without_each(phi);
     fill_poses(plan, study_, poses_, shape, judgement);
     fill_candidates(plan.statistics, study_);
-    if (options_.drop) result.drop = drop(*options_.drop, phi, references);
-    if (options_.add) result.add = add(*options_.add, phi, references);
+    const bool stopped = monitor_.should_stop();
+    if (options_.drop && !stopped) result.drop = drop(*options_.drop, phi, references);
+    if (options_.add && !monitor_.should_stop()) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();
+    if (stopped)
+      result.notes.emplace_back(
+          "ended early: efficiencies are at least what is said; other criteria, drop and add are left out");
+    else if (plan.interrupted)
+      result.notes.emplace_back("ended early: what to drop and add is the best by then, or left out");
     return result;
   }
 
@@ -109,6 +116,7 @@ class ListEvaluation {
         continue;
       if (entry.needs_test_poses && study_.first().test_points.empty()) continue;
       const bool chosen = entry.name == settings_.criterion;
+      if (!chosen && monitor_.should_stop()) continue;
       const Bound bound = bound_of(entry.name);
       const double phi = phi_of(*bound.measure, entry.name, study_, poses_, settings_);
       CriterionScore score{entry.name, entry.shown(phi, judgement.evaluations.front().indices), std::nullopt};

@@ -20,6 +20,8 @@ namespace posewright {
 namespace {
 
 constexpr std::size_t most_sets = 100;
+// Said of a place that no plan was made from before the search was ended.
+constexpr const char* not_looked_at = "the search was ended before it was looked at";
 // Of the quick plan that decides which places are looked at closely.
 constexpr int quick_candidates = 400, quick_restarts = 1;
 
@@ -85,6 +87,7 @@ std::string bytes_of(const StationRank& rank) {
   bytes.put(rank.why_not);
   bytes.put(rank.main_rejection);
   bytes.put(rank.parameters);
+  bytes.put(rank.stopped);
   bytes.put(rank.rho0.has_value());
   for (const double value : {rank.phi, rank.criterion_value, rank.feasible_share, rank.rho0.value_or(0.0)})
     bytes.put(value);
@@ -98,6 +101,7 @@ StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
   bytes.get(rank.why_not);
   bytes.get(rank.main_rejection);
   bytes.get(rank.parameters);
+  bytes.get(rank.stopped);
   const bool has_rho0 = bytes.get<bool>();
   for (double* value : {&rank.phi, &rank.criterion_value, &rank.feasible_share}) bytes.get(*value);
   if (has_rho0) rank.rho0 = bytes.get<double>();
@@ -122,7 +126,7 @@ class Ranking {
   }
 
   std::vector<StationRank> rank() {
-    const auto choose = std::size_t(options_.choose.value_or(problem_.workspace.stations->choose));
+    const auto choose = wanted_ = std::size_t(options_.choose.value_or(problem_.workspace.stations->choose));
     if (choose > places_.size())
       throw InputError({}, "--choose " + std::to_string(choose),
                        "there are " + std::to_string(places_.size()) + " places to choose among");
@@ -138,10 +142,14 @@ class Ranking {
         {"full plans", in_full, 1},
         [&](std::size_t i, int) { return bytes_of(judge(problem_, ranks[i].stations, full)); },
         [&](std::size_t i, std::string_view bytes) {
-          ranks[i] = rank_in(bytes, ranks[i].stations);
+          StationRank found = rank_in(bytes, ranks[i].stations);
+          // What was cut short is no better than the quick plan.
+          if (found.stopped) return;
+          ranks[i] = std::move(found);
           ranks[i].in_full = true;
         },
         monitor_);
+    for (std::size_t i = 0; i < in_full; ++i) ranks[i].stopped = !ranks[i].in_full;
     sort(ranks);
     compare(ranks);
     if (!ranks.front().why_not.empty())
@@ -210,11 +218,17 @@ class Ranking {
       for (const std::size_t i : sets[s]) stations.push_back(places_[i]);
       return stations;
     };
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      ranks[s].stations = stations_at(s);
+      ranks[s].why_not = not_looked_at;
+      ranks[s].stopped = true;
+    }
     const bool stopped = run_tasks(
         {"places", sets.size(), at_once},
         [&](std::size_t s, int) { return bytes_of(judge(unconnected_, stations_at(s), quick)); },
         [&](std::size_t s, std::string_view bytes) { ranks[s] = rank_in(bytes, stations_at(s)); }, monitor_);
-    if (stopped) throw CannotDo("stopped before every place was looked at");
+    const bool none = std::all_of(ranks.begin(), ranks.end(), [](const StationRank& r) { return r.stopped; });
+    if (stopped && (none || sets.front().size() < wanted_)) throw CannotDo("stopped before there was a place to show");
     return ranks;
   }
 
@@ -248,6 +262,10 @@ class Ranking {
       // A bad place; what is wrong with the rest of the problem is wrong everywhere.
       rank.why_not = "stands inside a body";
     }
+    if (quiet.should_stop()) {
+      rank.stopped = true;
+      rank.why_not = not_looked_at;
+    }
     return rank;
   }
 
@@ -266,6 +284,7 @@ class Ranking {
   const Monitor& monitor_;
   const std::vector<StationSpec>& places_;
   bool determinant_ = false;
+  std::size_t wanted_ = 0;  // stations of a set
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "posewright/tasks/route_problem.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <functional>
 
 #include "fill_plan.hpp"
 #include "motions.hpp"
@@ -12,6 +14,7 @@
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
 #include "without_roadmap.hpp"
 
@@ -93,9 +96,12 @@ class Router {
       Stop stop{id, list.configurations[i], pose_of(*variant_.model, list.configurations[i])};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
-      stop.pose.nearest = nearest_at(*cell_, stop.configuration);
       stops_.push_back(std::move(stop));
     }
+    for_each("poses", stops_.size(), [&](std::size_t i) {
+      if (stops_[i].id > 0) stops_[i].pose.nearest = nearest_at(*cell_, stops_[i].configuration);
+    });
+    if (monitor_.should_stop()) throw CannotDo("stopped before all motions were found");
     std::vector<int> near;
     for (const Stop& stop : stops_)
       if (stop.id > 0 && !variant_.workspace->within_margin(stop.configuration).empty()) near.push_back(stop.id);
@@ -120,6 +126,17 @@ class Router {
     const Conditions& conditions = stops_.back().pose.conditions;
     if (!options_.from_home && std::any_of(conditions.begin(), conditions.end(), arrives))
       throw CannotDo("joints with backlash arrive from a stated side, also at the first pose: begin --from-home");
+  }
+
+  /// On all threads, until a stop.
+  void for_each(const char* stage, std::size_t count, const std::function<void(std::size_t)>& body) const {
+    std::atomic<int> done = 0;
+    monitor_.report({stage, 0.0, double(count), {}, {}, {}});
+    parallel_for(count, thread_count(options_.threads), [&](std::size_t i, int) {
+      if (monitor_.should_stop()) return;
+      body(i);
+      monitor_.report({stage, double(++done), double(count), {}, {}, {}});
+    });
   }
 
   int find_stop(int id) const {
@@ -263,14 +280,21 @@ class Router {
       const auto pairs = legs(order);
       unknown =
           std::count_if(pairs.begin(), pairs.end(), [&](const auto& p) { return !motions_->known(p.first, p.second); });
-      const double seconds = make_motions(order);
+      double seconds = no_way;
+      try {
+        seconds = make_motions(order);
+      } catch (const CannotDo&) {
+        if (best.empty() || !monitor_.should_stop()) throw;
+        route_.interrupted = true;
+        break;
+      }
       if (best.empty() || seconds < shortest) {
         best = order;
         shortest = seconds;
       }
       monitor_.report({"order", double(pairs.size()) - double(unknown), double(pairs.size()), {}, {}, {}});
     }
-    route_.optimal = n <= exact_nodes;
+    route_.optimal = n <= exact_nodes && !route_.interrupted;
     return best;
   }
 
@@ -282,11 +306,15 @@ class Router {
   }
 
   void write(const std::vector<int>& order) {
+    std::vector<const Motion*> made;
     for (const auto& [i, j] : legs(order)) {
-      const Motion& motion = motions_->between(i, j);
+      const Motion& motion = *made.emplace_back(&motions_->between(i, j));
       route_.motions.push_back({stops_[std::size_t(i)].id, stops_[std::size_t(j)].id, motion.points, motion.seconds,
-                                change(i, j), motion.found_by, nearest_on(motion)});
+                                change(i, j), motion.found_by});
     }
+    for_each("clearance", made.size(), [&](std::size_t k) { route_.motions[k].nearest = nearest_on(*made[k]); });
+    if (monitor_.should_stop())
+      route_.notes.emplace_back("ended early: what is nearest on the way is left out of some or all motions");
     const int every = problem_.workspace.line_of_sight ? problem_.workspace.line_of_sight->every : 0;
     for (const int i : order) {
       if (stops_[std::size_t(i)].id == 0) continue;
@@ -312,6 +340,7 @@ class Router {
   std::optional<BodyDistance> nearest_on(const Motion& motion) const {
     std::optional<Separation> nearest;
     for (std::size_t k = 1; cell_->collision != nullptr && k < motion.points.size(); ++k) {
+      if (monitor_.should_stop()) return std::nullopt;
       const auto found = cell_->collision->nearest(space_.whole(motion.points[k - 1]), space_.whole(motion.points[k]));
       if (found && (!nearest || found->distance < nearest->distance)) nearest = found;
     }

@@ -24,8 +24,8 @@ class LeaveOneOut {
   double value() const { return value_; }
   /// The same; where M is singular, of M plus a ridge: what gains count from.
   double reference() const { return reference_; }
-  /// d of the interest information for every candidate, from a fresh factor of M.
-  void sensitivities(std::vector<double>& d) const;
+  /// d of the interest information for every candidate, from a fresh factor of M; computed when it is first asked for.
+  const std::vector<double>& sensitivities() const;
 
   /// Prepares gains for a leaving member. Where M or M₋ is singular a small ridge is added; while M is, it is in both
   /// sides of a gain, so that accepted swaps still rise monotonically.
@@ -36,9 +36,7 @@ class LeaveOneOut {
   /// With what is left M₋ and A = I + Z_n Z_nᵀ ⪰ I: gain ≤ Φ(M₋) − Φ(M) + r ln(1 + d₋/r), d₋ = tr(Z Zᵀ) − tr(Z_n Z_nᵀ),
   /// which a change of rank r gives from the sensitivities d of M; Φ is concave, so gain ≤ d_j − d_k; and no swap gains
   /// more than adding alone, r ln(1 + d_j/r).
-  /// @param d  sensitivities() now
-  std::size_t next(std::size_t first, double wanted, const std::vector<double>& d,
-                   const std::vector<unsigned char>& blocked) const;
+  std::size_t next(std::size_t first, double wanted, const std::vector<unsigned char>& blocked) const;
   /// Φ of the design with j in the place of k, from scratch.
   double exact(int k, int j) const;
 
@@ -58,6 +56,8 @@ class LeaveOneOut {
   int leaving_ = -1;
   std::vector<double> half_;  ///< rows: M⁻¹J_kᵀ(I − D_k)^{−T/2}, then the same of the nuisance columns; empty: no bound
   std::vector<double> t_, scratch_;
+  mutable std::vector<double> d_;
+  mutable bool d_is_of_now_ = false;
   std::vector<int> tile_rows_;
 };
 

@@ -56,16 +56,8 @@ class JointTargets {
   static std::string format_of_ending(std::string_view ending);
 
  private:
-  void add(int line, const std::string& name, const std::vector<std::pair<std::string, TextNumber>>& axes);
+  void take_points();
   std::vector<double> controller_values(const std::vector<double>& joints) const;
-
-  void scan_krl();
-  void scan_rapid();
-  void scan_tp();
-  void scan_urscript();
-  void scan_inform();
-  void scan_val3();
-  void scan_trajectory();
 
   struct Dialect;
   static const std::vector<Dialect>& dialects();

@@ -47,6 +47,7 @@ struct Route {
   std::vector<SkippedPose> unreachable;
   double planned_seconds = 0.0;  ///< of the same poses in the plan's own order at least: straight motions, free or not
   bool optimal = false;          ///< no order of these motions is shorter
+  bool interrupted = false;      ///< the search was ended: its best order so far
   double computing_seconds = 0.0;
   std::vector<std::string> notes{};  ///< on how the poses were read; not written
 

@@ -7,6 +7,7 @@
 
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/outputs/plan.hpp"
+#include "posewright/planning/approximate_design.hpp"
 #include "posewright/planning/design_task.hpp"
 #include "posewright/planning/workspace_bound.hpp"
 #include "posewright/support/error.hpp"
@@ -34,7 +35,9 @@ struct SearchRequest {
   bool reserve = false;
   PlannerOptions planner;
   bool certify = true;  ///< false: no bound is sought, which takes longer than the search for a few poses
-  bool prove = false;   ///< the certificate over the workspace, after the search and where it can be proved
+  /// Of the bound: true at any, tight at a small one. If it is not shown, its weights are starts for the search alone.
+  double bound_tolerance = ApproximateDesignOptions{}.tolerance;
+  bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
   ProofLimits proof{};
   std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance

@@ -13,6 +13,7 @@ struct StationRank {
   std::vector<StationSpec> stations;
   std::string why_not;           ///< why there is no plan from there; empty: there is one
   bool in_full = false;          ///< planned as `plan` does it; else with few candidates and one start
+  bool stopped = false;          ///< not looked at, or only quickly, because the search was ended
   int parameters = 0;            ///< of interest that it identifies
   double phi = 0.0;              ///< criterion as it is maximised, larger is better
   double criterion_value = 0.0;  ///< in its own terms
@@ -33,8 +34,9 @@ struct StationOptions {
 
 /// Chooses among the places of workspace.stations: a quick plan from each, full ones from the best. All sets of so many
 /// stations are tried if they are at most 100 or all are asked for; else the best one gets the best second, and so on.
-/// Best first. Throws InputError if the problem names no places or its instrument has no stations, CannotDo if
-/// none of them gives a plan, and where the search is stopped.
+/// Best first. If the search is stopped, what is known by then is ranked, and the rest is marked. Throws InputError if
+/// the problem names no places or its instrument has no stations, CannotDo if none of them gives a plan, and if the
+/// search is stopped before a place is known, or before all but the last of several stations.
 std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

@@ -112,6 +112,42 @@ std::string reserve_text(const Plan& plan) {
                      percent(worst->without), worst->id);
 }
 
+/// A share of drawn robots and what they have at most.
+double quantile(std::vector<double> values, double share) {
+  const auto at = std::ptrdiff_t(share * double(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[std::size_t(at)];
+}
+
+std::string measure_text(const RobustPlan& robust) {
+  if (robust.measure == "mean") return "on average";
+  return robust.measure == "worst" ? "on the worst" : "on the worst " + robust.measure.substr(5) + " of them";
+}
+
+std::string robust_text(const Plan& plan) {
+  if (!plan.robust) return {};
+  const RobustPlan& robust = *plan.robust;
+  const std::string on = measure_text(robust);
+  if (robust.efficiency.empty())
+    return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal robot's.\n";
+  std::string text = fmt::format(
+      "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them below {}, lowest "
+      "{}). No plan of these candidates has more than {}.\n",
+      robust.draws, percent(robust.value), on, percent(quantile(robust.efficiency, 0.1)),
+      percent(quantile(robust.efficiency, 0.0)), percent(robust.bound));
+  if (robust.unreached > 0)
+    text += fmt::format("{:.2g} % of the candidates are out of reach or sight for a drawn robot: they tell nothing there.\n",
+                        100.0 * double(robust.unreached) / double(robust.draws) /
+                            std::max<double>(1.0, double(plan.certificate.count)));
+  if (!robust.searched) return text;
+  text += fmt::format("The plan for the nominal robot has {} there: ", percent(robust.nominal_value));
+  text += robust.worth_it()
+              ? fmt::format("planning for the tolerances gains {:.2f} %.\n", 100 * robust.gain())
+              : fmt::format("planning for the tolerances is not worth it, it gains {:.2f} %.\n", 100 * robust.gain());
+  if (robust.stopped) text += "The search over drawn robots was ended before it was done.\n";
+  return text;
+}
+
 std::string stages_text(const Plan& plan) {
   if (plan.statistics.stages.empty()) return {};
   std::string text = "Stages:";
@@ -252,7 +288,7 @@ std::string candidates_text(const Plan& plan) {
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) +
+  return headline(plan) + certificate_text(plan) + robust_text(plan) + reserve_text(plan) + indices_text(plan) +
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
          stages_text(plan) +

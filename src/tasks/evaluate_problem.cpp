@@ -15,6 +15,7 @@
 #include "posewright/study/reliance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
+#include "robust_plan.hpp"
 
 namespace posewright {
 namespace {
@@ -74,6 +75,7 @@ class ListEvaluation {
     shape.without = without_each(phi);
     fill_poses(plan, study_, poses_, shape, judgement);
     fill_candidates(plan.statistics, study_);
+    if (settings_.robust) plan.robust = judge_robust_list(problem, study_, settings_, poses_, monitor_);
     if (options_.drop) result.drop = drop(*options_.drop, phi, references);
     if (options_.add) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();

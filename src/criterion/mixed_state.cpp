@@ -94,9 +94,8 @@ class Combination {
       return total / sum_;
     }
     std::iota(order_.begin(), order_.end(), std::size_t(0));
-    std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return values[a] != values[b] ? values[a] < values[b] : a < b;
-    });
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
     double taken = 0.0;
     for (const std::size_t v : order_) {
       const double part = std::min(weights_[v], wanted_ - taken);
@@ -137,10 +136,9 @@ class MixedState : public DesignState {
     for (const VariantGroup& group : variants) {
       Eigen::MatrixXd prior;
       if (view.prior != nullptr) prior = view.prior->block(group.first, group.first, group.columns, group.columns);
-      shares_.push_back(
-          std::make_unique<Share>(Scenario{std::make_shared<BlockArray>(own_blocks(*view.blocks, group)), group.weight,
-                                           group.reference, std::move(prior)},
-                                  group.nuisance));
+      shares_.push_back(std::make_unique<Share>(Scenario{std::make_shared<BlockArray>(own_blocks(*view.blocks, group)),
+                                                         group.weight, group.reference, std::move(prior)},
+                                                group.nuisance));
     }
     now_.resize(shares_.size());
     then_.resize(shares_.size());
@@ -185,9 +183,7 @@ class MixedState : public DesignState {
     for (const auto& share : shares_) share->exchange(leave, enter);
   }
 
-  static RobustAim aim_of(bool minimum) {
-    return {minimum ? RobustAim::Measure::worst : RobustAim::Measure::mean};
-  }
+  static RobustAim aim_of(bool minimum) { return {minimum ? RobustAim::Measure::worst : RobustAim::Measure::mean}; }
   template <class Parts>
   static std::vector<double> weights_of(const Parts& parts) {
     std::vector<double> weights;

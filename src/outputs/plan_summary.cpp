@@ -129,19 +129,22 @@ std::string robust_text(const Plan& plan) {
   const RobustPlan& robust = *plan.robust;
   const std::string on = measure_text(robust);
   if (robust.efficiency.empty())
-    return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal robot's.\n";
+    return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal "
+           "robot's.\n";
   const auto lost = std::count(robust.efficiency.begin(), robust.efficiency.end(), 0.0);
   std::string text = fmt::format(
       "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them below {}, lowest "
       "{}).{}\n",
       robust.draws, percent(robust.value), on, percent(quantile(robust.efficiency, 0.1)),
       percent(quantile(robust.efficiency, 0.0)),
-      robust.bound < 0.9995 ? fmt::format(" No plan of these candidates has more than {}.", percent(robust.bound)) : "");
+      robust.bound < 0.9995 ? fmt::format(" No plan of these candidates has more than {}.", percent(robust.bound))
+                            : "");
   if (lost > 0) text += fmt::format("It does not determine all parameters of {} of them.\n", lost);
   if (robust.unreached > 0)
-    text += fmt::format("{:.2g} % of the candidates are out of reach or sight for a drawn robot: they tell nothing there.\n",
-                        100.0 * double(robust.unreached) / double(robust.draws) /
-                            std::max<double>(1.0, double(plan.certificate.count)));
+    text += fmt::format(
+        "{:.2g} % of the candidates are out of reach or sight for a drawn robot: they tell nothing there.\n",
+        100.0 * double(robust.unreached) / double(robust.draws) /
+            std::max<double>(1.0, double(plan.certificate.count)));
   if (!robust.searched) return text;
   if (const auto missed = std::count(robust.nominal.begin(), robust.nominal.end(), 0.0); missed > 0)
     text += fmt::format("The plan for the nominal robot does not determine all parameters of {} of them.\n", missed);

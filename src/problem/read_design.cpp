@@ -148,8 +148,8 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
                        const std::filesystem::path& folder) {
   const Section section(value);
   section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates",
-                 "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve",
-                 "robust",                 "measured", "fixed", "test_poses"});
+                 "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve", "robust",
+                 "measured", "fixed", "test_poses"});
   DesignSpec design;
   design.line = value.line();
   read_aim(section, variants, folder, design);

@@ -125,7 +125,8 @@ class RobustSearch {
     return best->members;
   }
 
-  void take_if_better(const ScenarioPool& pool, const Indices& found, Indices& best, std::vector<double>& values) const {
+  void take_if_better(const ScenarioPool& pool, const Indices& found, Indices& best,
+                      std::vector<double>& values) const {
     std::vector<double> theirs = pool.values_of(found);
     // A plan that leaves fewer robots undetermined is better, whatever the rest.
     const auto singular = [](const std::vector<double>& of) {

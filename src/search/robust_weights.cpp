@@ -67,7 +67,6 @@ class AtWeights {
         values_(scenarios_.size()),
         d_(scenarios_.size()) {}
 
-
   /// Σ_k λ_k d_ik, at λ that support the aim there; `of_prior` the same of what is there before.
   std::vector<double> derivative(const std::vector<double>& w, double& of_prior) {
     std::vector<double> prior_share(scenarios_.size(), 0.0);
@@ -79,9 +78,9 @@ class AtWeights {
       const auto expansion = figures_.function().expand(information(pool_, k, w, prior));
       values_[s] = -1e3;
       if (expansion == nullptr) return;
-      values_[s] = (expansion->value + figures_.interest() * std::log(double(request_.poses)) -
-                    figures_.references()[k]) /
-                   figures_.interest();
+      values_[s] =
+          (expansion->value + figures_.interest() * std::log(double(request_.poses)) - figures_.references()[k]) /
+          figures_.interest();
       sensitivities(blocks, expansion->factor, 1, d_[s]);
       if (prior.size() > 0) prior_share[s] = (expansion->factor.transpose() * prior * expansion->factor).trace();
     });

@@ -219,7 +219,8 @@ double ScenarioFigures::bound_by(const std::vector<double>& lambda) const {
 }
 
 double ScenarioFigures::bound_here() const {
-  double least = std::min(0.0, bound_by(supporting_weights(request_.aim, look_.values, weights_, double(weights_.size()))));
+  double least =
+      std::min(0.0, bound_by(supporting_weights(request_.aim, look_.values, weights_, double(weights_.size()))));
   const double lowest = *std::min_element(look_.values.begin(), look_.values.end());
   if (request_.aim.measure != RobustAim::Measure::worst || !std::isfinite(lowest)) return std::exp(least);
   // Any weights are valid; those of a soft minimum spread over all scenarios that are nearly worst.

@@ -147,9 +147,8 @@ std::vector<int> representatives(const ScenarioFigures& figures, const RobustAim
                                  const std::vector<int>& before) {
   const std::size_t count = std::min(values.size(), most_representatives);
   if (aim.measure == RobustAim::Measure::mean) return herded(figures, candidates, count);
-  const auto tail = aim.measure == RobustAim::Measure::tail
-                        ? std::size_t(std::ceil(aim.share * double(values.size())))
-                        : std::size_t(1);
+  const auto tail = aim.measure == RobustAim::Measure::tail ? std::size_t(std::ceil(aim.share * double(values.size())))
+                                                            : std::size_t(1);
   std::vector<int> chosen = before, order = by_value(values, false);
   order.resize(std::min(order.size(), std::max(count, tail + tail / 2)));
   for (const int k : order)

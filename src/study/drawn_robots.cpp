@@ -28,8 +28,7 @@ class RememberedSight : public Visibility {
     parallel_for(n, thread_count(threads), [&](std::size_t i, int) {
       sight_->visible(configurations[i], {seen.data() + i * targets, targets});
     });
-    for (std::size_t i = 0; i < n; ++i)
-      known_.try_emplace(key(configurations[i]), seen.data() + i * targets, targets);
+    for (std::size_t i = 0; i < n; ++i) known_.try_emplace(key(configurations[i]), seen.data() + i * targets, targets);
   }
 
   int targets() const override { return sight_->targets(); }

@@ -118,7 +118,8 @@ TEST_P(Robust, TheBestOfAllPlansIsFoundAndItsFiguresAreThoseOfTheDefinition) {
   EXPECT_LE(best, std::log(found.bound) + 1e-9) << "the bound is exceeded";
   EXPECT_LT(found.bound, 1.0);
   const std::vector<double> each = efficiencies(found.plan);
-  for (int k = 0; k < scenarios; ++k) EXPECT_NEAR(std::log(found.robust.efficiency[std::size_t(k)]), each[std::size_t(k)], 1e-9);
+  for (int k = 0; k < scenarios; ++k)
+    EXPECT_NEAR(std::log(found.robust.efficiency[std::size_t(k)]), each[std::size_t(k)], 1e-9);
 }
 
 TEST_P(Robust, ResultIsTheSameOnAnyNumberOfThreads) {
@@ -261,7 +262,8 @@ TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRo
     const auto nominal = study.configurations[i];
     ASSERT_TRUE(study.first().model->actuator_values(nominal, actuators));
     ASSERT_TRUE(other.model->configuration_at(actuators, nominal, q));
-    ASSERT_TRUE(whitened_block(*other.model, q, {}, study.first().columns.selected, scratch, own.row(0, 0), own.stride()));
+    ASSERT_TRUE(
+        whitened_block(*other.model, q, {}, study.first().columns.selected, scratch, own.row(0, 0), own.stride()));
     const Eigen::MatrixXd mine = own.block(0).transpose() * own.block(0);
     EXPECT_LT((drawn.block(i).transpose() * drawn.block(i) - mine).norm(), 1e-6 * mine.norm());
   }

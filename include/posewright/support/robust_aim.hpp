@@ -30,8 +30,8 @@ inline constexpr const char* robust_aims_allowed = "allowed: mean, worst, or tai
 double combined(const RobustAim& aim, const std::vector<double>& values, const std::vector<double>& weights,
                 double whole);
 
-/// λ ≥ 0, Σλ = 1, of a supergradient there: combined(x) ≤ Σ λ_k x_k for all x, with equality at `values` (mean, tail and,
-/// for `worst`, the one value that is least).
+/// λ ≥ 0, Σλ = 1, of a supergradient there: combined(x) ≤ Σ λ_k x_k for all x, with equality at `values` (mean, tail
+/// and, for `worst`, the one value that is least).
 std::vector<double> supporting_weights(const RobustAim& aim, const std::vector<double>& values,
                                        const std::vector<double>& weights, double whole);
 

@@ -159,6 +159,8 @@ class Plan:
     @property
     def reserve(self) -> bool: ...
     @property
+    def robust_efficiency(self) -> NDArray[np.float64]: ...
+    @property
     def seed(self) -> int: ...
     @property
     def problem_file(self) -> str: ...
@@ -429,6 +431,8 @@ def plan(
     candidates_from: Optional[_Poses] = None,
     gap: Optional[float] = None,
     proof_time: Optional[float] = None,
+    robust: Optional[int] = None,
+    robust_measure: str = "",
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,

@@ -182,6 +182,10 @@ void bind_plan_class(py::module_& m) {
       .def_readonly("scaling", &Plan::scaling)
       .def_readonly("prior", &Plan::prior)
       .def_readonly("reserve", &Plan::reserve)
+      .def_property_readonly(
+          "robust_efficiency",
+          [](const Plan& p) { return array_of(p.robust ? p.robust->efficiency : std::vector<double>()); },
+          "Of each robot drawn from the tolerances, against its own best plan; empty where none were drawn.")
       .def_readonly("seed", &Plan::seed)
       .def_readonly("problem_file", &Plan::problem_file)
       .def_readonly("problem_sha256", &Plan::problem_sha256)

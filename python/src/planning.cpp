@@ -16,13 +16,27 @@ namespace {
 
 using Limit = std::optional<double>;
 
+std::optional<RobustSpec> robust_of(const py::object& draws, const std::string& measure) {
+  if (draws.is_none() && measure.empty()) return std::nullopt;
+  RobustSpec robust;
+  robust.draws = optional_number(draws, "robust", most_robust_draws).value_or(robust.draws);
+  if (robust.draws < 2) throw InputError({}, "robust is too small", "2 or more are allowed");
+  if (measure.empty()) return robust;
+  const std::optional<RobustAim> aim = robust_aim_of(measure);
+  if (!aim) throw InputError({}, "robust_measure '" + measure + "' is no measure", robust_aims_allowed);
+  robust.aim = *aim;
+  return robust;
+}
+
 Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
           const py::object& measured, const py::object& fixed, const std::string& truth,
           const py::object& candidates_from, std::optional<double> gap, std::optional<double> proof_time,
-          const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+          const py::object& robust, const std::string& robust_measure, const py::int_& seed, long long threads,
+          Limit time_limit, py::object progress) {
   PlanOptions options;
+  options.robust = robust_of(robust, robust_measure);
   options.truth = truth;
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
   else options.poses = optional_number(poses, "poses", most_poses);
@@ -135,14 +149,15 @@ void bind_planning(py::module_& m) {
         py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
         py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
         py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none,
-        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0,
-        py::arg("time_limit") = none, py::arg("progress") = none,
+        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("robust") = none, py::arg("robust_measure") = "",
+        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
         R"(Searches for the poses to measure. What is not said is as in the problem.
 
 poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
 already (Plan, file or array); fixed: poses that the plan has among its own; candidates_from: choose among these (Plan, file or array); truth: an alternative model,
 for criteria that test it; repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress;
-gap: percent at which the proof over the workspace ends, proof_time: s for it, 0: none.
+gap: percent at which the proof over the workspace ends, proof_time: s for it, 0: none; robust: plan for so many robots
+drawn from the tolerances, robust_measure: "mean", "worst" or "tail 0.1".
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
 the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)");
   m.def("evaluate", &evaluate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("drop") = none,

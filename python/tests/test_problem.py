@@ -49,6 +49,18 @@ def test_words_for_yes_and_no_are_true_and_false(examples):
         assert plan.reserve is reserve
 
 
+def test_a_plan_for_the_tolerances_tells_every_drawn_robots_efficiency(examples):
+    problem = pw.Problem(examples / "kr270" / "problem.yaml")
+    plan = pw.plan(problem, candidates=200, restarts=1, method="greedy", robust=5, robust_measure="tail 0.4")
+    written = plan.to_dict()["robust"]
+    assert list(plan.robust_efficiency) == written["efficiency"] and len(written["efficiency"]) == 5
+    lowest = sorted(written["efficiency"])[:2]
+    assert written["value"] == pytest.approx(float(np.exp(np.mean(np.log(lowest)))))
+    assert len(pw.plan(problem, candidates=60, restarts=1, method="greedy").robust_efficiency) == 0
+    with pytest.raises(pw.InputError, match="no measure"):
+        pw.plan(problem, robust=5, robust_measure="median")
+
+
 @pytest.mark.parametrize(
     "path, value, said",
     [

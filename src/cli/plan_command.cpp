@@ -34,12 +34,28 @@ po::options_description plan_command_options() {
           "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
           "fixed", text("POSES"), "poses that the plan has among its N: CSV or plan.json; of marked ones those")(
           "reserve", "maximise what is left when the pose that hurts most is lost")(
+          "robust", text("K"), "plan for K robots drawn from the tolerances, not for the nominal one alone")(
+          "robust-measure", text("M"), "what counts of their efficiencies: mean, worst, tail 0.1 (mean)")(
           "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
           "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(
           "proof-time", text("S"), "seconds for that proof; 0: none (an amount of work, some seconds)");
   options.add(output_options(true)).add(resume_option());
   options.add(problem_options());
   return options;
+}
+
+/// Of the measure alone: as many robots as usual.
+std::optional<RobustSpec> robust_of(const po::variables_map& values) {
+  const std::optional<int> draws = whole_number(values, "robust", 2, most_robust_draws);
+  const std::string measure = text_of(values, "robust-measure");
+  if (!draws && measure.empty()) return std::nullopt;
+  RobustSpec robust;
+  robust.draws = draws.value_or(robust.draws);
+  if (measure.empty()) return robust;
+  const std::optional<RobustAim> aim = robust_aim_of(measure);
+  if (!aim) throw InputError({}, "--robust-measure '" + measure + "' is no measure", robust_aims_allowed);
+  robust.aim = *aim;
+  return robust;
 }
 
 int run_plan(const po::variables_map& values, const Words& positional) {
@@ -70,6 +86,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
     throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
   const std::filesystem::path augment = text_of(values, "augment"), fixed = text_of(values, "fixed");
   plan_options.reserve = values.count("reserve") > 0;
+  plan_options.robust = robust_of(values);
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = given_problem(file, values);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "by_bound.hpp"
@@ -31,18 +32,18 @@ BlockArray own_blocks(const BlockArray& blocks, const VariantGroup& group) {
   return result;
 }
 
-/// One variant: its determinants by rank-r changes of what remains without the leaving member.
+/// One variant or scenario: its determinants by rank-r changes of what remains without the leaving member.
 class Share {
  public:
-  Share(const CandidateView& view, const VariantGroup& group)
-      : group_(group), interest_(group.columns - group.nuisance), blocks_(own_blocks(*view.blocks, group)) {
-    if (view.prior != nullptr) prior_ = view.prior->block(group.first, group.first, group.columns, group.columns);
-    rest_ = std::make_unique<LeaveOneOut>(blocks_, group.nuisance, view.prior != nullptr ? &prior_ : nullptr);
-  }
+  Share(const Scenario& scenario, int nuisance)
+      : scenario_(scenario),
+        interest_(scenario.blocks->columns() - nuisance),
+        rest_(std::make_unique<LeaveOneOut>(*scenario_.blocks, nuisance,
+                                            scenario_.prior.size() > 0 ? &scenario_.prior : nullptr)) {}
   Share(const Share&) = delete;
   Share& operator=(const Share&) = delete;
 
-  double weight() const { return group_.weight; }
+  double weight() const { return scenario_.weight; }
   void set_members(const std::vector<int>& members) { rest_->set_members(members); }
   void exchange(int leave, int enter) { rest_->exchange(leave, enter); }
   void leave(int k) { rest_->leave(k); }
@@ -56,7 +57,7 @@ class Share {
   /// No less than gain(j): Φ is concave, and no swap gains more than adding alone.
   double most(int j, int leaving) const {
     const std::vector<double>& all = rest_->sensitivities();
-    const double d = all[std::size_t(j)], r = blocks_.rows();
+    const double d = all[std::size_t(j)], r = scenario_.blocks->rows();
     return std::min(d - (leaving < 0 ? 0.0 : all[std::size_t(leaving)]), r * std::log1p(d / r)) / interest_;
   }
   double gain(int j) { return rest_->gain(j) / interest_; }
@@ -64,24 +65,77 @@ class Share {
   double exact(int k, int j) const { return of(rest_->exact(k, j)); }
 
  private:
-  double of(double log_det) const { return (log_det - group_.reference) / interest_; }
+  double of(double log_det) const { return (log_det - scenario_.reference) / interest_; }
 
-  VariantGroup group_;
+  const Scenario scenario_;
   double interest_;
-  BlockArray blocks_;
-  Eigen::MatrixXd prior_;
   std::unique_ptr<LeaveOneOut> rest_;
 };
 
+/// combined() of the same shares over and over, without allocating.
+class Combination {
+ public:
+  Combination(const RobustAim& aim, std::vector<double> weights, double whole)
+      : aim_(aim), weights_(std::move(weights)), wanted_(aim.share * whole), order_(weights_.size()) {
+    sum_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  }
+
+  double of(const std::vector<double>& values) {
+    if (aim_.measure == RobustAim::Measure::worst) return *std::min_element(values.begin(), values.end());
+    double total = 0.0;
+    if (aim_.measure == RobustAim::Measure::mean) {
+      for (std::size_t v = 0; v < values.size(); ++v) total += weights_[v] * values[v];
+      return total / sum_;
+    }
+    std::iota(order_.begin(), order_.end(), std::size_t(0));
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
+    double taken = 0.0;
+    for (const std::size_t v : order_) {
+      const double part = std::min(weights_[v], wanted_ - taken);
+      if (!(part > 0)) break;
+      total += part * values[v];
+      taken += part;
+    }
+    return total / taken;
+  }
+  /// Of all weight, where the mean counts.
+  double share_of(std::size_t v) const { return weights_[v] / sum_; }
+
+ private:
+  RobustAim aim_;
+  std::vector<double> weights_;
+  double wanted_, sum_ = 0.0;
+  std::vector<std::size_t> order_;
+};
+
 /// A swap changes each ln e_v by its own determinant formula (LeaveOneOut). Candidates come by what they gain at most,
-/// and each is dropped as soon as the variants looked at, with the bounds of the others, cannot beat the best.
+/// and each is dropped as soon as the shares looked at, with the bounds of the others, cannot beat the best: Φ grows
+/// with each of them.
 class MixedState : public DesignState {
  public:
+  MixedState(const CandidateView& view, std::vector<int> members, const std::vector<Scenario>& scenarios, int nuisance,
+             const RobustAim& aim, double whole)
+      : DesignState(view, std::move(members)), combination_(aim, weights_of(scenarios), whole), aim_(aim) {
+    for (const Scenario& scenario : scenarios) shares_.push_back(std::make_unique<Share>(scenario, nuisance));
+    now_.resize(shares_.size());
+    then_.resize(shares_.size());
+    refresh();
+  }
   MixedState(const CandidateView& view, std::vector<int> members, const std::vector<VariantGroup>& variants,
              bool minimum)
-      : DesignState(view, std::move(members)), minimum_(minimum) {
-    for (const VariantGroup& group : variants) shares_.push_back(std::make_unique<Share>(view, group));
-    gains_.resize(shares_.size());
+      : DesignState(view, std::move(members)),
+        combination_(aim_of(minimum), weights_of(variants), 1.0),
+        aim_(aim_of(minimum)) {
+    for (const VariantGroup& group : variants) {
+      Eigen::MatrixXd prior;
+      if (view.prior != nullptr) prior = view.prior->block(group.first, group.first, group.columns, group.columns);
+      shares_.push_back(std::make_unique<Share>(Scenario{std::make_shared<BlockArray>(own_blocks(*view.blocks, group)),
+                                                         group.weight, group.reference, std::move(prior)},
+                                                group.nuisance));
+    }
+    now_.resize(shares_.size());
+    then_.resize(shares_.size());
     refresh();
   }
 
@@ -91,9 +145,10 @@ class MixedState : public DesignState {
 
   double loss(int position) const override {
     const int k = members()[std::size_t(position)];
+    if (aim_.measure == RobustAim::Measure::worst) return shares_[worst()]->sensitivity(k);
     double sum = 0.0;
     for (const auto& share : shares_) sum += share->weight() * share->sensitivity(k);
-    return minimum_ ? shares_[worst()]->sensitivity(k) : sum;
+    return sum;
   }
 
   Swap best_addition() override { return best_of(-1, -infinity); }
@@ -122,15 +177,18 @@ class MixedState : public DesignState {
     for (const auto& share : shares_) share->exchange(leave, enter);
   }
 
+  static RobustAim aim_of(bool minimum) { return {minimum ? RobustAim::Measure::worst : RobustAim::Measure::mean}; }
+  template <class Parts>
+  static std::vector<double> weights_of(const Parts& parts) {
+    std::vector<double> weights;
+    for (const auto& part : parts) weights.push_back(part.weight);
+    return weights;
+  }
+
   template <class Of>
   double mixed(const Of& of) const {
-    double sum = 0.0, least = infinity;
-    for (const auto& share : shares_) {
-      const double each = of(*share);
-      sum += share->weight() * each;
-      least = std::min(least, each);
-    }
-    return minimum_ ? least : sum;
+    for (std::size_t v = 0; v < shares_.size(); ++v) then_[v] = of(*shares_[v]);
+    return combination_.of(then_);
   }
 
   std::size_t worst() const {
@@ -140,23 +198,28 @@ class MixedState : public DesignState {
     return least;
   }
 
-  /// Φ less `now` where each ln e_v has grown by gains_[v].
-  double mixed_gain(double now) const {
-    double sum = 0.0, least = infinity;
-    for (std::size_t v = 0; v < shares_.size(); ++v) {
-      sum += shares_[v]->weight() * gains_[v];
-      if (minimum_) least = std::min(least, shares_[v]->reference() + gains_[v]);
-    }
-    return minimum_ ? least - now : sum;
+  /// Φ at most after j enters, less Φ now; then_ holds the parts.
+  double most(int j, int leaving, double now) {
+    for (std::size_t v = 0; v < shares_.size(); ++v) then_[v] = now_[v] + shares_[v]->most(j, leaving);
+    return combination_.of(then_) - now;
   }
 
-  double most(int j, int leaving, double now) {
-    for (std::size_t v = 0; v < shares_.size(); ++v) gains_[v] = shares_[v]->most(j, leaving);
-    return mixed_gain(now);
+  /// Exact gain, or what is no more than `least` as soon as that is certain.
+  double gain(int j, int leaving, double now, std::size_t first, double least) {
+    double gain = most(j, leaving, now);
+    for (std::size_t i = 0; i < shares_.size() && gain > least; ++i) {
+      const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
+      const double exact = now_[v] + shares_[v]->gain(j);
+      if (aim_.measure == RobustAim::Measure::mean) gain += combination_.share_of(v) * (exact - then_[v]);
+      then_[v] = exact;
+      if (aim_.measure != RobustAim::Measure::mean) gain = combination_.of(then_) - now;
+    }
+    return gain;
   }
 
   Swap best_of(int leaving, double min_gain) {
-    const double now = mixed([](const Share& share) { return share.reference(); });
+    for (std::size_t v = 0; v < shares_.size(); ++v) now_[v] = shares_[v]->reference();
+    const double now = combination_.of(now_);
     queue_.clear();
     for (int j = 0; j < int(blocks().count()); ++j) {
       if (blocked()[std::size_t(j)] != 0) continue;
@@ -167,26 +230,22 @@ class MixedState : public DesignState {
     if (queue_.empty()) return {};
     queue_.order();
     for (const auto& share : shares_) share->leave(leaving);
-    // The variant that the plan serves worst decides most.
+    // The one that the plan serves worst decides most.
     const std::size_t first = worst();
     while (!queue_.empty()) {
       const auto [bound, j] = queue_.next();
       if (bound <= best.gain) break;
-      most(j, leaving, now);
-      double gain = bound;
-      for (std::size_t i = 0; i < shares_.size() && gain > best.gain; ++i) {
-        const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
-        gains_[v] = shares_[v]->gain(j);
-        gain = mixed_gain(now);
-      }
-      if (gain > best.gain) best = {j, gain};
+      const double found = gain(j, leaving, now, first, best.gain);
+      if (found > best.gain) best = {j, found};
     }
     return best.enter < 0 ? Swap{} : best;
   }
 
-  bool minimum_;
+  mutable Combination combination_;
+  RobustAim aim_;
   std::vector<std::unique_ptr<Share>> shares_;
-  std::vector<double> gains_;
+  std::vector<double> now_;
+  mutable std::vector<double> then_;
   ByBound queue_;
 };
 
@@ -195,6 +254,11 @@ class MixedState : public DesignState {
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<VariantGroup>& variants, bool minimum) {
   return std::make_unique<MixedState>(view, std::move(members), variants, minimum);
+}
+
+std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
+                                         const std::vector<Scenario>& scenarios, const RobustAim& aim, double whole) {
+  return std::make_unique<MixedState>(view, std::move(members), scenarios, view.nuisance, aim, whole);
 }
 
 }  // namespace posewright

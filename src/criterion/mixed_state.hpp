@@ -5,6 +5,8 @@
 
 #include "posewright/criterion/criterion.hpp"
 #include "posewright/criterion/criterion_data.hpp"
+#include "posewright/criterion/scenarios.hpp"
+#include "posewright/support/robust_aim.hpp"
 
 namespace posewright {
 
@@ -12,5 +14,9 @@ namespace posewright {
 /// @param variants  weights that sum to one
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<VariantGroup>& variants, bool minimum);
+
+/// The same for scenarios, whose blocks are their own.
+std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
+                                         const std::vector<Scenario>& scenarios, const RobustAim& aim, double whole);
 
 }  // namespace posewright

@@ -98,7 +98,10 @@ class Campaigns : public IdentificationModel {
   void do_take_loads_at(std::span<const double> correction) override {
     inside_->take_loads_at(correction.empty() ? correction : correction.first(std::size_t(own_)));
   }
-  bool do_measurable(const Point& at) const override { return inside_->measurable(at.q.first(at.q.size() - 1)); }
+  bool do_measurable(const Point& at) const override {
+    const Inside there = inside(at);
+    return inside_->measurable(there.q, there.correction);
+  }
   bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const override {
     return inside_->reading_twists(at.q.first(at.q.size() - 1), twists);
   }

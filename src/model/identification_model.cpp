@@ -150,6 +150,17 @@ bool IdentificationModel::settle(Point& at, std::vector<double>& scratch) const 
   return true;
 }
 
+bool IdentificationModel::settled(std::span<const double> q, std::span<const double> correction,
+                                  std::span<double> settled) const {
+  require_size(q.size(), coordinates_.size(), "configuration");
+  require_size(settled.size(), coordinates_.size(), "configuration");
+  static thread_local std::vector<double> sum, scratch;
+  Point at = point(q, total(correction, sum));
+  if (!settle(at, scratch)) return false;
+  std::copy(at.q.begin(), at.q.end(), settled.begin());
+  return true;
+}
+
 bool IdentificationModel::predict(std::span<const double> q, std::span<const double> correction,
                                   Eigen::VectorXd& y) const {
   require_size(q.size(), coordinates_.size(), "configuration");
@@ -242,9 +253,10 @@ bool IdentificationModel::reading_twists(std::span<const double> q,
   return do_reading_twists(point(q, shift_), twists);
 }
 
-bool IdentificationModel::measurable(std::span<const double> q) const {
+bool IdentificationModel::measurable(std::span<const double> q, std::span<const double> correction) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_measurable(point(q, shift_));
+  static thread_local std::vector<double> sum;
+  return do_measurable(point(q, total(correction, sum)));
 }
 
 bool IdentificationModel::measurable_margins_at(std::span<const double> q, std::span<double> out) const {

@@ -66,7 +66,7 @@ bool LoadDifference::do_read(const Point& at, Eigen::VectorXd& y) const {
 bool LoadDifference::do_measurable(const Point& at) const {
   std::vector<double> same(at.q.begin(), at.q.end());
   same[load_] = 0.0;
-  return inside_->measurable(at.q) && inside_->measurable(same);
+  return inside_->measurable(at.q, at.correction) && inside_->measurable(same, at.correction);
 }
 
 Eigen::Isometry3d LoadDifference::do_tool_pose(const Point& at) const { return inside_->tool_pose(at.q); }

@@ -210,6 +210,19 @@ Json statistics_json(const PlanStatistics& s) {
   return json;
 }
 
+Json robust_json(const RobustPlan& robust) {
+  Json json = {{"draws", robust.draws},
+               {"measure", robust.measure},
+               {"value", robust.value},
+               {"bound", robust.bound},
+               {"unreached", robust.unreached},
+               {"interrupted", robust.stopped},
+               {"efficiency", robust.efficiency},
+               {"log_det_bound", robust.references}};
+  if (robust.searched) json["nominal_plan"] = {{"value", robust.nominal_value}, {"efficiency", robust.nominal}};
+  return json;
+}
+
 Json unmodelled_json(const PlannedEffect& effect) {
   const auto value = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
   return {{"size", effect.size},
@@ -244,6 +257,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   json["criterion"] = criterion_json(plan);
   json["certificate"] = certificate_json(plan);
   if (plan.discrimination) json["discrimination"] = discrimination_json(*plan.discrimination);
+  if (plan.robust) json["robust"] = robust_json(*plan.robust);
   if (plan.unmodelled) json["unmodelled"] = unmodelled_json(*plan.unmodelled);
   if (plan.reliance) json["reliance"] = reliance_json(*plan.reliance);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);

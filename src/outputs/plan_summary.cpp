@@ -112,6 +112,50 @@ std::string reserve_text(const Plan& plan) {
                      percent(worst->without), worst->id);
 }
 
+/// A share of drawn robots and what they have at most.
+double quantile(std::vector<double> values, double share) {
+  const auto at = std::ptrdiff_t(share * double(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[std::size_t(at)];
+}
+
+std::string measure_text(const RobustPlan& robust) {
+  if (robust.measure == "mean") return "on average";
+  return robust.measure == "worst" ? "on the worst" : "on the worst " + robust.measure.substr(5) + " of them";
+}
+
+std::string robust_text(const Plan& plan) {
+  if (!plan.robust) return {};
+  const RobustPlan& robust = *plan.robust;
+  const std::string on = measure_text(robust);
+  if (robust.efficiency.empty())
+    return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal "
+           "robot's.\n";
+  const auto lost = std::count(robust.efficiency.begin(), robust.efficiency.end(), 0.0);
+  std::string text = fmt::format(
+      "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them below {}, lowest "
+      "{}).{}\n",
+      robust.draws, percent(robust.value), on, percent(quantile(robust.efficiency, 0.1)),
+      percent(quantile(robust.efficiency, 0.0)),
+      robust.bound < 0.9995 ? fmt::format(" No plan of these candidates has more than {}.", percent(robust.bound))
+                            : "");
+  if (lost > 0) text += fmt::format("It does not determine all parameters of {} of them.\n", lost);
+  if (robust.unreached > 0)
+    text += fmt::format(
+        "{:.2g} % of the candidates are out of reach or sight for a drawn robot: they tell nothing there.\n",
+        100.0 * double(robust.unreached) / double(robust.draws) /
+            std::max<double>(1.0, double(plan.certificate.count)));
+  if (!robust.searched) return text;
+  if (const auto missed = std::count(robust.nominal.begin(), robust.nominal.end(), 0.0); missed > 0)
+    text += fmt::format("The plan for the nominal robot does not determine all parameters of {} of them.\n", missed);
+  else
+    text += fmt::format("The plan for the nominal robot has {} there: planning for the tolerances {} {:.2f} %.\n",
+                        percent(robust.nominal_value), robust.worth_it() ? "gains" : "is not worth it, it gains",
+                        100 * robust.gain());
+  if (robust.stopped) text += "The search over drawn robots was ended before it was done.\n";
+  return text;
+}
+
 std::string stages_text(const Plan& plan) {
   if (plan.statistics.stages.empty()) return {};
   std::string text = "Stages:";
@@ -259,7 +303,7 @@ std::string search_text(const Plan& plan) {
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + reserve_text(plan) + indices_text(plan) +
+  return headline(plan) + certificate_text(plan) + robust_text(plan) + reserve_text(plan) + indices_text(plan) +
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
          stages_text(plan) + search_text(plan);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "posewright/planning/approximate_design.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {

@@ -10,9 +10,6 @@
 
 namespace posewright {
 
-/// Largest Σ v_i value_i over 0 ≤ v ≤ cap, Σv = 1: the largest values, each up to the cap, the last one in part.
-double best_mean(std::vector<double> value, double cap);
-
 /// A bound with the rounding of the pass behind it, generously.
 double with_margin(double bound);
 

@@ -99,6 +99,20 @@ RequirementSpec read_requirement(const Value& value) {
   return require;
 }
 
+RobustSpec read_robust(const Value& value) {
+  const Section section(value);
+  section.allow({"draws", "measure"});
+  RobustSpec robust;
+  robust.line = value.line();
+  if (const Value* draws = section.find("draws")) robust.draws = int(draws->integer(2, most_robust_draws));
+  if (const Value* measure = section.find("measure")) {
+    const std::optional<RobustAim> aim = robust_aim_of(measure->text("a measure is expected"));
+    if (!aim) measure->fail("is no measure", robust_aims_allowed);
+    robust.aim = *aim;
+  }
+  return robust;
+}
+
 Located<int> read_count(const Value& value, int upper) { return {value.integer(1, upper), value.line()}; }
 
 void read_poses(const Value& value, DesignSpec& design) {
@@ -122,6 +136,7 @@ void read_aim(const Section& section, const std::vector<VariantSpec>& variants, 
   if (const Value* test_poses = section.find("test_poses")) design.test_poses = read_test_poses(*test_poses, folder);
   if (const Value* prior = section.find("prior")) design.prior = prior->choice({"none", "tolerance"}) == "tolerance";
   if (const Value* reserve = section.find("reserve")) design.reserve = reserve->flag();
+  if (const Value* robust = section.find("robust")) design.robust = read_robust(*robust);
   if (const Value* scaling = section.find("scaling"))
     design.scaling = *scaling_of(scaling->choice({"tolerance", "norm", "none"}));
   if (const Value* require = section.find("require")) design.require = read_requirement(*require);
@@ -133,7 +148,7 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
                        const std::filesystem::path& folder) {
   const Section section(value);
   section.allow({"variant", "variants", "truth", "criterion", "method", "poses", "require", "candidates",
-                 "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve",
+                 "candidates_from", "restarts", "repeats", "minimum_distance", "scaling", "prior", "reserve", "robust",
                  "measured", "fixed", "test_poses"});
   DesignSpec design;
   design.line = value.line();

@@ -33,6 +33,20 @@ Located<std::string> truth_of(const Problem& problem, const PlanOptions& options
   return truth;
 }
 
+/// What a plan over drawn robots does not go together with.
+void require_robust_possible(const Problem& problem, const Settings& s, bool smallest) {
+  const SourcePlace place = s.robust->line > 0 ? problem.at(s.robust->line) : SourcePlace{};
+  const auto refuse = [&](const std::string& why, const std::string& allowed) {
+    throw InputError(place, "a plan over drawn robots (robust) " + why, allowed);
+  };
+  if (s.criterion != "o1" && s.criterion != "ds")
+    refuse("is there for the determinant, not for criterion '" + s.criterion + "'", "criterion: o1 or ds");
+  if (smallest) refuse("needs a number of poses", "set poses to a number, not auto");
+  if (s.reserve) refuse("stands beside reserve", "one of both");
+  if (find_variant(problem, s.variants.front().name.value).unmodelled)
+    refuse("is not there for a variant that lacks an effect (unmodelled)", "a variant without unmodelled");
+}
+
 }  // namespace
 
 Settings settings_of(const Problem& problem, const PlanOptions& options) {
@@ -76,6 +90,8 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.candidates_alone = options.candidates_alone;
   s.proof = options.proof;
   s.planner.threads = options.threads;
+  s.robust = options.robust ? options.robust : design.robust;
+  if (s.robust) require_robust_possible(problem, s, smallest);
   return s;
 }
 

@@ -15,6 +15,7 @@
 #include "posewright/study/reliance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
+#include "robust_plan.hpp"
 
 namespace posewright {
 namespace {
@@ -76,6 +77,8 @@ class ListEvaluation {
     fill_poses(plan, study_, poses_, shape, judgement);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
+    if (settings_.robust && !stopped)
+      plan.robust = judge_robust_list(problem, study_, settings_, poses_, monitor_);
     if (options_.drop && !stopped) result.drop = drop(*options_.drop, phi, references);
     if (options_.add && !monitor_.should_stop()) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();

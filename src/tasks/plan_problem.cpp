@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fill_plan.hpp"
+#include "robust_plan.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/judgement.hpp"
@@ -53,9 +54,15 @@ class PlanSearch {
     if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
     request.prove = settings_.poses > 0;
     request.proof = settings_.proof;
-    const SearchResult found = search(
+    SearchResult found = search(
         search_parts(study_, settings_.criterion, study_.configurations, settings_.planner.threads), request, monitor_);
-    return assemble(found);
+    if (!settings_.robust) return assemble(found);
+    // Last, so that whoever stops it has the plan of the nominal robot.
+    RobustPlan robust = plan_robust(problem_, study_, settings_, found, monitor_);
+    Plan plan = assemble(found);
+    plan.interrupted = plan.interrupted || robust.stopped;
+    plan.robust = std::move(robust);
+    return plan;
   }
 
   /// Doubles the number of poses until everything required is reached, then halves the interval.

@@ -166,6 +166,12 @@ class IdentificationModel {
   bool pull_back(std::span<const double> q, std::span<const int> selected, const Eigen::MatrixXd& by_G,
                  const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const;
 
+  /// Where the robot with the parameters nominal + correction stands while its actuators stand as they do at q with
+  /// nominal ones; q itself for a robot whose coordinates are what its joints read.
+  /// @param settled  size coordinates(); may be q
+  /// @return false if q is out of reach or a closed chain does not settle near q
+  bool settled(std::span<const double> q, std::span<const double> correction, std::span<double> settled) const;
+
   /// What a measurement of one configuration consists of, in the order of the rows.
   const std::vector<Reading>& readings() const { return readings_; }
   /// Readings h(ρ, ξ) with the parameters nominal + correction, while the actuators ρ stand as they do at q with
@@ -188,7 +194,8 @@ class IdentificationModel {
   bool configuration_at(std::span<const double> actuators, std::span<const double> start, std::span<double> q) const;
 
   /// False if the instrument cannot see q; why, in words for the table of rejections.
-  bool measurable(std::span<const double> q) const;
+  /// @param correction  ξ − nominal for every parameter, or empty for all zero
+  bool measurable(std::span<const double> q, std::span<const double> correction = {}) const;
   /// How many smooth functions of q are ≥ 0 where it can be measured, and in units of the range that each has; a closed
   /// chain's singularities are left out. None: measurable() alone knows.
   std::optional<int> measurable_margins() const { return do_measurable_margins(); }

@@ -207,6 +207,24 @@ struct Reliance {
   double amplification() const { return std::sqrt((with[0] * with[0] - error * error) / 3) / noise; }
 };
 
+/// What a plan is worth for robots drawn from the tolerances, and the plan for the nominal robot beside it.
+struct RobustPlan {
+  int draws = 0;
+  std::string measure;   ///< mean, worst, tail and a share: what counts of the efficiencies
+  bool searched = true;  ///< false: a given list, which was judged alone
+  /// Of every drawn robot: log det that no plan of as many of the candidates exceeds; D-efficiency against it.
+  std::vector<double> references, nominal, efficiency;
+  double nominal_value = 0.0, value = 0.0;  ///< the measure of them: a geometric mean, the least, that of the worst
+  double bound = 1.0;                       ///< of the measure: no plan of as many of these candidates exceeds it
+  long unreached = 0;    ///< pairs of robot and candidate where that robot cannot stand or be measured
+  bool stopped = false;  ///< the search was ended before it was done
+
+  /// Where the nominal plan is so near to the robust one that the difference is of no use.
+  static constexpr double of_no_use = 0.01;
+  double gain() const { return value / nominal_value - 1; }
+  bool worth_it() const { return gain() > of_no_use; }
+};
+
 /// Everything that is written about a plan.
 struct Plan {
   std::uint64_t seed = 0;
@@ -232,6 +250,7 @@ struct Plan {
   Certificate certificate;
   std::optional<Discrimination> discrimination;  ///< if a truth is named
   std::optional<PlannedEffect> unmodelled{};     ///< in σ, log det and predicted errors
+  std::optional<RobustPlan> robust{};            ///< if robots were drawn
   std::optional<Reliance> reliance{};            ///< if the first variant counts no effect
   std::vector<VariantResult> variants{};         ///< of a plan for several
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses

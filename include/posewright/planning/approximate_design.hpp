@@ -31,6 +31,9 @@ struct ApproximateDesign {
   double bound_for(int poses) const;
 };
 
+/// Largest Σ v_i value_i over 0 ≤ v ≤ cap, Σv = 1: the largest values, each up to the cap, the last one in part.
+double best_mean(std::vector<double> value, double cap);
+
 /// Options of solve_approximate_design.
 struct ApproximateDesignOptions {
   double cap = 1.0;         ///< w_i ≤ cap; 1/N where an exact plan of N poses may not repeat one

@@ -11,6 +11,7 @@
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/repeats.hpp"
+#include "posewright/support/robust_aim.hpp"
 
 namespace posewright {
 
@@ -61,6 +62,14 @@ struct RequirementSpec {
   }
 };
 
+/// A plan for robots drawn from the tolerances, not for the nominal one alone.
+struct RobustSpec {
+  int draws = 200;
+  RobustAim aim;
+  int line = 0;  ///< 0: an option's
+};
+inline constexpr int most_robust_draws = 100'000;
+
 struct DesignSpec {
   std::optional<Located<std::string>> variant;  ///< default: the first
   struct Weighted {
@@ -86,6 +95,7 @@ struct DesignSpec {
   Scaling scaling = Scaling::tolerance;
   bool prior = false;    ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
   bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
+  std::optional<RobustSpec> robust;
   std::optional<std::filesystem::path> measured;  ///< poses that are measured already: new ones come to them
   std::optional<std::filesystem::path> fixed;     ///< poses that any plan has among its own
   std::optional<TestPosesSpec> test_poses;

@@ -57,6 +57,8 @@ struct SearchResult {
   std::vector<double> references{};
   std::vector<double> without{};  ///< per member: e^{(Φ(S∖i) − Φ(S))/h}, 0 where it is indispensable
   std::vector<PlanStage> stages{};
+  /// Configurations between the candidates that optimal weights over the workspace use: the certificate counts them.
+  std::vector<std::vector<double>> support{};
   bool stopped = false;
 };
 

@@ -35,6 +35,7 @@ struct Settings {
   PlannerOptions planner;
   bool candidates_alone = false;  ///< as PlanOptions
   ProofLimits proof{};
+  std::optional<RobustSpec> robust{};
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.
 Settings settings_of(const Problem& problem, const PlanOptions& options);

@@ -1,0 +1,17 @@
+#include "posewright/criterion/scenarios.hpp"
+
+#include "mixed_state.hpp"
+
+namespace posewright {
+
+ScenarioCriterion::ScenarioCriterion(std::vector<Scenario> scenarios, int nuisance, const RobustAim& aim, double whole)
+    : scenarios_(std::move(scenarios)),
+      function_(nuisance, scenarios_.front().blocks->columns()),
+      aim_(aim),
+      whole_(whole) {}
+
+std::unique_ptr<DesignState> ScenarioCriterion::start(const CandidateView& view, std::vector<int> members) const {
+  return start_mixed(view, std::move(members), scenarios_, aim_, whole_);
+}
+
+}  // namespace posewright

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "posewright/criterion/determinant.hpp"
+#include "posewright/planning/approximate_design.hpp"
+#include "posewright/search/robust_search.hpp"
+#include "posewright/support/bytes.hpp"
+
+namespace posewright {
+
+/// Weights on candidates, Σw = 1.
+using CandidateWeights = std::vector<std::pair<int, double>>;
+
+/// What all scenarios say of plans and weights. Every scenario is looked at with all candidates, and forgotten again:
+/// memory is that of a few, whatever their number.
+class ScenarioFigures {
+ public:
+  /// Whitens, and solves for the weights that are best at nominal parameters.
+  ScenarioFigures(const RobustRequest& request, const Monitor& monitor);
+
+  int columns() const { return columns_; }
+  double interest() const { return interest_; }
+  double cap() const { return options_.cap; }
+  const LogDetFunction& function() const { return function_; }
+  const BlockArray& nominal() const { return nominal_; }
+  const ApproximateDesign& optimum() const { return optimum_; }
+  CandidateWeights optimal_weights() const;
+  /// One for each scenario: none is more likely.
+  const std::vector<double>& weights() const { return weights_; }
+
+  /// Finds what no plan exceeds in each scenario, and what the plan given has there; looks from the weights that are
+  /// best at nominal parameters.
+  /// @return false if it was stopped before all were seen; nothing else may be asked then
+  bool find_references(long& unreached);
+  /// log det (whitened) that counts as efficiency 1; the same raw.
+  const std::vector<double>& references() const { return references_; }
+  std::vector<double> raw_references() const;
+  /// ln e of the plan given.
+  const std::vector<double>& given() const { return given_; }
+
+  /// Looks at all scenarios once more: ln e of the weights, and d of every candidate there, become those that bound()
+  /// and mean_sensitivity() rest on. Returns false if it was stopped; what was known before stays.
+  bool look_from(const CandidateWeights& weights);
+  /// Σ_k λ_k d_ik of every candidate.
+  std::vector<double> mean_sensitivity(const std::vector<double>& lambda) const;
+  /// d of the candidate in scenario k.
+  double sensitivity(std::size_t k, int candidate) const { return look_.sensitivity[k][std::size_t(candidate)]; }
+  /// Of the combined efficiency of any plan: the least that any look gave.
+  double bound() const { return bound_; }
+  /// How much better any weights may be than those that were looked from last: ln of the ratio.
+  double gap() const { return std::log(bound_) - combine(look_.values); }
+
+  double combine(const std::vector<double>& values) const;
+  RobustFigures figures(const std::vector<double>& values) const;
+  void whiten(BlockArray& blocks) const;
+  /// Whitened, for all poses; empty: none.
+  Eigen::MatrixXd prior_of(int scenario) const;
+  static Eigen::MatrixXd information(const BlockArray& blocks, const std::vector<int>& members);
+
+ private:
+  std::string reference_of(int scenario) const;
+  struct Look {
+    std::vector<double> values, of_prior;
+    std::vector<std::vector<double>> sensitivity;
+  };
+  /// Of one scenario, at some weights: log det (whitened), d of the prior and of every candidate.
+  struct Seen {
+    double value, of_prior;
+    std::vector<double> sensitivity;
+  };
+  Seen look(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
+  static void put(const Seen& seen, ByteWriter& out);
+  void take(ByteReader& in, double reference, Look& look) const;
+  void accept(Look look);
+  double bound_by(const std::vector<double>& lambda) const;
+  double bound_here() const;
+
+  const RobustRequest& request_;
+  const Monitor& monitor_;
+  int columns_;
+  double interest_;
+  LogDetFunction function_;
+  std::vector<double> weights_;
+  BlockArray nominal_;
+  Eigen::MatrixXd R_;
+  double offset_ = 0.0;
+  ApproximateDesign optimum_;
+  ApproximateDesignOptions options_;
+  std::vector<double> references_, given_;
+  // At the weights that were looked from last: ln e, d of the prior, d of every candidate.
+  Look look_;
+  double bound_ = 1.0;
+};
+
+}  // namespace posewright

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "posewright/outputs/plan.hpp"
+#include "posewright/search/search.hpp"
+#include "posewright/study/study.hpp"
+
+namespace posewright {
+
+/// Searches for the plan that is best over robots drawn from the tolerances, among the candidates and the poses that
+/// the nominal search found between them. `found` then holds that plan.
+RobustPlan plan_robust(const Problem& problem, const Study& study, const Settings& settings, SearchResult& found,
+                       const Monitor& monitor);
+
+/// What a list of poses is worth for the same robots, against plans of the candidates and of its own poses.
+RobustPlan judge_robust_list(const Problem& problem, const Study& study, const Settings& settings,
+                             const Configurations& poses, const Monitor& monitor);
+
+}  // namespace posewright

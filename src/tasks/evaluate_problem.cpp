@@ -77,8 +77,7 @@ class ListEvaluation {
     fill_poses(plan, study_, poses_, shape, judgement);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
-    if (settings_.robust && !stopped)
-      plan.robust = judge_robust_list(problem, study_, settings_, poses_, monitor_);
+    if (settings_.robust && !stopped) plan.robust = judge_robust_list(problem, study_, settings_, poses_, monitor_);
     if (options_.drop && !stopped) result.drop = drop(*options_.drop, phi, references);
     if (options_.add && !monitor_.should_stop()) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "fill_plan.hpp"
-#include "robust_plan.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/judgement.hpp"
@@ -16,6 +15,7 @@
 #include "posewright/study/spacing.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
+#include "robust_plan.hpp"
 
 namespace posewright {
 namespace {

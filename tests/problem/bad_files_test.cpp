@@ -208,8 +208,8 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
         error.what(),
         "bad.yaml:36: unknown key 'candidate' (did you mean 'candidates'?); allowed: variant, variants, truth, "
         "criterion, method, poses, "
-        "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, measured, "
-        "fixed, test_poses");
+        "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, robust, "
+        "measured, fixed, test_poses");
   }
 }
 

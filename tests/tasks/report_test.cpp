@@ -223,11 +223,19 @@ TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
   const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
   Monitor late;
-  late.deadline = Monitor::Clock::now();
-  const Report report = report_problem(problem, file, {}, late);
+  late.on_progress = [&](const Progress& progress) {
+    if (progress.stage == "other numbers of poses") late.deadline = Monitor::Clock::now();
+  };
+  ReportOptions options;
+  options.threads = 1;
+  const Report report = report_problem(problem, file, options, late);
   EXPECT_EQ(report.candidates->sensitivity.size(), 60U);
-  EXPECT_EQ(report.curve.size(), 1U) << "the plan itself";
+  EXPECT_EQ(report.curve.size(), 2U) << "the plan itself and the one number that was done";
   EXPECT_THAT(report.notes, testing::Contains(HasSubstr("left out of the curve")));
+  // With no time at all there is nothing to show, and no page that looks whole.
+  Monitor over;
+  over.deadline = Monitor::Clock::now();
+  EXPECT_THROW(report_problem(problem, file, {}, over), CannotDo);
 }
 
 TEST(Report, PositionErrorsOverTheWorkspaceAreThoseOfTestPosesThere) {

@@ -181,6 +181,7 @@ class MixedState : public DesignState {
   template <class Parts>
   static std::vector<double> weights_of(const Parts& parts) {
     std::vector<double> weights;
+    weights.reserve(parts.size());
     for (const auto& part : parts) weights.push_back(part.weight);
     return weights;
   }

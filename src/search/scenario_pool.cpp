@@ -92,6 +92,7 @@ ScenarioPool::ScenarioPool(const ScenarioFigures& figures, const RobustRequest& 
 
 std::vector<int> ScenarioPool::in_pool(const std::vector<int>& members) const {
   std::vector<int> result;
+  result.reserve(members.size());
   for (const int i : members)
     result.push_back(int(std::lower_bound(candidates_.begin(), candidates_.end(), i) - candidates_.begin()));
   return result;
@@ -108,6 +109,7 @@ CandidateView ScenarioPool::view() const {
 
 ScenarioCriterion ScenarioPool::criterion(const std::vector<int>& scenarios) const {
   std::vector<Scenario> some;
+  some.reserve(scenarios.size());
   for (const int k : scenarios)
     some.push_back({blocks_[std::size_t(k)], 1.0, figures_.references()[std::size_t(k)], priors_[std::size_t(k)]});
   // Representatives of a mean stand for all; of the worst, those that are left out have their weight, too.

@@ -150,7 +150,8 @@ void wait(MPI_Request& request) {
 class Outbox {
  public:
   void send(std::string bytes, int to, int tag) {
-    Letter& letter = letters_.emplace_back(std::move(bytes), MPI_REQUEST_NULL);
+    letters_.push_back({std::move(bytes), MPI_REQUEST_NULL});
+    Letter& letter = letters_.back();
     MPI_Isend(letter.bytes.data(), int(letter.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD, &letter.request);
     forget_arrived();
   }

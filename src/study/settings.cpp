@@ -33,20 +33,6 @@ Located<std::string> truth_of(const Problem& problem, const PlanOptions& options
   return truth;
 }
 
-/// What a plan over drawn robots does not go together with.
-void require_robust_possible(const Problem& problem, const Settings& s, bool smallest) {
-  const SourcePlace place = s.robust->line > 0 ? problem.at(s.robust->line) : SourcePlace{};
-  const auto refuse = [&](const std::string& why, const std::string& allowed) {
-    throw InputError(place, "a plan over drawn robots (robust) " + why, allowed);
-  };
-  if (s.criterion != "o1" && s.criterion != "ds")
-    refuse("is there for the determinant, not for criterion '" + s.criterion + "'", "criterion: o1 or ds");
-  if (smallest) refuse("needs a number of poses", "set poses to a number, not auto");
-  if (s.reserve) refuse("stands beside reserve", "one of both");
-  if (find_variant(problem, s.variants.front().name.value).unmodelled)
-    refuse("is not there for a variant that lacks an effect (unmodelled)", "a variant without unmodelled");
-}
-
 }  // namespace
 
 Settings settings_of(const Problem& problem, const PlanOptions& options) {
@@ -90,9 +76,23 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.candidates_alone = options.candidates_alone;
   s.proof = options.proof;
   s.planner.threads = options.threads;
-  s.robust = options.robust ? options.robust : design.robust;
-  if (s.robust) require_robust_possible(problem, s, smallest);
   return s;
+}
+
+void take_robust(const Problem& problem, const PlanOptions& options, Settings& settings) {
+  const std::optional<RobustSpec> robust = options.robust ? options.robust : problem.design.robust;
+  if (!robust || robust->draws == 0) return;
+  const auto refuse = [&](const std::string& why, const std::string& allowed) {
+    throw InputError(robust->line > 0 ? problem.at(robust->line) : SourcePlace{},
+                     "a plan over drawn robots (robust) " + why, allowed);
+  };
+  if (settings.criterion != "o1" && settings.criterion != "ds")
+    refuse("is there for the determinant, not for criterion '" + settings.criterion + "'", "criterion: o1 or ds");
+  if (settings.poses == 0) refuse("needs a number of poses", "set poses to a number, not auto");
+  if (settings.reserve) refuse("stands beside reserve", "one of both");
+  if (find_variant(problem, settings.variants.front().name.value).unmodelled)
+    refuse("is not there for a variant that lacks an effect (unmodelled)", "a variant without unmodelled");
+  settings.robust = robust;
 }
 
 }  // namespace posewright

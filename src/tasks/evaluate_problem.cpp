@@ -30,6 +30,7 @@ class ListEvaluation {
         monitor_(monitor),
         stated_distance_(problem.design.minimum_distance),
         settings_(settings_of(problem, numbered(options.plan))) {
+    take_robust(problem, options.plan, settings_);
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
     if (monitor.should_stop()) throw CannotDo("stopped before there were all candidates to compare with");

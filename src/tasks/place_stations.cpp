@@ -240,7 +240,9 @@ class Ranking {
     quiet.interrupted = monitor_.interrupted;
     quiet.deadline = monitor_.deadline;
     try {
-      const Plan plan = plan_problem(with_stations(problem, stations), plan_options, quiet);
+      PlanOptions nominal = plan_options;
+      nominal.robust = no_drawn_robots;  // places are compared by what they are worth to the nominal robot
+      const Plan plan = plan_problem(with_stations(problem, stations), nominal, quiet);
       for (const PlannedParameter& p : plan.parameters)
         rank.parameters += p.sigma.has_value() && p.label.role == Role::interest;
       rank.criterion_value = plan.criterion_value;

@@ -30,7 +30,7 @@ class PlanSearch {
  public:
   PlanSearch(const Problem& problem, const PlanOptions& options, const Monitor& monitor)
       : problem_(problem),
-        settings_(settings_of(problem, options)),
+        settings_(settings_of_plan(problem, options)),
         list_notes_(take_fixed(problem, options, settings_)),
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
@@ -108,6 +108,12 @@ class PlanSearch {
   }
 
  private:
+  static Settings settings_of_plan(const Problem& problem, const PlanOptions& options) {
+    Settings settings = settings_of(problem, options);
+    take_robust(problem, options, settings);
+    return settings;
+  }
+
   /// Of the poses of any plan.
   int fixed() const { return int(study_.fixed.count()); }
 
@@ -259,6 +265,7 @@ Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& pl
   options.everything_counts = effect && !told_apart;
   options.poses = poses;
   options.smallest = options.reserve = false;
+  options.robust = no_drawn_robots;
   options.measured = poses_of(plan, pose_coordinates(problem, options.variant));
   options.fixed = PoseList{};
   return plan_problem(problem, options, monitor);

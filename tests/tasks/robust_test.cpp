@@ -272,8 +272,7 @@ TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRo
 TEST_F(DrawnRobotsOfProblems, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   const auto refused = [&](const std::string& more, const std::string& text) {
     try {
-      const Problem problem = arm(more);
-      settings_of(problem, {});
+      plan_problem(arm(more), {}, Monitor());
       FAIL() << more;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(text));
@@ -285,6 +284,15 @@ TEST_F(DrawnRobotsOfProblems, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   refused(", robust: {robots: 5}", "robots");
   refused(", robust: {}, criterion: o3", "not for criterion 'o3'");
   refused(", robust: {}, reserve: yes", "stands beside reserve");
+}
+
+TEST_F(DrawnRobotsOfProblems, ValidationPosesAreThoseOfTheNominalRobot) {
+  const Problem problem = arm(", robust: {draws: 5}");
+  const Plan plan = plan_problem(problem, {}, Monitor());
+  const Plan validation = plan_validation(problem, {}, plan, 2, Monitor());
+  EXPECT_FALSE(validation.robust);
+  EXPECT_EQ(std::count_if(validation.poses.begin(), validation.poses.end(), [](const auto& p) { return !p.measured; }),
+            2);
 }
 
 TEST_F(DrawnRobotsOfProblems, AStopKeepsThePlanOfTheNominalRobot) {

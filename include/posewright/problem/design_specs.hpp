@@ -68,6 +68,8 @@ struct RobustSpec {
   RobustAim aim;
   int line = 0;  ///< 0: an option's
 };
+/// The nominal robot alone, whatever else is said.
+inline constexpr RobustSpec no_drawn_robots{0, {}, 0};
 inline constexpr int most_robust_draws = 100'000;
 
 struct DesignSpec {

@@ -33,7 +33,7 @@ struct PlanOptions {
   /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
   ProofLimits proof{};                 ///< of the certificate over the workspace
-  std::optional<RobustSpec> robust{};  ///< over robots drawn from the tolerances; none: as in the file
+  std::optional<RobustSpec> robust{};  ///< robots drawn from the tolerances; none: as in the file; 0 draws: no
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };

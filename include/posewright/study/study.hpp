@@ -35,7 +35,7 @@ struct Settings {
   PlannerOptions planner;
   bool candidates_alone = false;  ///< as PlanOptions
   ProofLimits proof{};
-  std::optional<RobustSpec> robust{};
+  std::optional<RobustSpec> robust{};  ///< only what plans or judges a whole list asks for drawn robots
 };
 /// Throws InputError for what contradicts itself, with the line where it was written.
 Settings settings_of(const Problem& problem, const PlanOptions& options);
@@ -45,6 +45,10 @@ Settings settings_of(const Problem& problem, const PlanOptions& options);
 /// to be chosen beside them, and for `reserve`: what is fixed may be lost, too.
 /// @return what to tell of how the list was read
 std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings);
+
+/// Takes up whether robots are to be drawn, by the options or the problem. Throws InputError for what that does not go
+/// together with.
+void take_robust(const Problem& problem, const PlanOptions& options, Settings& settings);
 
 struct Discrepancy;
 struct Study;

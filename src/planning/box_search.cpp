@@ -14,28 +14,16 @@ namespace {
 // Boxes of one round; more threads than this would have nothing to do.
 constexpr std::size_t boxes_a_round = 16;
 
-/// What a judge says of a box, and left of it.
-std::string bytes_of(const SearchBox& box, const LargestFound& found) {
-  ByteWriter bytes;
-  bytes.put(box.lower);
-  bytes.put(box.upper);
-  bytes.put(box.bound);
-  bytes.put(box.longest);
-  bytes.put(found.value);
-  bytes.put(found.where);
-  bytes.put(found.function);
-  return bytes.take();
-}
-
-void take(std::string_view from, SearchBox& box, LargestFound& found) {
-  ByteReader bytes(from);
-  bytes.get(box.lower);
-  bytes.get(box.upper);
-  bytes.get(box.bound);
-  bytes.get(box.longest);
-  bytes.get(found.value);
-  bytes.get(found.where);
-  bytes.get(found.function);
+/// What a judge says of a box, and left of it: each field, in the order of the bytes.
+template <class Box, class Found, class Visit>
+void each_field(Box& box, Found& found, const Visit& visit) {
+  visit(box.lower);
+  visit(box.upper);
+  visit(box.bound);
+  visit(box.longest);
+  visit(found.value);
+  visit(found.where);
+  visit(found.function);
 }
 
 }  // namespace
@@ -61,9 +49,15 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
           {"boxes", round.size(), threads, [](std::size_t, std::string_view) {}},
           [&](std::size_t i, int thread) {
             judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
-            return bytes_of(round[i], found[i]);
+            ByteWriter bytes;
+            each_field(round[i], found[i], [&](const auto& field) { bytes.put(field); });
+            return bytes.take();
           },
-          [&](std::size_t i, std::string_view bytes) { take(bytes, round[i], found[i]); }, monitor);
+          [&](std::size_t i, std::string_view from) {
+            ByteReader bytes(from);
+            each_field(round[i], found[i], [&](auto& field) { bytes.get(field); });
+          },
+          monitor);
     } else {
       parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
         if (monitor.should_stop()) return;

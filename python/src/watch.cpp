@@ -27,8 +27,7 @@ Watch::Watch(std::optional<double> time_limit, py::object progress) : progress_(
   if (time_limit) {
     if (!(*time_limit > 0) || !(*time_limit < 1e9))
       throw InputError({}, "time_limit is " + std::to_string(*time_limit), "a number of seconds above 0 is allowed");
-    monitor_.deadline = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
-                                                    std::chrono::duration<double>(*time_limit));
+    monitor_.end_within(*time_limit);
   }
   if (!progress_.is_none()) monitor_.on_progress = [this](const Progress& p) { report(p); };
 }

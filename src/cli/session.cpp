@@ -16,9 +16,7 @@ Watch::Watch(const CommonOptions& common, double seconds, TaskEngine* engine)
   begin_stage(SignalStage::searching);
   monitor_.interrupted = &interrupted_flag();
   monitor_.engine = engine;
-  if (seconds > 0)
-    monitor_.deadline =
-        begin_ + std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(seconds));
+  if (seconds > 0) monitor_.end_within(seconds);
   if (!common.quiet && (common.verbose || ::isatty(STDERR_FILENO) != 0))
     monitor_.on_progress = [this](const Progress& progress) { show(progress); };
 }

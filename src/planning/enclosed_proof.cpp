@@ -1,7 +1,6 @@
 #include "posewright/planning/enclosed_proof.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -83,9 +82,7 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
   own.engine = monitor.engine;
   limits.shared = moving > std::ptrdiff_t(quick_axes);
   if (options.proof.seconds) {
-    const auto end = Monitor::Clock::now() + std::chrono::duration_cast<Monitor::Clock::duration>(
-                                                 std::chrono::duration<double>(*options.proof.seconds));
-    own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
+    own.end_within(*options.proof.seconds);
     limits.most_boxes = std::numeric_limits<long>::max();
   }
   const BoxSearchResult most = largest_enclosed(space, result.factor, limits, own);

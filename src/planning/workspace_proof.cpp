@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -73,13 +72,6 @@ long most_boxes(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functio
   return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
 }
 
-void set_deadline(Monitor& own, const std::optional<double>& seconds) {
-  if (!seconds) return;
-  const auto end = Monitor::Clock::now() +
-                   std::chrono::duration_cast<Monitor::Clock::duration>(std::chrono::duration<double>(*seconds));
-  own.deadline = own.deadline ? std::min(*own.deadline, end) : end;
-}
-
 }  // namespace
 
 void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
@@ -112,7 +104,8 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   own.deadline = monitor.deadline;
   own.engine = monitor.engine;
   // Several processes would not come to the same end of what they all compute: their time ends the boxes.
-  if (!several_processes(monitor)) set_deadline(own, options.proof.seconds);
+  const bool boxes_alone = several_processes(monitor);
+  if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);
   std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
   for (const auto& form : forms.forms) {
     functions.push_back(
@@ -121,7 +114,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
     proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
   }
-  if (several_processes(monitor)) set_deadline(own, options.proof.seconds);
+  if (options.proof.seconds && boxes_alone) own.end_within(*options.proof.seconds);
   BoxSearchOptions limits;
   limits.shared =
       std::any_of(functions.begin(), functions.end(), [](const auto& f) { return double(f->size()) > shared_box; });

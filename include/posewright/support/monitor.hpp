@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -32,6 +33,12 @@ class Monitor {
   /// Who does the tasks of run_tasks(); null: this process's threads. A computation inside a task has a monitor of its
   /// own, without one.
   TaskEngine* engine = nullptr;
+
+  /// Not after so many seconds from now.
+  void end_within(double seconds) {
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    deadline = deadline ? std::min(*deadline, end) : end;
+  }
 
   bool was_interrupted() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
   bool should_stop() const { return was_interrupted() || (deadline && Clock::now() >= *deadline); }

@@ -88,9 +88,7 @@ std::string not_met_text(const NextPoses& r) {
 
 std::string requirements_text(const NextPoses& r) {
   const auto shown = [](const std::optional<double>& value, const std::string& unit) {
-    if (!value) return std::string("unknown");
-    const double factor = unit == "rad" ? 180 / std::numbers::pi : unit == "m" ? 1e3 : 1;
-    return fmt::format("{:.4g} {}", factor * *value, unit_of(unit));
+    return value ? shown_value(*value, unit) : "unknown";
   };
   using enum Table::Align;
   Table table({"required", "predicted", "below with 95 %", "at most", "met"}, {left, right, right, right, left});

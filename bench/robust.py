@@ -5,6 +5,7 @@ Plans of three robots for the tolerances, and for the nominal robot: D-efficienc
 plan for it. Writes robust.svg. Every number is read from the plan files."""
 import argparse
 import json
+import math
 import pathlib
 import subprocess
 import tempfile
@@ -25,6 +26,11 @@ def plan(program, problem, options, draws):
         subprocess.run([program, "plan", EXAMPLES / problem, "--robust", str(draws), "--proof-time", "0", "-o", out,
                         "--poses-csv", pathlib.Path(folder) / "poses.csv", *options], check=True, capture_output=True)
         return json.loads(out.read_text())["robust"], time.monotonic() - begin
+
+
+def percent(efficiency):
+    """As the program states it: never more than it is."""
+    return f"{math.floor(1e4 * efficiency) / 100:.2f} %"
 
 
 def panel(x, title, robust):
@@ -58,9 +64,9 @@ def main():
         robust, seconds = plan(options.program, problem, more, options.draws)
         nominal = robust["nominal_plan"]
         lost = sum(e == 0 for e in nominal["efficiency"])
-        print(f"{title}: nominal plan {100 * nominal['value']:.2f} % (undetermined: {lost}, lowest "
-              f"{100 * min(nominal['efficiency']):.2f} %), robust plan {100 * robust['value']:.2f} % (lowest "
-              f"{100 * min(robust['efficiency']):.2f} %), bound {100 * robust['bound']:.2f} %, {seconds:.1f} s")
+        print(f"{title}: nominal plan {percent(nominal['value'])} (undetermined: {lost}, lowest {percent(min(nominal['efficiency']))}), "
+              f"robust plan {percent(robust['value'])} (lowest {percent(min(robust['efficiency']))}), bound {percent(robust['bound'])}, "
+              f"{seconds:.1f} s")
         panels.append(panel(80 + 330 * i, title, robust))
     legend = ('<text x="80" y="290" fill="#888888">plan for the nominal robot</text>'
               '<text x="300" y="290" fill="#1f5fbf">plan for the tolerances</text>')

@@ -24,11 +24,11 @@ std::optional<double> within(const py::object& value, const std::string& name, d
                    std::to_string(lower) + " to " + std::to_string(upper) + " is allowed");
 }
 
-std::optional<int> optional_number(const py::object& value, const std::string& name, int upper) {
+std::optional<int> optional_number(const py::object& value, const std::string& name, int upper, int lower) {
   if (value.is_none()) return std::nullopt;
   if (PyBool_Check(value.ptr()) || !PyIndex_Check(value.ptr()))
     throw py::type_error(name + " must be a whole number, not " + py::repr(value).cast<std::string>());
-  return checked(name, value.cast<long long>(), 1, upper);
+  return checked(name, value.cast<long long>(), lower, upper);
 }
 
 std::string choice(const py::object& value, const std::string& name, const std::vector<std::string>& allowed) {

@@ -18,7 +18,7 @@ constexpr int most_poses = 1'000'000, most_candidates = 10'000'000, most_restart
 /// Throws InputError "NAME is VALUE; LOWER to UPPER is allowed".
 int checked(const std::string& name, long long value, int lower, int upper);
 /// None: not said; else 1 to `upper`.
-std::optional<int> optional_number(const py::object& value, const std::string& name, int upper);
+std::optional<int> optional_number(const py::object& value, const std::string& name, int upper, int lower = 1);
 /// None: not said; else a number from `lower` to `upper`.
 std::optional<double> within(const py::object& value, const std::string& name, double lower, double upper);
 /// None: empty; else one of the allowed words, or InputError.

@@ -16,18 +16,6 @@ namespace {
 
 using Limit = std::optional<double>;
 
-std::optional<RobustSpec> robust_of(const py::object& draws, const std::string& measure) {
-  if (draws.is_none() && measure.empty()) return std::nullopt;
-  RobustSpec robust;
-  robust.draws = optional_number(draws, "robust", most_robust_draws).value_or(robust.draws);
-  if (robust.draws < 2) throw InputError({}, "robust is too small", "2 or more are allowed");
-  if (measure.empty()) return robust;
-  const std::optional<RobustAim> aim = robust_aim_of(measure);
-  if (!aim) throw InputError({}, "robust_measure '" + measure + "' is no measure", robust_aims_allowed);
-  robust.aim = *aim;
-  return robust;
-}
-
 Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
           const std::string& variant, const py::object& candidates, const py::object& restarts,
           const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
@@ -36,7 +24,8 @@ Plan plan(const GivenProblem& given, const py::object& poses, const std::string&
           const py::object& robust, const std::string& robust_measure, const py::int_& seed, long long threads,
           Limit time_limit, py::object progress) {
   PlanOptions options;
-  options.robust = robust_of(robust, robust_measure);
+  options.robust = robust_spec(optional_number(robust, "robust", most_robust_draws, least_robust_draws), robust_measure,
+                               "robust_measure");
   options.truth = truth;
   if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
   else options.poses = optional_number(poses, "poses", most_poses);

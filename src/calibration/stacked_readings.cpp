@@ -72,9 +72,7 @@ StackedReadings::StackedReadings(const IdentificationModel& model, const Variant
                                  const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start)
     : model_(model), columns_(columns), poses_(poses), correction_(start) {
   correction_.resize(model.parameters().size(), 0.0);
-  tolerances_.resize(Eigen::Index(columns.parameters.size()));
-  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
-    tolerances_[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  tolerances_ = tolerances_of(columns);
   for (std::size_t j = 0; j < columns.parameters.size(); ++j)
     if (counts(columns.parameters[j], prior)) known_.push_back(int(j));
   const int per_target = model.rows_per_target();

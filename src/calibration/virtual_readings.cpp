@@ -51,12 +51,8 @@ std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int
   const IdentificationModel& robot = *experiment.truth.model;
   Random random(options.seed ^ readings_stream, std::uint64_t(draw));
   GrossErrors gross(options, draw);
-  truth.assign(robot.parameters().size(), 0.0);
-  const VariantColumns& drawn = experiment.truth.drawn;
-  for (std::size_t j = 0; j < drawn.selected.size(); ++j) {
-    const double z = random.normal();
-    if (!options.exact) truth[std::size_t(drawn.selected[j])] = drawn.parameters[j].tolerance * z;
-  }
+  truth = drawn_correction(experiment.truth.drawn, robot.parameters().size(), random);
+  if (options.exact) std::fill(truth.begin(), truth.end(), 0.0);
   std::vector<MeasuredPose> poses;
   poses.reserve(experiment.poses.size());
   Linearisation at;

@@ -44,20 +44,6 @@ po::options_description plan_command_options() {
   return options;
 }
 
-/// Of the measure alone: as many robots as usual.
-std::optional<RobustSpec> robust_of(const po::variables_map& values) {
-  const std::optional<int> draws = whole_number(values, "robust", 2, most_robust_draws);
-  const std::string measure = text_of(values, "robust-measure");
-  if (!draws && measure.empty()) return std::nullopt;
-  RobustSpec robust;
-  robust.draws = draws.value_or(robust.draws);
-  if (measure.empty()) return robust;
-  const std::optional<RobustAim> aim = robust_aim_of(measure);
-  if (!aim) throw InputError({}, "--robust-measure '" + measure + "' is no measure", robust_aims_allowed);
-  robust.aim = *aim;
-  return robust;
-}
-
 int run_plan(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path file = single(positional, "PROBLEM");
@@ -86,7 +72,8 @@ int run_plan(const po::variables_map& values, const Words& positional) {
     throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
   const std::filesystem::path augment = text_of(values, "augment"), fixed = text_of(values, "fixed");
   plan_options.reserve = values.count("reserve") > 0;
-  plan_options.robust = robust_of(values);
+  plan_options.robust = robust_spec(whole_number(values, "robust", least_robust_draws, most_robust_draws),
+                                    text_of(values, "robust-measure"), "--robust-measure");
   plan_options.seed = common.seed;
   plan_options.threads = common.threads;
   const Problem problem = given_problem(file, values);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "by_bound.hpp"
@@ -35,107 +34,64 @@ BlockArray own_blocks(const BlockArray& blocks, const VariantGroup& group) {
 /// One variant or scenario: its determinants by rank-r changes of what remains without the leaving member.
 class Share {
  public:
-  Share(const Scenario& scenario, int nuisance)
+  explicit Share(const Scenario& scenario)
       : scenario_(scenario),
-        interest_(scenario.blocks->columns() - nuisance),
-        rest_(std::make_unique<LeaveOneOut>(*scenario_.blocks, nuisance,
-                                            scenario_.prior.size() > 0 ? &scenario_.prior : nullptr)) {}
+        interest_(scenario.blocks->columns() - scenario.nuisance),
+        rest_(*scenario_.blocks, scenario_.nuisance, scenario_.prior.size() > 0 ? &scenario_.prior : nullptr) {}
   Share(const Share&) = delete;
   Share& operator=(const Share&) = delete;
 
   double weight() const { return scenario_.weight; }
-  void set_members(const std::vector<int>& members) { rest_->set_members(members); }
-  void exchange(int leave, int enter) { rest_->exchange(leave, enter); }
-  void leave(int k) { rest_->leave(k); }
+  void set_members(const std::vector<int>& members) { rest_.set_members(members); }
+  void exchange(int leave, int enter) { rest_.exchange(leave, enter); }
+  void leave(int k) { rest_.leave(k); }
 
   /// ln e_v; −∞ where singular.
-  double efficiency() const { return of(rest_->value()); }
+  double efficiency() const { return of(rest_.value()); }
   /// The same with the ridge of a singular design: what gains count from.
-  double reference() const { return of(rest_->reference()); }
+  double reference() const { return of(rest_.reference()); }
   /// ∂ ln e_v per unit of weight on candidate j.
-  double sensitivity(int j) const { return rest_->sensitivities()[std::size_t(j)] / interest_; }
+  double sensitivity(int j) const { return rest_.sensitivities()[std::size_t(j)] / interest_; }
   /// No less than gain(j): Φ is concave, and no swap gains more than adding alone.
   double most(int j, int leaving) const {
-    const std::vector<double>& all = rest_->sensitivities();
+    const std::vector<double>& all = rest_.sensitivities();
     const double d = all[std::size_t(j)], r = scenario_.blocks->rows();
     return std::min(d - (leaving < 0 ? 0.0 : all[std::size_t(leaving)]), r * std::log1p(d / r)) / interest_;
   }
-  double gain(int j) { return rest_->gain(j) / interest_; }
+  double gain(int j) { return rest_.gain(j) / interest_; }
   /// ln e_v with j in the place of k, from scratch.
-  double exact(int k, int j) const { return of(rest_->exact(k, j)); }
+  double exact(int k, int j) const { return of(rest_.exact(k, j)); }
 
  private:
   double of(double log_det) const { return (log_det - scenario_.reference) / interest_; }
 
   const Scenario scenario_;
   double interest_;
-  std::unique_ptr<LeaveOneOut> rest_;
+  LeaveOneOut rest_;
 };
 
-/// combined() of the same shares over and over, without allocating.
-class Combination {
- public:
-  Combination(const RobustAim& aim, std::vector<double> weights, double whole)
-      : aim_(aim), weights_(std::move(weights)), wanted_(aim.share * whole), order_(weights_.size()) {
-    sum_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-  }
+RobustAim aim_of(bool minimum) { return {minimum ? RobustAim::Measure::worst : RobustAim::Measure::mean}; }
 
-  double of(const std::vector<double>& values) {
-    if (aim_.measure == RobustAim::Measure::worst) return *std::min_element(values.begin(), values.end());
-    double total = 0.0;
-    if (aim_.measure == RobustAim::Measure::mean) {
-      for (std::size_t v = 0; v < values.size(); ++v) total += weights_[v] * values[v];
-      return total / sum_;
-    }
-    std::iota(order_.begin(), order_.end(), std::size_t(0));
-    std::sort(order_.begin(), order_.end(),
-              [&](std::size_t a, std::size_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
-    double taken = 0.0;
-    for (const std::size_t v : order_) {
-      const double part = std::min(weights_[v], wanted_ - taken);
-      if (!(part > 0)) break;
-      total += part * values[v];
-      taken += part;
-    }
-    return total / taken;
-  }
-  /// Of all weight, where the mean counts.
-  double share_of(std::size_t v) const { return weights_[v] / sum_; }
-
- private:
-  RobustAim aim_;
-  std::vector<double> weights_;
-  double wanted_, sum_ = 0.0;
-  std::vector<std::size_t> order_;
-};
+std::vector<double> weights_of(const std::vector<Scenario>& scenarios) {
+  std::vector<double> weights;
+  weights.reserve(scenarios.size());
+  for (const Scenario& scenario : scenarios) weights.push_back(scenario.weight);
+  return weights;
+}
 
 /// A swap changes each ln e_v by its own determinant formula (LeaveOneOut). Candidates come by what they gain at most,
 /// and each is dropped as soon as the shares looked at, with the bounds of the others, cannot beat the best: Φ grows
 /// with each of them.
 class MixedState : public DesignState {
  public:
-  MixedState(const CandidateView& view, std::vector<int> members, const std::vector<Scenario>& scenarios, int nuisance,
+  MixedState(const CandidateView& view, std::vector<int> members, const std::vector<Scenario>& scenarios,
              const RobustAim& aim, double whole)
-      : DesignState(view, std::move(members)), combination_(aim, weights_of(scenarios), whole), aim_(aim) {
-    for (const Scenario& scenario : scenarios) shares_.push_back(std::make_unique<Share>(scenario, nuisance));
-    now_.resize(shares_.size());
-    then_.resize(shares_.size());
-    refresh();
-  }
-  MixedState(const CandidateView& view, std::vector<int> members, const std::vector<VariantGroup>& variants,
-             bool minimum)
       : DesignState(view, std::move(members)),
-        combination_(aim_of(minimum), weights_of(variants), 1.0),
-        aim_(aim_of(minimum)) {
-    for (const VariantGroup& group : variants) {
-      Eigen::MatrixXd prior;
-      if (view.prior != nullptr) prior = view.prior->block(group.first, group.first, group.columns, group.columns);
-      shares_.push_back(std::make_unique<Share>(Scenario{std::make_shared<BlockArray>(own_blocks(*view.blocks, group)),
-                                                         group.weight, group.reference, std::move(prior)},
-                                                group.nuisance));
-    }
-    now_.resize(shares_.size());
-    then_.resize(shares_.size());
+        combination_(aim, weights_of(scenarios), whole),
+        aim_(aim),
+        now_(scenarios.size()),
+        then_(scenarios.size()) {
+    for (const Scenario& scenario : scenarios) shares_.push_back(std::make_unique<Share>(scenario));
     refresh();
   }
 
@@ -177,15 +133,6 @@ class MixedState : public DesignState {
     for (const auto& share : shares_) share->exchange(leave, enter);
   }
 
-  static RobustAim aim_of(bool minimum) { return {minimum ? RobustAim::Measure::worst : RobustAim::Measure::mean}; }
-  template <class Parts>
-  static std::vector<double> weights_of(const Parts& parts) {
-    std::vector<double> weights;
-    weights.reserve(parts.size());
-    for (const auto& part : parts) weights.push_back(part.weight);
-    return weights;
-  }
-
   template <class Of>
   double mixed(const Of& of) const {
     for (std::size_t v = 0; v < shares_.size(); ++v) then_[v] = of(*shares_[v]);
@@ -211,7 +158,7 @@ class MixedState : public DesignState {
     for (std::size_t i = 0; i < shares_.size() && gain > least; ++i) {
       const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
       const double exact = now_[v] + shares_[v]->gain(j);
-      if (aim_.measure == RobustAim::Measure::mean) gain += combination_.share_of(v) * (exact - then_[v]);
+      if (aim_.measure == RobustAim::Measure::mean) gain += combination_.supporting(then_)[v] * (exact - then_[v]);
       then_[v] = exact;
       if (aim_.measure != RobustAim::Measure::mean) gain = combination_.of(then_) - now;
     }
@@ -254,12 +201,20 @@ class MixedState : public DesignState {
 
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<VariantGroup>& variants, bool minimum) {
-  return std::make_unique<MixedState>(view, std::move(members), variants, minimum);
+  std::vector<Scenario> scenarios;
+  scenarios.reserve(variants.size());
+  for (const VariantGroup& group : variants) {
+    Eigen::MatrixXd prior;
+    if (view.prior != nullptr) prior = view.prior->block(group.first, group.first, group.columns, group.columns);
+    scenarios.push_back({std::make_shared<BlockArray>(own_blocks(*view.blocks, group)), group.nuisance, group.weight,
+                         group.reference, std::move(prior)});
+  }
+  return start_mixed(view, std::move(members), scenarios, aim_of(minimum), 1.0);
 }
 
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<Scenario>& scenarios, const RobustAim& aim, double whole) {
-  return std::make_unique<MixedState>(view, std::move(members), scenarios, view.nuisance, aim, whole);
+  return std::make_unique<MixedState>(view, std::move(members), scenarios, aim, whole);
 }
 
 }  // namespace posewright

@@ -9,6 +9,7 @@
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/robust_aim.hpp"
 #include "regular.hpp"
 
 namespace posewright {
@@ -120,8 +121,8 @@ class MixedFunction : public InformationFunction {
       mixed->terms.push_back({std::move(expansion), 0.0, 0.0, parts_[v].group});
     }
     if (minimum_) {
-      weight = (-sharpness * (efficiency.array() - efficiency.minCoeff())).exp();
-      weight /= weight.sum();
+      const std::vector<double> soft = soft_minimum_weights({efficiency.begin(), efficiency.end()}, sharpness);
+      weight = Eigen::Map<const Eigen::VectorXd>(soft.data(), weight.size());
       // A variant of no weight has no say; the smallest normal weight keeps its derivative finite.
       weight = weight.cwiseMax(1e-12);
       mixed->p = sharpness;

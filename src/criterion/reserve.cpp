@@ -6,9 +6,9 @@
 
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
-#include "summed_information.hpp"
 
 namespace posewright {
 namespace {

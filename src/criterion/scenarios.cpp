@@ -4,9 +4,9 @@
 
 namespace posewright {
 
-ScenarioCriterion::ScenarioCriterion(std::vector<Scenario> scenarios, int nuisance, const RobustAim& aim, double whole)
+ScenarioCriterion::ScenarioCriterion(std::vector<Scenario> scenarios, const RobustAim& aim, double whole)
     : scenarios_(std::move(scenarios)),
-      function_(nuisance, scenarios_.front().blocks->columns()),
+      function_(scenarios_.front().nuisance, scenarios_.front().blocks->columns()),
       aim_(aim),
       whole_(whole) {}
 

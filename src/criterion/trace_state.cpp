@@ -4,10 +4,10 @@
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
+#include "posewright/criterion/summed_information.hpp"
 #include "posewright/criterion/trace.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
-#include "summed_information.hpp"
 
 namespace posewright {
 namespace {

@@ -191,4 +191,18 @@ const VariantSpec& find_variant(const Problem& problem, const std::string& name)
   throw InputError(problem.at(line), "has no variant '" + wanted + "'" + meant_instead(wanted, words), allowed);
 }
 
+std::vector<double> drawn_correction(const VariantColumns& columns, std::size_t parameters, Random& random) {
+  std::vector<double> correction(parameters, 0.0);
+  for (std::size_t j = 0; j < columns.selected.size(); ++j)
+    correction[std::size_t(columns.selected[j])] = columns.parameters[j].tolerance * random.normal();
+  return correction;
+}
+
+Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
+  Eigen::VectorXd tolerances(Eigen::Index(columns.parameters.size()));
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    tolerances[Eigen::Index(j)] = columns.parameters[j].tolerance;
+  return tolerances;
+}
+
 }  // namespace posewright

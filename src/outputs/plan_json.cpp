@@ -211,8 +211,9 @@ Json statistics_json(const PlanStatistics& s) {
 }
 
 Json robust_json(const RobustPlan& robust) {
-  Json json = {{"draws", robust.draws},           {"measure", robust.measure},         {"value", robust.value},
-               {"bound", robust.bound},           {"unreached", robust.unreached},     {"interrupted", robust.stopped},
+  Json json = {{"draws", robust.draws},           {"measure", robust_aim_text(robust.aim)},
+               {"value", robust.value},           {"bound", robust.bound},
+               {"unreached", robust.unreached},   {"interrupted", robust.stopped},
                {"efficiency", robust.efficiency}, {"log_det_bound", robust.references}};
   if (robust.searched) json["nominal_plan"] = {{"value", robust.nominal_value}, {"efficiency", robust.nominal}};
   return json;

@@ -119,15 +119,16 @@ double quantile(std::vector<double> values, double share) {
   return values[std::size_t(at)];
 }
 
-std::string measure_text(const RobustPlan& robust) {
-  if (robust.measure == "mean") return "on average";
-  return robust.measure == "worst" ? "on the worst" : "on the worst " + robust.measure.substr(5) + " of them";
+std::string aim_text(const RobustAim& aim) {
+  if (aim.measure == RobustAim::Measure::mean) return "on average";
+  return aim.measure == RobustAim::Measure::worst ? "on the worst"
+                                                  : fmt::format("on the worst {:g} of them", aim.share);
 }
 
 std::string robust_text(const Plan& plan) {
   if (!plan.robust) return {};
   const RobustPlan& robust = *plan.robust;
-  const std::string on = measure_text(robust);
+  const std::string on = aim_text(robust.aim);
   if (robust.efficiency.empty())
     return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal "
            "robot's.\n";

@@ -104,7 +104,8 @@ RobustSpec read_robust(const Value& value) {
   section.allow({"draws", "measure"});
   RobustSpec robust;
   robust.line = value.line();
-  if (const Value* draws = section.find("draws")) robust.draws = int(draws->integer(2, most_robust_draws));
+  if (const Value* draws = section.find("draws"))
+    robust.draws = int(draws->integer(least_robust_draws, most_robust_draws));
   if (const Value* measure = section.find("measure")) {
     const std::optional<RobustAim> aim = robust_aim_of(measure->text("a measure is expected"));
     if (!aim) measure->fail("is no measure", robust_aims_allowed);

@@ -68,7 +68,6 @@ class RobustSearch {
       take_if_better(pool, found, best, values);
       if (looked_at.size() == values.size() || request_.aim.measure == RobustAim::Measure::mean) break;
     }
-    result.searched = int(looked_at.size());
     if (looked_at.size() < values.size() && !monitor_.should_stop()) {
       const auto criterion = pool.criterion(every(values.size()));
       const auto state = criterion.start(pool.view(), best);

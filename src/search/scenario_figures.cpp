@@ -21,15 +21,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Where weights of a scenario like the nominal one are, ascending: few, because a step costs the cube of their number.
 std::vector<int> first_set(const ApproximateDesign& optimum, std::size_t least) {
-  std::vector<int> order(optimum.sensitivity.size()), set = optimum.weighted();
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return optimum.sensitivity[std::size_t(a)] > optimum.sensitivity[std::size_t(b)];
-  });
+  std::vector<int> set = optimum.weighted();
   const std::size_t wanted = std::max(least, 2 * set.size());
-  std::vector<char> taken(order.size(), 0);
+  std::vector<char> taken(optimum.sensitivity.size(), 0);
   for (const int i : set) taken[std::size_t(i)] = 1;
-  for (const int i : order) {
+  for (const int i : by_value(optimum.sensitivity, true)) {
     if (set.size() >= wanted) break;
     if (taken[std::size_t(i)] == 0) set.push_back(i);
   }
@@ -39,13 +35,22 @@ std::vector<int> first_set(const ApproximateDesign& optimum, std::size_t least) 
 
 }  // namespace
 
+std::vector<int> by_value(const std::vector<double>& values, bool largest_first) {
+  std::vector<int> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const double x = values[std::size_t(a)], y = values[std::size_t(b)];
+    return largest_first ? x > y : x < y;
+  });
+  return order;
+}
+
 ScenarioFigures::ScenarioFigures(const RobustRequest& request, const Monitor& monitor)
     : request_(request),
       monitor_(monitor),
       columns_(request.nominal.columns()),
       interest_(columns_ - request.nuisance),
-      function_(request.nuisance, columns_),
-      weights_(std::size_t(request.scenarios), 1.0) {
+      function_(request.nuisance, columns_) {
   const double n = request_.poses;
   std::vector<int> all(request_.nominal.count());
   std::iota(all.begin(), all.end(), 0);
@@ -76,13 +81,9 @@ Eigen::MatrixXd ScenarioFigures::prior_of(int scenario) const {
   return prior;
 }
 
-Eigen::MatrixXd ScenarioFigures::information(const BlockArray& blocks, const std::vector<int>& members) {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(blocks.columns(), blocks.columns());
-  for (const int i : members) {
-    const auto block = blocks.block(std::size_t(i));
-    M.noalias() += block.transpose() * block;
-  }
-  return M;
+double ScenarioFigures::log_det_of(const BlockArray& blocks, const Eigen::MatrixXd& prior,
+                                   const std::vector<int>& members) const {
+  return function_.value(summed_information(blocks, prior.size() > 0 ? &prior : nullptr, members));
 }
 
 std::string ScenarioFigures::reference_of(int scenario) const {
@@ -94,13 +95,11 @@ std::string ScenarioFigures::reference_of(int scenario) const {
   const Seen seen = look(blocks, prior, optimal_weights());
   // Where the nominal weights are as good as that, what they prove is enough.
   const double ratio = (best_mean(seen.sensitivity, options_.cap) + seen.of_prior) / interest_;
-  const bool enough = std::isfinite(seen.value) && ratio < 1 + reference_tolerance;
+  const bool enough = std::isfinite(seen.log_det) && ratio < 1 + reference_tolerance;
   ByteWriter out;
-  out.put(enough ? seen.value + interest_ * std::log(std::max(1.0, ratio) * (1 + rounding))
+  out.put(enough ? seen.log_det + interest_ * std::log(std::max(1.0, ratio) * (1 + rounding))
                  : solve_approximate_design(blocks, function_, options, Monitor()).bound_for(request_.poses));
-  Eigen::MatrixXd M = information(blocks, request_.plan);
-  if (prior.size() > 0) M += prior;
-  out.put(function_.value(M));
+  out.put(log_det_of(blocks, prior, request_.plan));
   std::int64_t unreached = 0;
   for (std::size_t i = 0; i < blocks.count(); ++i) unreached += blocks.block(i).isZero(0.0) ? 1 : 0;
   out.put(unreached);
@@ -112,17 +111,16 @@ bool ScenarioFigures::find_references(long& unreached) {
   std::vector<double> references, given;
   Look all;
   const bool stopped = run_tasks(
-      {"drawn robots", weights_.size(), request_.planner.threads},
-      [&](std::size_t k, int) { return reference_of(int(k)); },
+      {"drawn robots", scenarios(), request_.planner.threads}, [&](std::size_t k, int) { return reference_of(int(k)); },
       [&](std::size_t, std::string_view bytes) {
         ByteReader in(bytes);
         references.push_back(in.get<double>());
         given.push_back((in.get<double>() - references.back()) / interest_);
         unreached += long(in.get<std::int64_t>());
-        take(in, references.back(), all);
+        take(in, all);
       },
       monitor_);
-  if (references.size() < weights_.size()) return false;
+  if (references.size() < scenarios()) return false;
   references_ = std::move(references);
   given_ = std::move(given);
   accept(std::move(all));
@@ -144,30 +142,24 @@ CandidateWeights ScenarioFigures::optimal_weights() const {
 
 ScenarioFigures::Seen ScenarioFigures::look(const BlockArray& blocks, const Eigen::MatrixXd& prior,
                                             const CandidateWeights& weights) const {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(columns_, columns_);
-  if (prior.size() > 0) M = prior / double(request_.poses);
-  for (const auto& [i, weight] : weights) {
-    const auto block = blocks.block(std::size_t(i));
-    M.noalias() += weight * block.transpose() * block;
-  }
+  const Eigen::MatrixXd own = prior / double(request_.poses);
   Seen seen{-infinity, 0.0, std::vector<double>(blocks.count(), 0.0)};
-  const auto expansion = function_.expand(M);
+  const auto expansion = function_.expand(weighted_information(blocks, own, weights));
   if (expansion == nullptr) return seen;
-  seen.value = expansion->value + interest_ * std::log(double(request_.poses));
+  seen.log_det = expansion->value + interest_ * std::log(double(request_.poses));
   sensitivities(blocks, expansion->factor, 1, seen.sensitivity);
-  if (prior.size() > 0)
-    seen.of_prior = (expansion->factor.transpose() * prior * expansion->factor).trace() / double(request_.poses);
+  if (own.size() > 0) seen.of_prior = (expansion->factor.transpose() * own * expansion->factor).trace();
   return seen;
 }
 
 void ScenarioFigures::put(const Seen& seen, ByteWriter& out) {
-  out.put(seen.value);
+  out.put(seen.log_det);
   out.put(seen.of_prior);
   out.put(seen.sensitivity);
 }
 
-void ScenarioFigures::take(ByteReader& in, double reference, Look& look) const {
-  look.values.push_back((in.get<double>() - reference) / interest_);
+void ScenarioFigures::take(ByteReader& in, Look& look) {
+  look.log_dets.push_back(in.get<double>());
   look.of_prior.push_back(in.get<double>());
   look.sensitivity.emplace_back();
   in.get(look.sensitivity.back());
@@ -175,13 +167,14 @@ void ScenarioFigures::take(ByteReader& in, double reference, Look& look) const {
 
 void ScenarioFigures::accept(Look look) {
   look_ = std::move(look);
+  for (std::size_t k = 0; k < look_.log_dets.size(); ++k) look_.values.push_back(efficiency(look_.log_dets[k], k));
   bound_ = std::min(bound_, bound_here());
 }
 
 bool ScenarioFigures::look_from(const CandidateWeights& weights) {
   Look all;
   run_tasks(
-      {"bound over drawn robots", weights_.size(), request_.planner.threads},
+      {"bound over drawn robots", scenarios(), request_.planner.threads},
       [&](std::size_t k, int) {
         BlockArray blocks = request_.blocks(int(k), {});
         whiten(blocks);
@@ -189,12 +182,12 @@ bool ScenarioFigures::look_from(const CandidateWeights& weights) {
         put(look(blocks, prior_of(int(k)), weights), out);
         return out.take();
       },
-      [&](std::size_t k, std::string_view bytes) {
+      [&](std::size_t, std::string_view bytes) {
         ByteReader in(bytes);
-        take(in, references_[k], all);
+        take(in, all);
       },
       monitor_);
-  if (all.values.size() < weights_.size()) return false;
+  if (all.log_dets.size() < scenarios()) return false;
   accept(std::move(all));
   return true;
 }
@@ -219,23 +212,14 @@ double ScenarioFigures::bound_by(const std::vector<double>& lambda) const {
 }
 
 double ScenarioFigures::bound_here() const {
-  double least =
-      std::min(0.0, bound_by(supporting_weights(request_.aim, look_.values, weights_, double(weights_.size()))));
-  const double lowest = *std::min_element(look_.values.begin(), look_.values.end());
-  if (request_.aim.measure != RobustAim::Measure::worst || !std::isfinite(lowest)) return std::exp(least);
+  double least = std::min(0.0, bound_by(combination(scenarios()).supporting(look_.values)));
+  if (request_.aim.measure != RobustAim::Measure::worst) return std::exp(least);
+  if (!std::all_of(look_.values.begin(), look_.values.end(), [](double value) { return std::isfinite(value); }))
+    return std::exp(least);
   // Any weights are valid; those of a soft minimum spread over all scenarios that are nearly worst.
-  for (const double sharpness : {10.0, 30.0, 100.0, 300.0, 1000.0}) {
-    std::vector<double> lambda;
-    for (const double value : look_.values) lambda.push_back(std::exp(-sharpness * (value - lowest)));
-    const double sum = std::accumulate(lambda.begin(), lambda.end(), 0.0);
-    for (double& weight : lambda) weight /= sum;
-    least = std::min(least, bound_by(lambda));
-  }
+  for (const double sharpness : {10.0, 30.0, 100.0, 300.0, 1000.0})
+    least = std::min(least, bound_by(soft_minimum_weights(look_.values, sharpness)));
   return std::exp(least);
-}
-
-double ScenarioFigures::combine(const std::vector<double>& values) const {
-  return combined(request_.aim, values, weights_, double(weights_.size()));
 }
 
 RobustFigures ScenarioFigures::figures(const std::vector<double>& values) const {

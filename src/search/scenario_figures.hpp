@@ -6,17 +6,18 @@
 #include <vector>
 
 #include "posewright/criterion/determinant.hpp"
+#include "posewright/criterion/summed_information.hpp"
 #include "posewright/planning/approximate_design.hpp"
 #include "posewright/search/robust_search.hpp"
 #include "posewright/support/bytes.hpp"
 
 namespace posewright {
 
-/// Weights on candidates, Σw = 1.
-using CandidateWeights = std::vector<std::pair<int, double>>;
+/// Indices by their value, ties by index.
+std::vector<int> by_value(const std::vector<double>& values, bool largest_first);
 
-/// What all scenarios say of plans and weights. Every scenario is looked at with all candidates, and forgotten again:
-/// memory is that of a few, whatever their number.
+/// What all scenarios say of plans and weights. Every scenario is looked at with all candidates, and forgotten again
+/// but for one number a candidate.
 class ScenarioFigures {
  public:
   /// Whitens, and solves for the weights that are best at nominal parameters.
@@ -29,8 +30,7 @@ class ScenarioFigures {
   const BlockArray& nominal() const { return nominal_; }
   const ApproximateDesign& optimum() const { return optimum_; }
   CandidateWeights optimal_weights() const;
-  /// One for each scenario: none is more likely.
-  const std::vector<double>& weights() const { return weights_; }
+  std::size_t scenarios() const { return std::size_t(request_.scenarios); }
 
   /// Finds what no plan exceeds in each scenario, and what the plan given has there; looks from the weights that are
   /// best at nominal parameters.
@@ -54,27 +54,38 @@ class ScenarioFigures {
   /// How much better any weights may be than those that were looked from last: ln of the ratio.
   double gap() const { return std::log(bound_) - combine(look_.values); }
 
-  double combine(const std::vector<double>& values) const;
+  /// The aim over so many of the scenarios, none more likely than another: those that stand for all where the mean
+  /// counts, else the worst.
+  Combination combination(std::size_t some) const {
+    return {request_.aim, std::vector<double>(some, 1.0), double(scenarios())};
+  }
+  double combine(const std::vector<double>& values) const { return combination(scenarios()).of(values); }
   RobustFigures figures(const std::vector<double>& values) const;
   void whiten(BlockArray& blocks) const;
   /// Whitened, for all poses; empty: none.
   Eigen::MatrixXd prior_of(int scenario) const;
-  static Eigen::MatrixXd information(const BlockArray& blocks, const std::vector<int>& members);
+  /// Of one scenario at some weights.
+  struct Seen {
+    double log_det, of_prior;  ///< whitened, of as many poses as a plan has; d of what is there before
+    std::vector<double> sensitivity;
+  };
+  /// @param blocks  whitened
+  /// @param prior   for all poses, whitened; empty: none
+  Seen look(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
+  /// Of a plan; −∞ where parameters are open.
+  double log_det_of(const BlockArray& blocks, const Eigen::MatrixXd& prior, const std::vector<int>& members) const;
+  /// ln e of what has this log det (whitened) in scenario k.
+  double efficiency(double log_det, std::size_t k) const { return (log_det - references_[k]) / interest_; }
 
  private:
   std::string reference_of(int scenario) const;
   struct Look {
-    std::vector<double> values, of_prior;
+    std::vector<double> log_dets, of_prior;
     std::vector<std::vector<double>> sensitivity;
+    std::vector<double> values{};  // ln e
   };
-  /// Of one scenario, at some weights: log det (whitened), d of the prior and of every candidate.
-  struct Seen {
-    double value, of_prior;
-    std::vector<double> sensitivity;
-  };
-  Seen look(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
   static void put(const Seen& seen, ByteWriter& out);
-  void take(ByteReader& in, double reference, Look& look) const;
+  static void take(ByteReader& in, Look& look);
   void accept(Look look);
   double bound_by(const std::vector<double>& lambda) const;
   double bound_here() const;
@@ -84,14 +95,13 @@ class ScenarioFigures {
   int columns_;
   double interest_;
   LogDetFunction function_;
-  std::vector<double> weights_;
   BlockArray nominal_;
   Eigen::MatrixXd R_;
   double offset_ = 0.0;
   ApproximateDesign optimum_;
   ApproximateDesignOptions options_;
   std::vector<double> references_, given_;
-  // At the weights that were looked from last: ln e, d of the prior, d of every candidate.
+  // At the weights that were looked from last.
   Look look_;
   double bound_ = 1.0;
 };

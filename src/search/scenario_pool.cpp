@@ -16,24 +16,14 @@ constexpr std::size_t least_pool = 240;
 constexpr double most_pool_bytes = 1.2e9;
 constexpr std::size_t most_representatives = 20;
 
-std::vector<int> by_value(const std::vector<double>& values, bool largest_first) {
-  std::vector<int> order(values.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    const double x = values[std::size_t(a)], y = values[std::size_t(b)];
-    return largest_first ? x > y : x < y;
-  });
-  return order;
-}
-
 std::vector<int> herded(const ScenarioFigures& figures, const std::vector<int>& candidates, std::size_t count) {
-  Eigen::MatrixXd features(Eigen::Index(candidates.size()), Eigen::Index(figures.weights().size()));
+  Eigen::MatrixXd features(Eigen::Index(candidates.size()), Eigen::Index(figures.scenarios()));
   for (Eigen::Index k = 0; k < features.cols(); ++k)
     for (Eigen::Index i = 0; i < features.rows(); ++i)
       features(i, k) = figures.sensitivity(std::size_t(k), candidates[std::size_t(i)]);
   features.colwise() -= features.rowwise().mean().eval();
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(features.rows());
-  std::vector<char> taken(figures.weights().size(), 0);
+  std::vector<char> taken(figures.scenarios(), 0);
   std::vector<int> chosen;
   while (chosen.size() < count) {
     int best = -1;
@@ -64,12 +54,11 @@ ScenarioPool::ScenarioPool(const ScenarioFigures& figures, const RobustRequest& 
   for (const int i : request.plan) take(i);
   for (const int i : figures.optimum().weighted()) take(i);
   for (const auto& [i, weight] : weighted) take(i);
-  const std::size_t scenarios = figures.weights().size();
+  const std::size_t scenarios = figures.scenarios();
   const double each = double(scenarios) * figures.nominal().rows() * figures.nominal().stride() * sizeof(double);
   const std::size_t size =
       std::min(std::max(least_pool, std::size_t(6 * request.poses)), std::size_t(most_pool_bytes / each));
-  const std::vector<double> lambda = supporting_weights(request.aim, values, figures.weights(), double(scenarios));
-  for (const int i : by_value(figures.mean_sensitivity(lambda), true)) {
+  for (const int i : by_value(figures.mean_sensitivity(figures.combination(scenarios).supporting(values)), true)) {
     if (candidates_.size() >= size) break;
     take(i);
   }
@@ -83,7 +72,7 @@ ScenarioPool::ScenarioPool(const ScenarioFigures& figures, const RobustRequest& 
     priors_[k] = figures.prior_of(int(k));
   });
   nominal_ = figures.nominal().subset(candidates_);
-  if (request.spacing == nullptr) return;
+  if (!request.spacing) return;
   spacing_ = *request.spacing;
   spacing_.points.resize(Eigen::Index(candidates_.size()), request.spacing->points.cols());
   for (std::size_t i = 0; i < candidates_.size(); ++i)
@@ -103,7 +92,7 @@ CandidateView ScenarioPool::view() const {
   view.blocks = &nominal_;
   view.nuisance = request_.nuisance;
   view.max_repeats = std::min(request_.repeats.most, request_.poses);
-  view.spacing = request_.spacing == nullptr ? nullptr : &spacing_;
+  view.spacing = request_.spacing ? &spacing_ : nullptr;
   return view;
 }
 
@@ -111,33 +100,33 @@ ScenarioCriterion ScenarioPool::criterion(const std::vector<int>& scenarios) con
   std::vector<Scenario> some;
   some.reserve(scenarios.size());
   for (const int k : scenarios)
-    some.push_back({blocks_[std::size_t(k)], 1.0, figures_.references()[std::size_t(k)], priors_[std::size_t(k)]});
-  // Representatives of a mean stand for all; of the worst, those that are left out have their weight, too.
-  const bool mean = request_.aim.measure == RobustAim::Measure::mean;
-  return {std::move(some), request_.nuisance, request_.aim,
-          mean ? double(scenarios.size()) : double(figures_.weights().size())};
+    some.push_back({blocks_[std::size_t(k)], request_.nuisance, 1.0, figures_.references()[std::size_t(k)],
+                    priors_[std::size_t(k)]});
+  return {std::move(some), request_.aim, double(figures_.scenarios())};
 }
 
 std::vector<double> ScenarioPool::values_of(const std::vector<int>& members) const {
   std::vector<double> values(blocks_.size());
   parallel_for(values.size(), thread_count(request_.planner.threads), [&](std::size_t k, int) {
-    Eigen::MatrixXd M = ScenarioFigures::information(*blocks_[k], members);
-    if (priors_[k].size() > 0) M += priors_[k];
-    values[k] = (figures_.function().value(M) - figures_.references()[k]) / figures_.interest();
+    values[k] = figures_.efficiency(figures_.log_det_of(*blocks_[k], priors_[k], members), k);
   });
   return values;
 }
 
-std::vector<int> ScenarioPool::heaviest(const CandidateWeights& weights) const {
-  std::vector<double> weight(candidates_.size(), 0.0);
-  for (const auto& [i, w] : weights) {
+std::vector<double> ScenarioPool::in_pool(const CandidateWeights& weights) const {
+  std::vector<double> result(candidates_.size(), 0.0);
+  for (const auto& [i, weight] : weights) {
     const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), i);
-    if (found != candidates_.end() && *found == i) weight[std::size_t(found - candidates_.begin())] = w;
+    if (found != candidates_.end() && *found == i) result[std::size_t(found - candidates_.begin())] = weight;
   }
+  return result;
+}
+
+std::vector<int> ScenarioPool::heaviest(const CandidateWeights& weights) const {
   std::vector<int> chosen;
-  for (const int i : by_value(weight, true)) {
+  for (const int i : by_value(in_pool(weights), true)) {
     if (int(chosen.size()) == request_.poses) break;
-    const auto near = [&](int other) { return request_.spacing != nullptr && spacing_.too_near(i, other); };
+    const auto near = [&](int other) { return request_.spacing && spacing_.too_near(i, other); };
     if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(i);
   }
   if (int(chosen.size()) < request_.poses) chosen.clear();

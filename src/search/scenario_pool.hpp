@@ -19,6 +19,8 @@ class ScenarioPool {
   /// Ascending.
   const std::vector<int>& candidates() const { return candidates_; }
   std::vector<int> in_pool(const std::vector<int>& members) const;
+  /// One weight for each candidate of the pool.
+  std::vector<double> in_pool(const CandidateWeights& weights) const;
   /// At nominal parameters.
   CandidateView view() const;
   const BlockArray& blocks(std::size_t scenario) const { return *blocks_[scenario]; }

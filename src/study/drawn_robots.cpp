@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "posewright/cell/line_of_sight.hpp"
+#include "posewright/model/variant.hpp"
 #include "posewright/model/whitening.hpp"
+#include "posewright/study/spacing.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -68,10 +70,7 @@ DrawnRobots::DrawnRobots(const Problem& problem, const Study& study, const Confi
 
 std::vector<double> DrawnRobots::correction(int robot) const {
   Random random(seed_ ^ robots_stream, std::uint64_t(robot));
-  std::vector<double> result(model_->parameters().size(), 0.0);
-  for (std::size_t j = 0; j < columns_.selected.size(); ++j)
-    result[std::size_t(columns_.selected[j])] = columns_.parameters[j].tolerance * random.normal();
-  return result;
+  return drawn_correction(columns_, model_->parameters().size(), random);
 }
 
 BlockArray DrawnRobots::blocks(int robot, const Configurations& configurations) const {
@@ -90,7 +89,7 @@ BlockArray DrawnRobots::blocks(int robot, const Configurations& configurations) 
 }
 
 RobustRequest robust_request(const Study& study, const Settings& settings, const DrawnRobots& robots,
-                             const Configurations& configurations, std::vector<int> plan, Spacing& spacing) {
+                             const Configurations& configurations, std::vector<int> plan) {
   const Variant& variant = study.first();
   RobustRequest request;
   request.aim = settings.robust->aim;
@@ -98,12 +97,7 @@ RobustRequest robust_request(const Study& study, const Settings& settings, const
   request.poses = int(plan.size());
   request.nuisance = variant.everything_counts ? 0 : variant.columns.nuisance;
   request.repeats = settings.repeats;
-  if (study.has_minimum_distance) {
-    spacing = study.minimum_distance;
-    spacing.points = Eigen::Map<const BlockArray::RowMatrix>(
-        configurations.values.data(), Eigen::Index(configurations.count()), configurations.dimension);
-    request.spacing = &spacing;
-  }
+  if (study.has_minimum_distance) request.spacing = with_points(study.spacing, configurations);
   request.planner = settings.planner;
   request.plan = std::move(plan);
   request.nominal = search_blocks(variant, configurations, settings.planner.threads);
@@ -111,16 +105,12 @@ RobustRequest robust_request(const Study& study, const Settings& settings, const
   request.blocks = [&robots, &configurations](int robot, const std::vector<int>& which) {
     return robots.blocks(robot, which.empty() ? configurations : some_of(configurations, which));
   };
-  const Configurations known = known_before(study);
   if (variant.prior.size() == 0) return request;
   // Tolerances are the same for every robot; what is measured already tells each something else.
-  Eigen::MatrixXd tolerances = variant.prior;
-  if (known.count() > 0) {
-    const BlockArray nominal = search_blocks(variant, known, settings.planner.threads);
-    tolerances -= nominal.all().transpose() * nominal.all();
-  }
-  if (!settings.prior) tolerances.setZero();
-  request.prior_of = [&robots, known, tolerances](int robot) {
+  const auto m = Eigen::Index(variant.columns.selected.size());
+  Eigen::MatrixXd tolerances = Eigen::MatrixXd::Zero(m, m);
+  if (settings.prior) tolerances.diagonal() = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
+  request.prior_of = [&robots, known = known_before(study), tolerances](int robot) {
     Eigen::MatrixXd prior = tolerances;
     if (known.count() == 0) return prior;
     const BlockArray blocks = robots.blocks(robot, known);

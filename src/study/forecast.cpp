@@ -23,12 +23,6 @@ std::vector<int> with_effect(const Variant& variant) {
   return selected;
 }
 
-Eigen::VectorXd tolerances(const VariantColumns& columns) {
-  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
-  for (Eigen::Index j = 0; j < tolerance.size(); ++j) tolerance[j] = columns.parameters[std::size_t(j)].tolerance;
-  return tolerance;
-}
-
 /// Rows of one pose and another, correlated by the effect.
 Eigen::MatrixXd between(const UnmodelledEffect& effect, const Eigen::MatrixXd& along_a, const Eigen::MatrixXd& place_a,
                         const Eigen::MatrixXd& along_b, const Eigen::MatrixXd& place_b) {
@@ -111,7 +105,7 @@ class ForecastOfError::Sum {
       : variant_(of.variant_),
         noise_(of.noise_),
         weights_(of.weights_),
-        unit_(tolerances(variant_.columns)),
+        unit_(tolerances_of(variant_.columns)),
         turns_(turns) {
     m_ = unit_.size();
     for (const PoseRows& pose : poses) first_.push_back(first_.back() + pose.block.rows());

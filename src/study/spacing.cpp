@@ -95,4 +95,10 @@ std::string distance_text(const std::vector<Coordinate>& coordinates, const Spac
   return text;
 }
 
+Spacing with_points(Spacing spacing, const Configurations& candidates) {
+  spacing.points = Eigen::Map<const BlockArray::RowMatrix>(candidates.values.data(), Eigen::Index(candidates.count()),
+                                                           candidates.dimension);
+  return spacing;
+}
+
 }  // namespace posewright

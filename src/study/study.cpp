@@ -61,13 +61,6 @@ Configurations common(const std::vector<Variant>& variants, Configurations all) 
   return kept;
 }
 
-Eigen::VectorXd tolerances_of(const VariantColumns& columns) {
-  Eigen::VectorXd tolerance(Eigen::Index(columns.parameters.size()));
-  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
-    tolerance[Eigen::Index(j)] = columns.parameters[j].tolerance;
-  return tolerance;
-}
-
 constexpr std::size_t norm_sample = 2000;
 
 /// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings (where it has none and only
@@ -116,6 +109,24 @@ void resolve(Study& study, Variant& variant, const Problem& problem, const Setti
 }
 
 }  // namespace
+
+Configurations chosen_by(const Design& design, const Configurations& candidates) {
+  Configurations chosen;
+  chosen.dimension = candidates.dimension;
+  const std::size_t n = candidates.count();
+  for (const int i : design.members)
+    append(chosen,
+           std::size_t(i) < n ? candidates[std::size_t(i)] : std::span<const double>(design.added[std::size_t(i) - n]));
+  return chosen;
+}
+
+Configurations without(const Configurations& list, const std::vector<int>& left_out) {
+  Configurations left;
+  left.dimension = list.dimension;
+  for (std::size_t i = 0; i < list.count(); ++i)
+    if (std::find(left_out.begin(), left_out.end(), int(i)) == left_out.end()) append(left, list[i]);
+  return left;
+}
 
 void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
@@ -204,9 +215,7 @@ void keep_away_from_measured(Study& study, Repeats repeats) {
         study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
   if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a pose that is there already");
   if (!study.has_minimum_distance) return;
-  study.minimum_distance = study.spacing;
-  study.minimum_distance.points = Eigen::Map<const BlockArray::RowMatrix>(
-      study.configurations.values.data(), Eigen::Index(study.configurations.count()), study.configurations.dimension);
+  study.minimum_distance = with_points(study.spacing, study.configurations);
 }
 
 SearchRequest search_request(const Settings& settings, int poses) {

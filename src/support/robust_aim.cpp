@@ -5,20 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace posewright {
 namespace {
 
 constexpr std::string_view tail_word = "tail";
-
-std::vector<std::size_t> ascending(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  return order;
-}
 
 }  // namespace
 
@@ -42,38 +35,54 @@ std::optional<RobustAim> robust_aim_of(std::string_view text) {
   return RobustAim{RobustAim::Measure::tail, share};
 }
 
-std::vector<double> supporting_weights(const RobustAim& aim, const std::vector<double>& values,
-                                       const std::vector<double>& weights, double whole) {
-  std::vector<double> result(values.size(), 0.0);
-  if (aim.measure == RobustAim::Measure::mean) {
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    for (std::size_t k = 0; k < values.size(); ++k) result[k] = weights[k] / sum;
-    return result;
-  }
-  if (aim.measure == RobustAim::Measure::worst) {
-    result[std::size_t(std::min_element(values.begin(), values.end()) - values.begin())] = 1.0;
-    return result;
-  }
-  const double wanted = aim.share * whole;
-  double sum = 0.0;
-  for (const std::size_t k : ascending(values)) {
-    const double part = std::min(weights[k], wanted - sum);
-    if (!(part > 0)) break;
-    result[k] = part;
-    sum += part;
-  }
-  for (double& weight : result) weight /= sum;
-  return result;
+Combination::Combination(const RobustAim& aim, std::vector<double> weights, double whole)
+    : aim_(aim),
+      weights_(std::move(weights)),
+      lambda_(weights_.size(), 0.0),
+      wanted_(aim.share * whole),
+      order_(weights_.size()) {
+  if (aim_.measure != RobustAim::Measure::mean) return;
+  const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  for (std::size_t k = 0; k < weights_.size(); ++k) lambda_[k] = weights_[k] / sum;
 }
 
-double combined(const RobustAim& aim, const std::vector<double>& values, const std::vector<double>& weights,
-                double whole) {
-  if (aim.measure == RobustAim::Measure::worst) return *std::min_element(values.begin(), values.end());
-  const std::vector<double> lambda = supporting_weights(aim, values, weights, whole);
+const std::vector<double>& Combination::supporting(const std::vector<double>& values) {
+  if (aim_.measure == RobustAim::Measure::mean) return lambda_;
+  std::fill(lambda_.begin(), lambda_.end(), 0.0);
+  if (aim_.measure == RobustAim::Measure::worst) {
+    lambda_[std::size_t(std::min_element(values.begin(), values.end()) - values.begin())] = 1.0;
+    return lambda_;
+  }
+  std::iota(order_.begin(), order_.end(), std::size_t(0));
+  std::sort(order_.begin(), order_.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
+  double taken = 0.0;
+  for (const std::size_t k : order_) {
+    const double part = std::min(weights_[k], wanted_ - taken);
+    if (!(part > 0)) break;
+    lambda_[k] = part;
+    taken += part;
+  }
+  for (double& weight : lambda_) weight /= taken;
+  return lambda_;
+}
+
+double Combination::of(const std::vector<double>& values) {
+  const std::vector<double>& lambda = supporting(values);
   double sum = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (lambda[k] > 0) sum += lambda[k] * values[k];
   return sum;
+}
+
+std::vector<double> soft_minimum_weights(const std::vector<double>& values, double sharpness) {
+  const double lowest = *std::min_element(values.begin(), values.end());
+  std::vector<double> weights;
+  weights.reserve(values.size());
+  for (const double value : values) weights.push_back(std::exp(-sharpness * (value - lowest)));
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 }  // namespace posewright

@@ -60,14 +60,8 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
     const SearchResult found =
         search(search_parts(variant, candidates, settings.planner.threads),
                request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, variant.spec->name));
-    Configurations poses;
-    poses.dimension = candidates.dimension;
-    for (const int i : found.design.members)
-      append(poses, std::size_t(i) < candidates.count()
-                        ? candidates[std::size_t(i)]
-                        : std::span<const double>(found.design.added[std::size_t(i) - candidates.count()]));
     ByteWriter bytes;
-    bytes.put(poses.values);
+    bytes.put(chosen_by(found.design, candidates).values);
     return bytes.take();
   };
   // One at a time in each process: the parts of a plan keep its threads busy.

@@ -51,6 +51,7 @@ class ListEvaluation {
     }
     if (!near.empty()) notes_.push_back(margin_note(list.name, near));
     settings_.poses = int(poses_.count());
+    fill_pool();
     if (std::string note = choose_form(problem, study_, settings_); !note.empty()) notes_.push_back(std::move(note));
   }
 
@@ -78,7 +79,8 @@ class ListEvaluation {
     fill_poses(plan, study_, poses_, shape, judgement);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
-    if (settings_.robust && !stopped) plan.robust = judge_robust_list(problem, study_, settings_, poses_, monitor_);
+    if (settings_.robust && !stopped)
+      plan.robust = judge_robust_list(problem, study_, settings_, pool_, in_pool_, monitor_);
     if (options_.drop && !stopped) result.drop = drop(*options_.drop, phi, references);
     if (options_.add && !monitor_.should_stop()) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();
@@ -141,26 +143,22 @@ class ListEvaluation {
     return references;
   }
 
-  /// Over the candidates and the list itself, so that the bound holds for the list too.
-  Bound bound_of(const std::string& criterion) {
-    Configurations pool = study_.configurations;
+  /// The candidates and what the list has beside them, so that bounds hold for the list too.
+  void fill_pool() {
+    pool_ = study_.configurations;
     for (std::size_t i = 0; i < poses_.count(); ++i) {
       const auto q = poses_[i];
-      bool known = false;
-      for (std::size_t j = 0; j < pool.count() && !known; ++j) known = std::equal(q.begin(), q.end(), pool[j].begin());
-      if (!known) append(pool, q);
+      std::size_t j = 0;
+      while (j < pool_.count() && !std::equal(q.begin(), q.end(), pool_[j].begin())) ++j;
+      if (j == pool_.count()) append(pool_, q);
+      in_pool_.push_back(int(j));
     }
-    SearchRequest wanted = search_request(settings_, settings_.poses);
-    wanted.criterion = criterion;
-    return bound_only(search_parts(study_, criterion, pool, settings_.planner.threads), wanted, monitor_);
   }
 
-  Configurations without(const std::vector<int>& members) const {
-    Configurations left;
-    left.dimension = poses_.dimension;
-    for (std::size_t i = 0; i < poses_.count(); ++i)
-      if (std::find(members.begin(), members.end(), int(i)) == members.end()) append(left, poses_[i]);
-    return left;
+  Bound bound_of(const std::string& criterion) {
+    SearchRequest wanted = search_request(settings_, settings_.poses);
+    wanted.criterion = criterion;
+    return bound_only(search_parts(study_, criterion, pool_, settings_.planner.threads), wanted, monitor_);
   }
 
   /// Φ of another list; −∞ where it leaves parameters open.
@@ -176,7 +174,7 @@ class ListEvaluation {
   std::vector<double> without_each(double phi) const {
     std::vector<double> result;
     for (int i = 0; i < int(poses_.count()); ++i) {
-      const auto left = poses_.count() > 1 ? judged(without({i})) : std::nullopt;
+      const auto left = poses_.count() > 1 ? judged(without(poses_, {i})) : std::nullopt;
       result.push_back(left ? std::min(1.0, std::exp((left->second - phi) / degree())) : 0.0);
     }
     return result;
@@ -207,7 +205,7 @@ class ListEvaluation {
     std::vector<int> dropped;
     for (int i = 0; i < n; ++i)
       if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
-    ListChange change = changed(without(dropped), phi);
+    ListChange change = changed(without(poses_, dropped), phi);
     for (const int i : dropped) change.poses.push_back(i + 1);
     return change;
   }
@@ -231,12 +229,8 @@ class ListEvaluation {
     wanted.make_space = space_maker(study_, settings_.criterion);
     wanted.references = references;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
-    Configurations longer = poses_, added;
-    added.dimension = poses_.dimension;
-    const std::size_t n = study_.configurations.count();
-    for (const int i : found.design.members)
-      append(added, std::size_t(i) < n ? study_.configurations[std::size_t(i)]
-                                       : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    const Configurations added = chosen_by(found.design, study_.configurations);
+    Configurations longer = poses_;
     longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
     study_.measured.values.resize(study_.measured.values.size() - poses_.values.size());
     ListChange change = changed(longer, phi);
@@ -252,7 +246,8 @@ class ListEvaluation {
   std::optional<DesignSpec::MinimumDistance> stated_distance_;
   Settings settings_;
   Study study_;
-  Configurations poses_;
+  Configurations poses_, pool_;
+  std::vector<int> in_pool_;  ///< the list's poses, by index in the pool
   std::vector<std::string> notes_;
   std::shared_ptr<const DesignMeasure> measure_;  ///< by the criterion in use
   double degree_ = 0.0;

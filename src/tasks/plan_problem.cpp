@@ -182,12 +182,7 @@ class PlanSearch {
 
   Plan assemble(const SearchResult& found) const {
     // Judged from the configurations that will be written, not from anything the search kept.
-    Configurations chosen;
-    chosen.dimension = study_.configurations.dimension;
-    const std::size_t n = study_.configurations.count();
-    for (const int i : found.design.members)
-      append(chosen, std::size_t(i) < n ? study_.configurations[std::size_t(i)]
-                                        : std::span<const double>(found.design.added[std::size_t(i) - n]));
+    const Configurations chosen = chosen_by(found.design, study_.configurations);
     const Configurations poses = with_fixed(chosen);
     const Judgement judgement = judge(study_, poses, settings_);
     Plan plan;

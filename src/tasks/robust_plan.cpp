@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "posewright/criterion/registry.hpp"
 #include "posewright/study/drawn_robots.hpp"
 #include "posewright/study/judgement.hpp"
 
@@ -15,7 +13,7 @@ namespace {
 RobustPlan figures_of(const RobustResult& result, const Settings& settings, bool searched) {
   RobustPlan plan;
   plan.draws = settings.robust->draws;
-  plan.measure = robust_aim_text(settings.robust->aim);
+  plan.aim = settings.robust->aim;
   plan.searched = searched;
   plan.references = result.references;
   plan.nominal = result.nominal.efficiency;
@@ -29,20 +27,16 @@ RobustPlan figures_of(const RobustResult& result, const Settings& settings, bool
 }
 
 /// What is left of the plan without each of its poses, for the nominal robot.
-std::vector<double> without_each(const SearchResult& found, const Study& study, const Settings& settings,
-                                 const Configurations& all) {
-  const auto phi_of_members = [&](std::size_t left_out) {
-    Configurations some;
-    some.dimension = all.dimension;
-    for (std::size_t i = 0; i < found.design.members.size(); ++i)
-      if (i != left_out) append(some, all[std::size_t(found.design.members[i])]);
-    return phi_of(*found.measure, settings.criterion, study, some, settings);
+std::vector<double> without_each(const SearchResult& found, const Study& study, const Settings& settings) {
+  const Configurations chosen = chosen_by(found.design, study.configurations);
+  const auto phi = [&](const Configurations& poses) {
+    return phi_of(*found.measure, settings.criterion, study, poses, settings);
   };
-  const double whole = phi_of_members(found.design.members.size());
-  std::vector<double> without;
-  for (std::size_t i = 0; i < found.design.members.size(); ++i)
-    without.push_back(std::min(1.0, std::exp((phi_of_members(i) - whole) / (found.degree > 0 ? found.degree : 1.0))));
-  return without;
+  const double whole = phi(chosen), degree = found.degree > 0 ? found.degree : 1.0;
+  std::vector<double> left;
+  for (std::size_t i = 0; i < chosen.count(); ++i)
+    left.push_back(std::min(1.0, std::exp((phi(without(chosen, {int(i)})) - whole) / degree)));
+  return left;
 }
 
 }  // namespace
@@ -50,35 +44,26 @@ std::vector<double> without_each(const SearchResult& found, const Study& study, 
 RobustPlan plan_robust(const Problem& problem, const Study& study, const Settings& settings, SearchResult& found,
                        const Monitor& monitor) {
   Configurations all = study.configurations;
-  all.rows.clear();
   // What optimal weights use counts as candidates, as in the certificate.
   std::vector<std::vector<double>>& added = found.design.added;
   added.insert(added.end(), found.support.begin(), found.support.end());
   for (const std::vector<double>& q : added) append(all, q);
   const DrawnRobots robots(problem, study, all, settings.planner.seed, settings.planner.threads, monitor);
-  Spacing spacing;
   const RobustResult result =
-      search_robust(robust_request(study, settings, robots, all, found.design.members, spacing), monitor);
+      search_robust(robust_request(study, settings, robots, all, found.design.members), monitor);
   if (result.plan != found.design.members) {
     found.design.members = result.plan;
     found.design.optimal = false;
-    found.without = without_each(found, study, settings, all);
+    found.without = without_each(found, study, settings);
   }
   found.design.exchanges += result.exchanges;
   return figures_of(result, settings, true);
 }
 
 RobustPlan judge_robust_list(const Problem& problem, const Study& study, const Settings& settings,
-                             const Configurations& poses, const Monitor& monitor) {
-  Configurations all = study.configurations;
-  all.rows.clear();
-  std::vector<int> plan(poses.count());
-  std::iota(plan.begin(), plan.end(), int(all.count()));
-  for (std::size_t i = 0; i < poses.count(); ++i) append(all, poses[i]);
-  const DrawnRobots robots(problem, study, all, settings.planner.seed, settings.planner.threads, monitor);
-  Spacing spacing;
-  return figures_of(judge_robust(robust_request(study, settings, robots, all, std::move(plan), spacing), monitor),
-                    settings, false);
+                             const Configurations& candidates, const std::vector<int>& list, const Monitor& monitor) {
+  const DrawnRobots robots(problem, study, candidates, settings.planner.seed, settings.planner.threads, monitor);
+  return figures_of(judge_robust(robust_request(study, settings, robots, candidates, list), monitor), settings, false);
 }
 
 }  // namespace posewright

@@ -119,6 +119,11 @@ class SeveralProcesses(unittest.TestCase):
         self.the_same_in_any_number_of_processes("compare", "kr270/elastostatic.yaml", "--poses", "20", "--candidates",
                                                  "150", "--restarts", "1")
 
+    def test_drawn_robots_of_a_plan_are_shared(self):
+        self.needs_processes()
+        self.the_same_in_any_number_of_processes("plan", "instruments/camera_on_hand.yaml", "--method", "greedy", "--candidates", "120",
+                                                 "--robust", "12", "--robust-measure", "tail 0.25", "-o", "-", "--poses-csv", "-")
+
     def test_restarts_and_boxes_of_a_plan_are_shared(self):
         self.needs_processes()
         files = ["-o", "-", "--poses-csv", "-"]

@@ -145,13 +145,14 @@ TEST(RobustAims, SupportingWeightsBoundTheAimFromAbove) {
   for (const char* text : {"mean", "worst", "tail 0.4"}) {
     const RobustAim aim = *robust_aim_of(text);
     std::vector<double> at(numbers.row(0, 0), numbers.row(0, 0) + scenarios);
-    const std::vector<double> lambda = supporting_weights(aim, at, weights, scenarios);
+    Combination combination(aim, weights, scenarios);
+    const std::vector<double> lambda = combination.supporting(at);
     EXPECT_NEAR(std::accumulate(lambda.begin(), lambda.end(), 0.0), 1.0, 1e-12);
     for (std::size_t i = 0; i < numbers.count(); ++i) {
       const std::vector<double> x(numbers.row(i, 0), numbers.row(i, 0) + scenarios);
       const double linear = std::inner_product(x.begin(), x.end(), lambda.begin(), 0.0);
       EXPECT_LE(by_words(aim, x), linear + 1e-12);
-      EXPECT_NEAR(combined(aim, x, weights, scenarios), by_words(aim, x), 1e-12);
+      EXPECT_NEAR(combination.of(x), by_words(aim, x), 1e-12);
     }
   }
 }

@@ -15,6 +15,7 @@ namespace posewright {
 /// The candidates as they would be if the parameters had other values: same columns, other blocks.
 struct Scenario {
   std::shared_ptr<const BlockArray> blocks;  ///< one for each candidate of the view; all zero: tells nothing there
+  int nuisance = 0;                          ///< leading columns
   double weight = 1.0;                       ///< > 0
   double reference = 0.0;                    ///< log det of the interest information that counts as efficiency 1
   Eigen::MatrixXd prior{};                   ///< information that is there before; empty: none
@@ -27,7 +28,7 @@ struct Scenario {
 class ScenarioCriterion : public Criterion {
  public:
   /// @param whole  weight of all scenarios that there are, where these are the worst of them
-  ScenarioCriterion(std::vector<Scenario> scenarios, int nuisance, const RobustAim& aim, double whole);
+  ScenarioCriterion(std::vector<Scenario> scenarios, const RobustAim& aim, double whole);
   std::string name() const override { return "robust"; }
   /// That of the view's own blocks: Φ is no function of their information.
   const InformationFunction& function() const override { return function_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/support/random.hpp"
 
 namespace posewright {
 
@@ -40,6 +42,13 @@ std::vector<std::optional<double>> values_by_pattern(const VariantColumns& colum
 
 /// The columns that `kept` (ascending indices into columns) names.
 VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept);
+
+/// ξ − nominal of every parameter of a model of so many, for a robot drawn from the tolerances: a normal error of one
+/// tolerance (1σ) in each column, independent; zero elsewhere.
+std::vector<double> drawn_correction(const VariantColumns& columns, std::size_t parameters, Random& random);
+
+/// 1σ of every column before anything is measured, SI.
+Eigen::VectorXd tolerances_of(const VariantColumns& columns);
 
 /// The variant called `name`, or the one the design block names, or the first. Throws InputError for an unknown name.
 const VariantSpec& find_variant(const Problem& problem, const std::string& name);

@@ -11,6 +11,7 @@
 
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/criterion/observability_indices.hpp"
+#include "posewright/support/robust_aim.hpp"
 
 namespace posewright {
 
@@ -210,7 +211,7 @@ struct Reliance {
 /// What a plan is worth for robots drawn from the tolerances, and the plan for the nominal robot beside it.
 struct RobustPlan {
   int draws = 0;
-  std::string measure;   ///< mean, worst, tail and a share: what counts of the efficiencies
+  RobustAim aim;
   bool searched = true;  ///< false: a given list, which was judged alone
   /// Of every drawn robot: log det that no plan of as many of the candidates exceeds; D-efficiency against it.
   std::vector<double> references, nominal, efficiency;

@@ -70,7 +70,8 @@ struct RobustSpec {
 };
 /// The nominal robot alone, whatever else is said.
 inline constexpr RobustSpec no_drawn_robots{0, {}, 0};
-inline constexpr int most_robust_draws = 100'000;
+// Of one robot nothing can be said to be worst; of more, one number for each and each candidate would fill the memory.
+inline constexpr int least_robust_draws = 2, most_robust_draws = 10'000;
 
 struct DesignSpec {
   std::optional<Located<std::string>> variant;  ///< default: the first

@@ -6,12 +6,17 @@
 
 #include "posewright/problem/design_specs.hpp"
 
-/// The scaling as a word, the same in files, on the command line and in Python.
+/// Words of the design, the same in files, on the command line and in Python.
 namespace posewright {
 
 /// tolerance, norm or none.
 std::string scaling_text(Scaling scaling);
 /// None for another word.
 std::optional<Scaling> scaling_of(std::string_view word);
+
+/// How many robots to draw and what counts of them, either left out as usual; none where both are.
+/// @param option  what the measure is called there, for messages
+/// Throws InputError for another measure.
+std::optional<RobustSpec> robust_spec(std::optional<int> draws, const std::string& measure, const std::string& option);
 
 }  // namespace posewright

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "posewright/blocks/block_array.hpp"
@@ -19,7 +20,7 @@ struct RobustRequest {
   int scenarios = 0;  ///< ≥ 1
   int poses = 0, nuisance = 0;
   Repeats repeats;
-  const Spacing* spacing = nullptr;  ///< with a point for each candidate; null: no minimum distance
+  std::optional<Spacing> spacing;  ///< with a point for each candidate; none: no minimum distance
   PlannerOptions planner;
   std::vector<int> plan;  ///< the nominal plan, by index
   BlockArray nominal;     ///< raw blocks of all candidates at nominal parameters
@@ -45,7 +46,6 @@ struct RobustResult {
   std::vector<int> plan;           ///< ascending
   long unreached = 0;              ///< pairs of scenario and candidate where nothing can be measured
   long exchanges = 0;
-  int searched = 0;      ///< scenarios that the search before the last looked at
   bool stopped = false;  ///< before all was done: `plan` is the best so far, and with no scenario known the given one
 };
 

@@ -36,6 +36,6 @@ class DrawnRobots {
 /// @param configurations  to choose from: the study's candidates, then others
 /// @param plan            the nominal plan, by index
 RobustRequest robust_request(const Study& study, const Settings& settings, const DrawnRobots& robots,
-                             const Configurations& configurations, std::vector<int> plan, Spacing& spacing);
+                             const Configurations& configurations, std::vector<int> plan);
 
 }  // namespace posewright

@@ -24,6 +24,9 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
 Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
                       const Configurations& measured, int poses);
 
+/// The same for these candidates.
+Spacing with_points(Spacing spacing, const Configurations& candidates);
+
 /// The distances for people: "5 deg", "2.5 to 5 deg or 12 mm".
 std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);
 

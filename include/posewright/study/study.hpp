@@ -112,6 +112,12 @@ Configurations known_before(const Study& study);
 /// The configurations that are measured already, then these.
 Configurations with_measured(const Study& study, const Configurations& poses);
 
+/// What a search chose: of the candidates, and what it found beyond them.
+Configurations chosen_by(const Design& design, const Configurations& candidates);
+
+/// The list without those of these indices.
+Configurations without(const Configurations& list, const std::vector<int>& left_out);
+
 /// One configuration more.
 void append(Configurations& list, std::span<const double> q);
 /// The i-th of `from` with its row.

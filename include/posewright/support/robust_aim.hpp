@@ -23,16 +23,28 @@ std::optional<RobustAim> robust_aim_of(std::string_view text);
 /// What is to be said where there is none.
 inline constexpr const char* robust_aims_allowed = "allowed: mean, worst, or tail and a share: tail 0.1";
 
-/// The aim's number: the weighted mean of all values; the least; the mean of the lowest until their weights sum to the
-/// share of all weight `whole` (expected shortfall: Rockafellar & Uryasev 2000). A concave function of the values.
-/// @param weights  > 0, one for each value
-/// @param whole    weight of all robots, where `values` are only some of them (the worst)
-double combined(const RobustAim& aim, const std::vector<double>& values, const std::vector<double>& weights,
-                double whole);
+/// The aim's number of one value a robot: the weighted mean of all; the least; the mean of the lowest until their
+/// weights sum to the share of all weight (expected shortfall: Rockafellar & Uryasev 2000). A concave function of the
+/// values. Made once for many values; does not allocate then.
+class Combination {
+ public:
+  /// @param weights  > 0, one for each value
+  /// @param whole    weight of all robots, where there are values of some of them (the worst) alone
+  Combination(const RobustAim& aim, std::vector<double> weights, double whole);
 
-/// λ ≥ 0, Σλ = 1, of a supergradient there: combined(x) ≤ Σ λ_k x_k for all x, with equality at `values` (mean, tail
-/// and, for `worst`, the one value that is least).
-std::vector<double> supporting_weights(const RobustAim& aim, const std::vector<double>& values,
-                                       const std::vector<double>& weights, double whole);
+  double of(const std::vector<double>& values);
+  /// λ ≥ 0, Σλ = 1, of a supergradient there: of(x) ≤ Σ λ_k x_k for all x, with equality at `values`. Valid until the
+  /// next call.
+  const std::vector<double>& supporting(const std::vector<double>& values);
+
+ private:
+  RobustAim aim_;
+  std::vector<double> weights_, lambda_;
+  double wanted_;
+  std::vector<std::size_t> order_;
+};
+
+/// Weights of the soft minimum −ln(Σ e^{−p x})/p, Σ = 1: for a large p nearly all on the least values.
+std::vector<double> soft_minimum_weights(const std::vector<double>& values, double sharpness);
 
 }  // namespace posewright

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "posewright/blocks/block_array.hpp"
@@ -19,6 +20,18 @@ inline Eigen::MatrixXd summed_information(const BlockArray& blocks, const Eigen:
   const auto m = blocks.columns();
   Eigen::MatrixXd sum = prior != nullptr ? *prior : Eigen::MatrixXd::Zero(m, m);
   for (const int i : members) sum += block_information(blocks, i);
+  return sum;
+}
+
+/// Weights on candidates, Σw = 1.
+using CandidateWeights = std::vector<std::pair<int, double>>;
+
+/// Prior per unit of weight (empty: none) plus Σ w JᵀJ.
+inline Eigen::MatrixXd weighted_information(const BlockArray& blocks, const Eigen::MatrixXd& prior,
+                                            const CandidateWeights& weights) {
+  const auto m = blocks.columns();
+  Eigen::MatrixXd sum = prior.size() > 0 ? prior : Eigen::MatrixXd::Zero(m, m);
+  for (const auto& [candidate, weight] : weights) sum += weight * block_information(blocks, candidate);
   return sum;
 }
 

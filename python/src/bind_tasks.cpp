@@ -145,6 +145,13 @@ py::dict estimated(const Calibration& c, Value value) {
   return result;
 }
 
+py::dict frames_of(const MadeCalibration& made) {
+  py::dict result;
+  for (const PlacedFrame& frame : made.value.frames)
+    result[py::str(frame.name)] = array_of(Eigen::MatrixXd(frame.X.matrix()));
+  return result;
+}
+
 MadeSimulation simulate(const Shared& problem, const py::object& poses, const std::string& variant,
                         const std::string& truth, long long draws, bool exact, double missing, double outliers,
                         const py::object& weights, bool prior, long long validation, const std::string& format,
@@ -428,6 +435,8 @@ void bind_classes(py::module_& m) {
       .def_property_readonly(
           "columns", [](const C& c) { return c.value.columns; }, "of the covariance")
       .def_property_readonly("covariance", [](const C& c) { return array_of(Eigen::MatrixXd(c.value.fit.covariance)); })
+      .def_property_readonly("frames", &frames_of,
+                             "{frame: 4 × 4} where the estimate puts base, camera, board, stations")
       .def_property_readonly(
           "noise_factor", [](const C& c) { return c.value.fit.noise_factor; }, "noise found over noise stated")
       .def_property_readonly("notes", [](const C& c) { return c.value.notes; })

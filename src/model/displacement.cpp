@@ -1,5 +1,8 @@
 #include "displacement.hpp"
 
+#include <cmath>
+#include <limits>
+
 namespace posewright {
 
 Frame<double> frame_of(const Eigen::Isometry3d& X) {
@@ -26,7 +29,10 @@ void change_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> twists) {
 
 void append_displacement(std::vector<Parameter>& parameters, const std::string& name, const Eigen::Isometry3d& X,
                          double length_tolerance, double angle_tolerance) {
-  const Eigen::Vector3d nominal = X.linear().transpose() * X.translation();
+  Eigen::Vector3d nominal = X.linear().transpose() * X.translation();
+  // What turning by right angles leaves of zero is zero: tables show it.
+  for (double& value : nominal)
+    if (std::abs(value) < 4 * std::numeric_limits<double>::epsilon() * X.translation().norm()) value = 0;
   for (int k = 0; k < 6; ++k)
     parameters.push_back({name + "." + displacement_names[std::size_t(k)], k < 3 ? "m" : "rad",
                           k < 3 ? nominal[k] : 0.0, k < 3 ? length_tolerance : angle_tolerance, Role::interest});

@@ -72,7 +72,7 @@ std::string parameters_text(const Calibration& c) {
                : p.label.role == Role::nuisance ? "nuisance"
                                                 : ""});
   }
-  std::string text = table.text() + orientations_text(c);
+  std::string text = table.text() + orientations_text(c) + frames_text(c);
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
     text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
   const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),

@@ -331,8 +331,12 @@ class CalibrationRun {
     const auto robot = make_model(problem_, spec_);
     const std::vector<double> own(result_.correction.begin(),
                                   result_.correction.begin() + std::ptrdiff_t(robot->parameters().size()));
-    for (CalibratedValue& value : calibrated_values(problem_, spec_, *robot, own))
-      result_.values.push_back({std::move(value), {}});
+    std::vector<CalibratedValue> values = calibrated_values(problem_, spec_, *robot, own);
+    result_.frames = placed_frames(problem_, spec_, values);
+    // One that is nominal is half of what another one's place means: readings are in the axes of a station.
+    if (std::ranges::none_of(result_.frames, [this](const PlacedFrame& frame) { return is_estimated(frame); }))
+      result_.frames.clear();
+    for (CalibratedValue& value : values) result_.values.push_back({std::move(value), {}});
     for (std::size_t j = 0; j < columns_.selected.size(); ++j)
       if (columns_.selected[j] < int(result_.values.size()))
         result_.values[std::size_t(columns_.selected[j])].sigma =
@@ -340,6 +344,11 @@ class CalibrationRun {
     for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
     for (auto* more : {&nuisance, &left_out_})
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
+  }
+
+  bool is_estimated(const PlacedFrame& frame) const {
+    return std::ranges::any_of(columns_.parameters,
+                               [&](const Parameter& p) { return p.name.starts_with(frame.name + "."); });
   }
 
   /// Base and tool, geometry, stiffness one after the other, beside the joint estimate.

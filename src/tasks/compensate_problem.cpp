@@ -208,6 +208,9 @@ class Compensator {
   }
 
   void add_notes() {
+    if (std::ranges::all_of(correction_, [](double c) { return c == 0; }))
+      result_.notes.push_back("nothing of the robot was estimated in variant '" + calibrated_variant(problem_).name +
+                              "': there is nothing to compensate, poses stay as they are listed");
     const std::string base = shown_displacement(*tip_, correction_, "base."),
                       tool = shown_displacement(*tip_, correction_, "tool.");
     if (!base.empty() && !options_.solver.with_base)

@@ -1,19 +1,21 @@
 """The files of a calibrated robot are that robot, by a forward kinematics of their own: robot_files.py PROGRAM SOURCE ur|xacro.
 
 The calibrated robot is a product of transforms by the definition of its parameters (docs/problem-file.md). Against it:
-kinematics.yaml put into a URDF as ur_description makes it, the URDF and the compensated joints; and what the program xacro
-makes of the corrected xacro file (status 77 without that program)."""
+kinematics.yaml put into a URDF as ur_description makes it, the URDF and the compensated joints; and what xacro
+makes of the corrected xacro file: the program of ROS, or npm's xacro-parser (status 77 without both)."""
 import hashlib
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-import xml.etree.ElementTree as xml
 
 import numpy as np
 import yaml
+
+from urdf_kinematics import chain_of, forward
 
 PROGRAM, SOURCE, WHICH = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
 JOINTS = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"]
@@ -21,47 +23,6 @@ LINKS = ["shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"]
 # config/ur10/default_kinematics.yaml of ur_description: x y z roll pitch yaw
 UR10 = [[0, 0, 0.1273, 0, 0, 0], [0, 0, 0, 1.570796327, 0, 0], [-0.612, 0, 0, 0, 0, 0], [-0.5723, 0, 0.163941, 0, 0, 0],
         [0, -0.1157, 0, 1.570796327, 0, 0], [0, 0.0922, 0, 1.570796326589793, 3.141592653589793, 3.141592653589793]]
-
-
-def turn(axis, angle):
-    """Rodrigues."""
-    x, y, z = axis
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    T = np.eye(4)
-    T[:3, :3] += np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
-    return T
-
-
-def placed(x, y, z, roll, pitch, yaw):
-    T = turn((0, 0, 1), yaw) @ turn((0, 1, 0), pitch) @ turn((1, 0, 0), roll)
-    T[:3, 3] = x, y, z
-    return T
-
-
-def chain_of(urdf):
-    """Joints of a URDF from its root to the link `tool0`: name, moves, origin, axis."""
-    joints = {joint.find("child").get("link"): joint for joint in xml.fromstring(urdf.encode()).findall("joint")}
-    link, chain = "tool0", []
-    while link in joints:
-        joint = joints[link]
-        origin, axis = joint.find("origin"), joint.find("axis")
-        numbers = lambda name: [float(v) for v in (origin.get(name) if origin is not None and origin.get(name) else "0 0 0").split()]
-        chain.insert(0, (joint.get("name"), joint.get("type") != "fixed", placed(*numbers("xyz"), *numbers("rpy")),
-                         [float(v) for v in axis.get("xyz").split()] if axis is not None else [1, 0, 0]))
-        link = joint.find("parent").get("link")
-    return chain
-
-
-def forward(chain, q, off=None):
-    """@param off  by joint: dx dy dz rx ry rz of its frame and its zero position"""
-    T, angles = np.eye(4), iter(q)
-    for name, moves, origin, axis in chain:
-        T = T @ origin
-        if not moves:
-            continue
-        d = off[name] if off else np.zeros(7)
-        T = T @ placed(*d[:6]) @ turn(axis, next(angles) + d[6])
-    return T
 
 
 def ur_description(kinematics):
@@ -163,10 +124,24 @@ XACRO = '''<?xml version="1.0"?>
 '''
 
 
-def check_xacro(folder):
-    if shutil.which("xacro") is None:
-        print("no program xacro: not checked (it comes with ROS)")
+def provide_xacro(folder):
+    """ROS's program, or one of its name that is npm's parser."""
+    if shutil.which("xacro") is not None:
+        print("xacro of ROS")
+        return
+    if shutil.which("node") is None or not (SOURCE / "report" / "node_modules" / "xacro-parser").exists():
+        print("neither ROS's xacro nor npm's xacro-parser: not checked")
         sys.exit(77)
+    tools = folder / "bin"
+    tools.mkdir()
+    (tools / "xacro").write_text(f'#!/bin/sh\nexec node "{SOURCE}/tests/cli/xacro.mjs" "$@"\n')
+    (tools / "xacro").chmod(0o755)
+    os.environ["PATH"] = f"{tools}:{os.environ['PATH']}"
+    print("npm's xacro-parser in place of ROS's xacro")
+
+
+def check_xacro(folder):
+    provide_xacro(folder)
     links = ""
     for k, (origin, axis) in enumerate([("0 0 0.4", "0 0 1"), ("0.1 0 0", "0 1 0"), ("0 0 ${reach}", "0 1 0"), ("${reach / 2} 0 0.05", "1 0 0"),
                                         ("${reach / 2} 0 0", "0 1 0"), ("0.1 0 0", "1 0 0")]):

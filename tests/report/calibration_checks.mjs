@@ -49,6 +49,12 @@ export async function checkCalibration(page, { data }) {
   // 68.27 % of normal numbers are within one σ, bins 7 to 10 (tables).
   near(expected.slice(7, 11).reduce((a, b) => a + b) / all, 0.682689, 1e-5, 'of which 68.27 % within 1 σ');
   await checkParameters(page, c);
+  const frames = await rowsOf(page, 'Frames');
+  check(frames.map((r) => r[0]).join() === c.frames.map((f) => f.name).join() && frames.length > 0, 'every frame has a row');
+  c.frames.forEach((f, k) => {
+    f.position.forEach((v, i) => near(read(frames[k][2 + i]), mm * v, 1e-6, `position of ${f.name}`));
+    f.quaternion_xyzw.forEach((v, i) => check(Math.abs(read(frames[k][5 + i]) - v) < 1e-8, `quaternion of ${f.name}`));
+  });
   const tile = page.locator('.tile', { hasText: 'poses not fitted' });
   near(
     read(await tile.locator('b').textContent()),

@@ -18,6 +18,7 @@
 #include "posewright/calibration/score_tests.hpp"
 #include "posewright/calibration/smooth_effect.hpp"
 #include "posewright/lists/parameters_file.hpp"
+#include "posewright/model/placed_frames.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
 
@@ -95,8 +96,9 @@ struct Calibration {
   Fit fit;
   std::vector<CalibratedParameter> parameters;  ///< interest, nuisance, then those not estimated
   std::vector<CalibratedOrientation> orientations;
-  LeaveOut left_out;    ///< does the estimate predict poses that it has not seen?
-  std::string weakest;  ///< weakest_combination()
+  std::vector<PlacedFrame> frames;  ///< where the estimate puts them; empty: none was estimated
+  LeaveOut left_out;                ///< does the estimate predict poses that it has not seen?
+  std::string weakest;              ///< weakest_combination()
   ResidualTests tests;
   std::vector<ScoreTest> effects;  ///< not fitted, beside the fit that counts no smooth effect; best first
   SmoothEffect smooth;             ///< that the residuals of a fit hold which counts none

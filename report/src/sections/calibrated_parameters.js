@@ -1,5 +1,6 @@
 import { h, section, svg } from '../dom.js';
 import { number, quantity, shownUnit } from '../text/units.js';
+import { calibratedFrames } from './calibrated_frames.js';
 
 /** Where the interval lies from nominal, in tolerances; a mark at the edge says that it goes on beyond. */
 const reach = 3;
@@ -133,6 +134,7 @@ export function calibratedParametersSection(c) {
     ),
     notEstimated(c),
     c.orientations.length > 0 ? h('ul', { class: 'sentences' }, c.orientations.map(turned)) : null,
+    calibratedFrames(c),
     c.noise_factor > 1
       ? h(
           'p',

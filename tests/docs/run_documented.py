@@ -1,6 +1,6 @@
 """The commands of README and docs run as they are written: run_documented.py SOURCE PROGRAM [PAGE…]; SOURCE --list PAGE…
 compares the pages that have commands with a list, and what is shortened with what the pages have. Of the first hour
-every figure is compared with what the commands print.
+every figure is compared with what the commands print, of README the first lines of the plan.
 
 A page's commands are its ```sh blocks and its indented lines that begin with `posewright`, in their order, in one shell and one
 folder that holds `examples` and the files that the page's reader has by then. Commands that take long are listed here, once."""
@@ -167,6 +167,17 @@ def check_first_hour(text, run, written):
         assert name in written, name
 
 
+def check_first_lines(text, root, path):
+    """`of COMMAND:` and an indented block: the command as it stands prints these lines, and would not print others."""
+    quoted = re.search(r"of `(posewright [^`]*)`:\n\n((?:    .*\n)+)", text)
+    output = subprocess.run([*quoted[1].split(), "-o", "-", "--poses-csv", "-", "--quiet"], cwd=root, env={**os.environ, "PATH": path},
+                            capture_output=True, text=True, check=True).stdout
+    complaints = lambda block: figures.missing_lines(block.splitlines(), output)
+    assert not complaints(quoted[2]), "\n".join(complaints(quoted[2]))
+    unseen = figures.unnoticed(quoted[2], complaints)
+    assert not unseen, f"may be changed unseen: {unseen}"
+
+
 def main(source, program, *pages):
     root = pathlib.Path(source).resolve()
     every = ["README.md"] + sorted(f"docs/{p.name}" for p in (root / "docs").glob("*.md"))
@@ -185,6 +196,8 @@ def main(source, program, *pages):
             bad.append(page)
         elif page == "docs/getting-started.md":
             check_first_hour((root / page).read_text(), run, written)
+        elif page == "README.md":
+            check_first_lines((root / page).read_text(), root, path)
     sys.exit(f"failed: {', '.join(bad)}" if bad else 0)
 
 

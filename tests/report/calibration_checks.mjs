@@ -52,7 +52,7 @@ export async function checkCalibration(page, { data }) {
   const frames = await rowsOf(page, 'Frames');
   check(frames.map((r) => r[0]).join() === c.frames.map((f) => f.name).join() && frames.length > 0, 'every frame has a row');
   c.frames.forEach((f, k) => {
-    f.position.forEach((v, i) => near(read(frames[k][2 + i]), mm * v, 1e-6, `position of ${f.name}`));
+    f.position.forEach((v, i) => check(Math.abs(read(frames[k][2 + i]) - mm * v) < 6e-5, `position of ${f.name}`));
     f.quaternion_xyzw.forEach((v, i) => check(Math.abs(read(frames[k][5 + i]) - v) < 1e-8, `quaternion of ${f.name}`));
   });
   const tile = page.locator('.tile', { hasText: 'poses not fitted' });

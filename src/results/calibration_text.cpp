@@ -72,7 +72,7 @@ std::string parameters_text(const Calibration& c) {
                : p.label.role == Role::nuisance ? "nuisance"
                                                 : ""});
   }
-  std::string text = table.text() + orientations_text(c) + frames_text(c);
+  std::string text = table.text() + orientations_text(c);
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
     text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
   const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
@@ -210,10 +210,11 @@ std::string chance_text(double probability) {
 }
 
 std::string calibration_text(const Calibration& c) {
-  return headline(c) + "\n" + parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
-         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
-         predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) +
-         revisits_text(c) + effects_text(c) + left_out_text(c) + not_in_auto_text(c) + outliers_text(c);
+  return headline(c) + "\n" + parameters_text(c) + frames_text(c) +
+         (c.compensator ? compensator_text(*c.compensator) : "") + (c.platform ? platform_text(*c.platform) : "") +
+         steps_text(c) + residuals_text(c) + axes_text(c) + predicted_poses_text(c) +
+         histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) + revisits_text(c) + effects_text(c) +
+         left_out_text(c) + not_in_auto_text(c) + outliers_text(c);
 }
 
 }  // namespace posewright

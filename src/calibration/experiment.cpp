@@ -67,7 +67,7 @@ VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
   VirtualCalibration result;
   try {
     std::vector<double> truth;
-    const std::vector<MeasuredPose> poses = draw_readings(experiment, draw, truth);
+    const std::vector<MeasuredPose> poses = draw_readings(experiment, draw, truth, &result.lost);
     const Fit fitted = fit(*experiment.model, experiment.columns, poses, experiment.options.fit);
     result.end = fitted.converged ? VirtualCalibration::End::fitted : VirtualCalibration::End::not_converged;
     result.error = error_of(experiment, fitted, truth);
@@ -91,6 +91,7 @@ std::string bytes_of(const VirtualCalibration& c) {
   bytes.put(c.sigma);
   for (const double value : {c.interval, c.chi_square, c.mean_square, c.largest}) bytes.put(value);
   bytes.put(c.freedom);
+  bytes.put(c.lost);
   return bytes.take();
 }
 
@@ -103,6 +104,7 @@ VirtualCalibration calibration_in(std::string_view from) {
   bytes.get(c.sigma);
   for (double* value : {&c.interval, &c.chi_square, &c.mean_square, &c.largest}) bytes.get(*value);
   bytes.get(c.freedom);
+  bytes.get(c.lost);
   return c;
 }
 

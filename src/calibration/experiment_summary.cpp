@@ -56,11 +56,26 @@ void add_chi_square(const Draws& draws, bool tested, ExperimentSummary& summary)
   summary.rejected_error = binomial_error(*summary.rejected, draws.size());
 }
 
+void add_lost(const std::vector<VirtualCalibration>& all, std::size_t poses, ExperimentSummary& summary) {
+  summary.lost.assign(poses, 0.0);
+  double draws = 0;
+  for (const VirtualCalibration& draw : all) {
+    if (draw.lost.empty()) continue;
+    ++draws;
+    for (std::size_t k = 0; k < poses; ++k) summary.lost[k] += draw.lost[k];
+  }
+  for (double& share : summary.lost) {
+    share /= std::max(1.0, draws);
+    summary.lost_poses += share;
+  }
+}
+
 }  // namespace
 
 ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vector<VirtualCalibration>& all) {
   ExperimentSummary summary;
   summary.asked = int(all.size());
+  add_lost(all, experiment.poses.size(), summary);
   Draws draws;
   for (const VirtualCalibration& draw : all) {
     if (draw.end == End::fitted) draws.push_back(&draw);

@@ -44,9 +44,16 @@ class GrossErrors {
   Random random_;
 };
 
+bool can_read(const VirtualRobot& robot, std::size_t pose, const std::vector<double>& truth) {
+  if (pose >= robot.asked.size() || robot.asked[pose] == 0) return true;
+  std::vector<double> q(robot.configurations[pose].size());
+  return robot.model->settled(robot.configurations[pose], truth, q) && robot.model->measurable(q, truth);
+}
+
 }  // namespace
 
-std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth) {
+std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth,
+                                        std::vector<char>* lost) {
   const ExperimentOptions& options = experiment.options;
   const IdentificationModel& robot = *experiment.truth.model;
   Random random(options.seed ^ readings_stream, std::uint64_t(draw));
@@ -58,15 +65,23 @@ std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int
   Linearisation at;
   Eigen::VectorXd exact, z;
   std::vector<char> missing;
+  if (lost != nullptr) lost->assign(experiment.poses.size(), 0);
   for (std::size_t k = 0; k < experiment.poses.size(); ++k) {
     const MeasuredPose& wanted = experiment.poses[k];
-    if (!robot.predict_and_linearise(experiment.truth.configurations[k], truth, {}, at, exact))
-      throw CannotDo("pose " + std::to_string(wanted.id) + " is out of reach of the true robot");
+    const bool given = robot.predict_and_linearise(experiment.truth.configurations[k], truth, {}, at, exact) &&
+                       can_read(experiment.truth, k, truth);
+    if (!given) {
+      // The same numbers are drawn whether a pose is lost or not.
+      exact.setZero(Eigen::Index(robot.readings().size()));
+      at.covariance.setIdentity(exact.size(), exact.size());
+      if (lost != nullptr) (*lost)[k] = 1;
+    }
     z.resize(exact.size());
     for (double& value : z) value = random.normal();
     factorise_covariance(at.covariance, at.factor);
     z = at.factor.matrixL() * z;
     gross.apply(at.covariance, robot.rows_per_target(), z, missing);
+    if (!given) continue;
     MeasuredPose pose{wanted.id, wanted.q, {}};
     robot.shifted(exact, z, pose.y);
     for (Eigen::Index i = 0; i < pose.y.size(); ++i)

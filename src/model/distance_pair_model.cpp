@@ -109,7 +109,7 @@ bool DistancePairModel::do_linearise(const Point& at, std::span<const int> selec
     const Eigen::Vector3d from = target(ends[0].X, at.correction, std::size_t(t)),
                           to = target(ends[1].X, at.correction, std::size_t(t));
     const double d = (to - from).norm();
-    if (!spans(spec_, d)) return false;
+    if (!(d > 0)) return false;
     const Eigen::Vector3d e = (to - from) / d;
     Twist along[2];
     along[0] << -e, -from.cross(e);

@@ -12,6 +12,9 @@
 namespace posewright {
 namespace {
 
+// Each is looked at for every pose that is drawn.
+constexpr int most_readable_for = 1000;
+
 using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
@@ -133,11 +136,11 @@ WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const s
   WorkspaceSpec workspace;
   if (std::holds_alternative<SixLegsSpec>(robot)) {
     section.allow({"pose", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
-                   "uncalibrated"});
+                   "readable_for", "uncalibrated"});
     if (const Value* pose = section.find("pose")) read_pose(Section(*pose), workspace);
   } else {
     section.allow({"joints", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
-                   "uncalibrated"});
+                   "readable_for", "uncalibrated"});
     if (const Value* joints = section.find("joints")) read_joints(Section(*joints), workspace, folder);
   }
   if (const Value* tool = section.find("tool")) workspace.tool = read_tool_box(Section(*tool));
@@ -150,6 +153,8 @@ WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const s
     workspace.samplers = read_samplers(Section(*samplers));
     workspace.samplers_line = samplers->line();
   }
+  if (const Value* robots = section.find("readable_for"))
+    workspace.readable_for = int(robots->integer(0, most_readable_for));
   if (const Value* sigmas = section.find("uncalibrated"))
     workspace.uncalibrated = sigmas->number(Quantity::number, Sign::not_negative);
   return workspace;

@@ -37,6 +37,12 @@ Json draws_json(const Simulation& s) {
           {"interrupted", s.interrupted}};
 }
 
+Json lost_json(const Simulation& s) {
+  Json poses = Json::array();
+  for (const LostPose& pose : s.lost) poses.push_back({{"id", pose.id}, {"share", pose.share}});
+  return {{"poses_a_draw", s.summary.lost_poses}, {"poses", poses}};
+}
+
 Json parameter_json(const SimulatedParameter& p) {
   const auto figure = [&](double ParameterErrors::*member) {
     return p.errors ? Json((*p.errors).*member) : Json(nullptr);
@@ -92,6 +98,7 @@ Json figures_json(const Simulation& s, const SimulateOptions& options) {
           {"hidden_readings", s.hidden},
           {"options", options_json(options)},
           {"draws", draws_json(s)},
+          {"lost", lost_json(s)},
           {"parameters", parameters},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}}},
           {"sigma_error", s.summary.sigma_error},

@@ -11,6 +11,9 @@
 namespace posewright {
 namespace {
 
+// A pose's verdict must not change with the seed of a search.
+constexpr std::uint64_t readable_seed = 0x2ead;
+
 VariantColumns named_columns(const VariantColumns& all, const std::vector<std::string>& names) {
   std::vector<int> kept;
   for (const std::string& name : names) {
@@ -26,6 +29,19 @@ VariantColumns named_columns(const VariantColumns& all, const std::vector<std::s
   return subset(all, kept);
 }
 
+/// As many as the problem asks for, the same at every call.
+std::vector<std::vector<double>> robots_to_read(const Problem& problem, const VariantSpec& spec,
+                                                const IdentificationModel& model) {
+  std::vector<std::vector<double>> robots;
+  if (problem.workspace.readable_for == 0 || model.unmeasurable_reason().empty()) return robots;
+  const VariantColumns columns = select_columns(model, problem, spec);
+  for (int k = 0; k < problem.workspace.readable_for; ++k) {
+    Random random(readable_seed, std::uint64_t(k));
+    robots.push_back(drawn_correction(columns, model.parameters().size(), random));
+  }
+  return robots;
+}
+
 }  // namespace
 
 Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
@@ -38,7 +54,8 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
     variant.model->set_visibility({cell, cell->sight.get()});
   }
   variant.repeatability = problem.measurement.repeatability;
-  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor);
+  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor,
+                                                  robots_to_read(problem, spec, *variant.model));
   return variant;
 }
 

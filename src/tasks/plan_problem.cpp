@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fill_plan.hpp"
+#include "poses_at_risk.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/study/judgement.hpp"
@@ -209,6 +210,10 @@ class PlanSearch {
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;
+    if (std::string risk =
+            poses_at_risk(study_.first(), poses, int(study_.measured.count()) + 1, settings_.planner.seed);
+        !risk.empty())
+      plan.statistics.notes.push_back(std::move(risk));
     plan.proved_optimal = found.design.optimal;
     // A search that had its say before the signal came is not distinguished: the run was ended.
     plan.interrupted = found.stopped || monitor_.was_interrupted();

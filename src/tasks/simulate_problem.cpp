@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/planning/evaluate.hpp"
@@ -51,6 +53,10 @@ class SimulationRun {
     const std::vector<VirtualCalibration> draws = run_experiment(experiment_, monitor_);
     result_.interrupted = monitor_.should_stop();
     result_.summary = summarise(experiment_, draws);
+    for (std::size_t k = 0; k < experiment_.poses.size(); ++k)
+      if (result_.summary.lost[k] > 0) result_.lost.push_back({experiment_.poses[k].id, result_.summary.lost[k]});
+    result_.lost_because = truth_.model->unmeasurable_reason();
+    std::ranges::stable_sort(result_.lost, std::greater(), &LostPose::share);
     for (std::size_t j = 0; j < result_.summary.parameters.size(); ++j)
       result_.parameters[j].errors = result_.summary.parameters[j];
     if (result_.accuracy) {
@@ -108,6 +114,8 @@ class SimulationRun {
     for (const MeasuredPose& pose : experiment_.poses) configurations.push_back(pose.q);
     experiment_.truth.model = truth_.model.get();
     experiment_.truth.configurations = same_actuators(*fitted_.model, *truth_.model, configurations);
+    for (const std::vector<double>& q : experiment_.truth.configurations)
+      experiment_.truth.asked.push_back(char(truth_.model->measurable(q)));
     if (options_.truth_nominal && !experiment_.one_catalogue)
       throw CannotDo("variants '" + spec_.name + "' and '" + truth_spec_.name +
                      "' do not share one catalogue of parameters: their nominal values cannot be exchanged");

@@ -55,6 +55,7 @@ class Verdict {
       describe_coverage();
       describe_bias();
     }
+    describe_lost();
     describe_ends();
     describe_chi_square();
     if (!s_.summary.parameters.empty())
@@ -151,6 +152,17 @@ class Verdict {
     if (summary.failed > 0)
       say(fmt::format("{} of {} draws could not be calibrated and are in no figure; the first: {}", summary.failed,
                       summary.asked, summary.first_failure));
+  }
+
+  void describe_lost() {
+    if (s_.lost.empty()) return;
+    std::string which;
+    for (std::size_t i = 0; i < std::min(s_.lost.size(), names_shown); ++i)
+      which += fmt::format("{}pose {} in {:.0f} %", i == 0 ? "" : ", ", s_.lost[i].id, 100 * s_.lost[i].share);
+    if (s_.lost.size() > names_shown) which += fmt::format(", {} more less often", s_.lost.size() - names_shown);
+    say(fmt::format("{:.2g} of {} poses give no reading in the mean of the draws{}: {}; the prediction counts them all",
+                    s_.summary.lost_poses, s_.poses, s_.lost_because.empty() ? "" : " (" + s_.lost_because + ")",
+                    which));
   }
 
   void describe_chi_square() {

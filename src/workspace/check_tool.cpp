@@ -1,4 +1,3 @@
-
 #include "checks.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -6,19 +5,33 @@
 namespace posewright {
 namespace {
 
-/// What the instrument cannot see cannot be measured.
-class MeasurableCheck : public SingleCheck {
+/// What the instrument cannot see cannot be measured, and what it sees of the nominal robot alone is soon lost.
+class MeasurableCheck : public ValidityCheck {
  public:
-  explicit MeasurableCheck(const IdentificationModel& model)
-      : SingleCheck(model.unmeasurable_reason()), model_(model) {}
-  std::optional<int> margins() const override { return model_.measurable_margins(); }
+  MeasurableCheck(const IdentificationModel& model, std::span<const std::vector<double>> robots)
+      : model_(model), robots_(robots.begin(), robots.end()) {}
+
+  std::vector<std::string> reasons() const override {
+    std::vector<std::string> reasons = {model_.unmeasurable_reason()};
+    if (!robots_.empty()) reasons.push_back(reasons.front() + " within the tolerances");
+    return reasons;
+  }
+  int violation(std::span<const double> q) const override {
+    if (!model_.measurable(q)) return 0;
+    static thread_local std::vector<double> stands;
+    stands.resize(q.size());
+    for (const std::vector<double>& robot : robots_)
+      if (!model_.settled(q, robot, stands) || !model_.measurable(stands, robot)) return 1;
+    return -1;
+  }
+  std::optional<int> margins() const override { return robots_.empty() ? model_.measurable_margins() : std::nullopt; }
   bool margins_at(std::span<const double> q, std::span<double> out) const override {
     return model_.measurable_margins_at(q, out);
   }
 
  private:
-  bool holds(std::span<const double> q) const override { return model_.measurable(q); }
   const IdentificationModel& model_;
+  std::vector<std::vector<double>> robots_;
 };
 
 class ToolBoxCheck : public SingleCheck {
@@ -61,7 +74,8 @@ class SingularityCheck : public SingleCheck {
 }  // namespace
 
 void add_measurable_check(const CheckContext& context, Checks& checks) {
-  if (!context.model.unmeasurable_reason().empty()) checks.push_back(std::make_unique<MeasurableCheck>(context.model));
+  if (!context.model.unmeasurable_reason().empty())
+    checks.push_back(std::make_unique<MeasurableCheck>(context.model, context.robots));
 }
 
 void add_tool_check(const CheckContext& context, Checks& checks) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "posewright/cell/cell.hpp"
@@ -18,6 +19,8 @@ struct CheckContext {
   const std::vector<Coordinate>& coordinates;  ///< with the limits in force
   const Cell* cell;                            ///< null: no bodies, no sights
   const Monitor* monitor = nullptr;            ///< of checks that take long to make; null: none watches
+  /// ξ − nominal of robots that the instrument must be able to read, too.
+  std::span<const std::vector<double>> robots{};
 };
 
 /// What must hold on the way from pose to pose too: limits, coupled limits, reach and travel of actuators, collision.

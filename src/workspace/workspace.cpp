@@ -96,7 +96,7 @@ class FeasibilityChecker : public ob::StateValidityChecker {
 class Workspace::Implementation {
  public:
   Implementation(const IdentificationModel& model_in, const Problem& problem, std::shared_ptr<const Cell> cell_in,
-                 const Monitor& monitor)
+                 const Monitor& monitor, const std::vector<std::vector<double>>& robots)
       : model(model_in),
         cell(std::move(cell_in)),
         coordinates(limits_in_force(model_in, problem, cell.get())),
@@ -115,9 +115,9 @@ class Workspace::Implementation {
     state_space->setBounds(bounds);
     state_space->setStateSamplerAllocator([this](const ob::StateSpace* of) { return allocate_sampler(of, proposed); });
     space = std::make_shared<ob::SpaceInformation>(state_space);
-    checker =
-        std::make_shared<FeasibilityChecker>(space, pose_checks({model, problem, coordinates, cell.get(), &monitor}),
-                                             cell == nullptr ? nullptr : cell->collision.get());
+    checker = std::make_shared<FeasibilityChecker>(
+        space, pose_checks({model, problem, coordinates, cell.get(), &monitor, robots}),
+        cell == nullptr ? nullptr : cell->collision.get());
     space->setStateValidityChecker(checker);
     // Only samplers walk along segments here, and only to come near an obstacle; motions are checked exactly.
     space->setStateValidityCheckingResolution(0.04);
@@ -156,8 +156,8 @@ class Workspace::Implementation {
 };
 
 Workspace::Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell,
-                     const Monitor& monitor)
-    : implementation_(std::make_unique<Implementation>(model, problem, std::move(cell), monitor)) {}
+                     const Monitor& monitor, const std::vector<std::vector<double>>& robots)
+    : implementation_(std::make_unique<Implementation>(model, problem, std::move(cell), monitor, robots)) {}
 Workspace::~Workspace() = default;
 
 const std::vector<Coordinate>& Workspace::coordinates() const { return implementation_->coordinates; }

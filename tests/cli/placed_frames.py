@@ -1,7 +1,9 @@
 """Frames that calibrate states are where the readings say, by transforms of their own: placed_frames.py PROGRAM SOURCE.
 
 A picture is what a pinhole at the stated camera sees of the stated board; a tracker's reading is the stated base times the forward
-kinematics of the written URDF times the target. Both leave the residuals that calibrate states."""
+kinematics of the written URDF times the target. Both leave the residuals that calibrate states.
+Cameras and boards that numpy draws from the tolerances show how often a planned pose is lost: seldom with `readable_for`, else as often as
+plan and simulate say."""
 import csv
 import json
 import pathlib
@@ -11,7 +13,7 @@ import tempfile
 
 import numpy as np
 
-from urdf_kinematics import chain_of, forward, rigid
+from urdf_kinematics import chain_of, forward, placed, rigid
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 TARGETS = {"P1": [0.240, 0.0296, -0.0955], "P2": [0.240, 0.0688, 0.0921], "P3": [0.240, -0.0856, 0.0277]}
@@ -53,17 +55,53 @@ def prepare(folder, *instrument):
     run(folder, "simulate", "problem.yaml", "plan.json", "--draws", "2", "--data", "measured.csv", "--force")
 
 
+BOARD = np.array([[c * 0.025, r * 0.025, 0, 1] for r in range(6) for c in range(9)])
+
+
+def pixels(T, board):
+    """Image of the board's points by a camera at T, and whether all of them are in it."""
+    p = (np.linalg.inv(T) @ board @ BOARD.T)[:3]
+    image = (1386 * p[:2] / p[2] + [[960], [540]]).T
+    return image, (p[2] > 0).all() and ((image >= 0) & (image <= [1920, 1080])).all()
+
+
+def lost_poses(folder, chain, draws=200):
+    """Poses a draw of which the board is not whole in the picture, camera and board 5 mm and 1 deg (1 sigma) off along each axis."""
+    plan, random = json.loads((folder / "plan.json").read_text()), np.random.default_rng(11)
+    tips = [forward(chain, [pose["configuration"][f"joint_a{k}"] for k in range(1, 7)]) for pose in plan["poses"]]
+    camera, board = rigid([0.25, 0.06, 0], [0, np.sqrt(0.5), 0, np.sqrt(0.5)]), rigid([1.25, 0.0625, -0.74], [1, 0, 0, 0])
+    sigma, lost = np.array([5e-3] * 3 + [np.pi / 180] * 3), 0
+    assert all(pixels(T @ camera, board)[1] for T in tips)
+    for _ in range(draws):
+        real = [X @ placed(*(sigma * random.normal(size=6))) for X in (camera, board)]
+        lost += sum(not pixels(T @ real[0], real[1])[1] for T in tips)
+    return lost / draws, len(tips)
+
+
+def check_lost(folder, chain):
+    lost = {}
+    for robots in (20, 0):
+        problem = folder / "problem.yaml"
+        problem.write_text(problem.read_text().replace("readable_for: 20", f"readable_for: {robots}"))
+        said = run(folder, "plan", "problem.yaml", "--candidates", "200", "--restarts", "1", "--force", "-o", "plan.json")
+        assert ("cannot be read at these poses" in said) == (robots == 0), said
+        simulated = json.loads(run(folder, "simulate", "problem.yaml", "plan.json", "--draws", "200", "--json"))["lost"]["poses_a_draw"]
+        lost[robots], poses = lost_poses(folder, chain)
+        # Two samples of 200 draws, of a number that varies from draw to draw by no more than the number of poses.
+        assert abs(lost[robots] - simulated) < 4 * poses / 2 * np.sqrt(2 / 200), (robots, lost, simulated)
+        print(f"readable_for: {robots}: {lost[robots]:.2f} of {poses} poses are lost, simulate says {simulated:.2f}")
+    assert lost[20] < 0.05 * poses and lost[0] > 0.2 * poses, lost
+
+
 def check_camera(folder):
     prepare(folder, "--camera", "realsense-d435", "--board", "6x9x25mm")
     calibration = json.loads(run(folder, "calibrate", "problem.yaml", "measured.csv", "--json"))
     frames, chain = frames_of(calibration), chain_of((folder / "arm.urdf").read_text(), "flange")
     assert frames["camera"][0] == "tip" and frames["board"][0] == "measurement", frames
-    board = np.array([[c * 0.025, r * 0.025, 0, 1] for r in range(6) for c in range(9)])
     squares, moved = [], frames["camera"][1] @ np.linalg.inv(rigid([0.25, 0.06, 0], [0, np.sqrt(0.5), 0, np.sqrt(0.5)]))
     for row in measured(folder):
         T = forward(chain, [row[f"joint_a{k}"] for k in range(1, 7)]) @ frames["camera"][1]
-        p = (np.linalg.inv(T) @ frames["board"][1] @ board.T)[:3]
-        for i, (u, v) in enumerate((1386 * p[:2] / p[2] + [[960], [540]]).T, 1):
+        for i, (u, v) in enumerate(pixels(T, frames["board"][1])[0], 1):
             squares += [(row[f"point_{i}.u"] - u) ** 2, (row[f"point_{i}.v"] - v) ** 2]
     rms = np.sqrt(np.mean(squares))
     assert abs(rms / stated(calibration, "px") - 1) < 1e-6 and np.abs(moved - np.eye(4)).max() > 1e-3, (rms, stated(calibration, "px"))
@@ -72,6 +110,7 @@ def check_camera(folder):
     run(folder, "calibrate", "problem.yaml", "measured.csv", "-o", "camera.yaml")
     done = subprocess.run([PROGRAM, "compensate", "camera.yaml", "poses.csv"], cwd=folder, capture_output=True, text=True)
     assert "nothing of the robot was estimated in variant 'hand_eye'" in done.stderr + done.stdout, done.stderr
+    check_lost(folder, chain)
 
 
 def check_tracker(folder, kind):

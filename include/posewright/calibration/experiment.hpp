@@ -27,6 +27,8 @@ struct VirtualRobot {
   const IdentificationModel* model = nullptr;
   VariantColumns drawn;  ///< parameters that differ from nominal, one tolerance (1σ) each, normal
   std::vector<std::vector<double>> configurations;  ///< of this model, pose by pose: the same actuators
+  /// Poses that its instrument can read where the robot is nominal: there it is asked whether it can at the true one.
+  std::vector<char> asked{};
 };
 
 /// Where the calibrated robot is sent to see how far it is off. Instruments of both models read the tip's pose.
@@ -62,12 +64,15 @@ struct VirtualCalibration {
   double chi_square = 0.0;
   int freedom = 0;
   double mean_square = 0.0, largest = 0.0;  ///< distance at the places: weighted mean square (m²), largest (m)
+  std::vector<char> lost;                   ///< poses that the true robot or its instrument did not give
 };
 
 /// True parameters (correction of every parameter of the true model) and readings of one draw, poses without any
 /// reading left out. Depends on the seed and `draw` alone; noise is the same with and without --exact, gross errors and
-/// missing targets. Throws CannotDo if the true robot does not reach a pose.
-std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth);
+/// missing targets. A pose that the true robot cannot take, or at which its instrument cannot read it, gives nothing.
+/// @param lost  1 for each of these poses; may be null
+std::vector<MeasuredPose> draw_readings(const VirtualExperiment& experiment, int draw, std::vector<double>& truth,
+                                        std::vector<char>* lost = nullptr);
 
 /// All draws, in parallel; the same for any number of threads. Those that the monitor stopped are `not_run`.
 std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experiment, const Monitor& monitor);

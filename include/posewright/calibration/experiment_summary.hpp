@@ -31,7 +31,11 @@ struct ExperimentSummary {
   double rejected_error = 0.0;        ///< binomial
   std::optional<double> mean_square;  ///< distance at the places, m²
   double largest = 0.0;               ///< m
-  std::vector<double> distances;      ///< m, root mean square over the places of each draw that was fitted, ascending
+  /// Share of the draws, failed ones included, in which each pose gave no reading because of where the true robot
+  /// stood.
+  std::vector<double> lost{};
+  double lost_poses = 0.0;        ///< their sum: poses lost in a draw, in the mean
+  std::vector<double> distances;  ///< m, root mean square over the places of each draw that was fitted, ascending
 };
 
 /// Reduced in the order of the draws. Throws CannotDo if fewer than two draws were fitted, saying why.

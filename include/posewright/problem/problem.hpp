@@ -67,6 +67,8 @@ struct WorkspaceSpec {
   MotionSpec motion;
   std::vector<std::pair<SamplerKind, double>> samplers;  ///< shares of the candidates; empty: chosen by the constraints
   int samplers_line = 0;
+  /// Robots drawn from the tolerances that the instrument must be able to read at a pose, beside the nominal one.
+  int readable_for = 0;
   double uncalibrated = 0.0;  ///< margins grow by so many σ of what the tolerances let the robot miss; 0: they don't
 };
 

@@ -47,6 +47,12 @@ struct SimulatedAccuracy {
   double largest = 0.0;
 };
 
+/// A pose that some true robots cannot take, or cannot be read at.
+struct LostPose {
+  int id = 0;
+  double share = 0.0;  ///< of the draws
+};
+
 struct Simulation {
   std::string variant, truth, plan;
   int poses = 0;
@@ -55,6 +61,8 @@ struct Simulation {
   ExperimentSummary summary;
   std::vector<SimulatedParameter> parameters;
   std::optional<SimulatedAccuracy> accuracy;  ///< none for a robot without a tip, or where nothing moves it
+  std::vector<LostPose> lost{};               ///< most often lost first
+  std::string lost_because{};                 ///< what the instrument says of what it cannot read
   Curvature curvature;                        ///< at the nominal parameters
   bool confirmed = false;                     ///< σ and intervals are as predicted
   std::vector<std::string> verdict;           ///< in words, and why

@@ -29,8 +29,9 @@ class Workspace {
   /// empty once the margin is taken off.
   /// @param cell     bodies and sights; null: neither constrains
   /// @param monitor  of the roadmap that says what can be reached from home; where it says stop, CannotDo is thrown
+  /// @param robots   ξ − nominal of robots that the instrument must be able to read wherever it reads the nominal one
   Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr,
-            const Monitor& monitor = Monitor());
+            const Monitor& monitor = Monitor(), const std::vector<std::vector<double>>& robots = {});
   ~Workspace();
 
   /// Limits in force, in the order of a configuration: those of the robot, narrowed by the problem.

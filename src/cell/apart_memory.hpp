@@ -33,8 +33,6 @@ class ApartMemory {
   void keep(std::size_t place, std::span<const double> q, double spare);
 
  private:
-  // m; of distances between meshes, hulls and shapes.
-  static constexpr double certain = 1e-4;
   static constexpr double never = -1e9;
 
   bool looked_at(std::size_t place) const { return spare_[place] > never; }

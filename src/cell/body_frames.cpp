@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "posewright/model/pair_names.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
@@ -61,6 +62,13 @@ class ChainFrames : public BodyFrames {
       from_origin += way.norm() + pushed;
     }
     return bound;
+  }
+
+  double period(std::size_t coordinate) const override {
+    for (std::size_t k = 0; k < chain_.joints.size(); ++k)
+      if (place(0, k) == coordinate && (chain_.joints[k].prismatic || std::abs(chain_.joints[k].multiplier) != 1.0))
+        return 0.0;
+    return 2 * std::numbers::pi;
   }
 
   int acts_from(const std::string& parameter) const override {

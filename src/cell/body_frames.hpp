@@ -30,6 +30,8 @@ class BodyFrames {
   /// @param radius       m, largest distance of these points from the origin of b
   /// @param axis_radius  m, the same from the line through the origin along axis(b)
   virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
+  /// After which change of a coordinate all frames are where they were, rad; 0: none.
+  virtual double period(std::size_t) const { return 0.0; }
   /// Frames from which on a parameter of that name acts: k means k, k + 1, …; count() where it moves none.
   virtual int acts_from(const std::string& parameter) const = 0;
 

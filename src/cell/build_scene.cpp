@@ -43,6 +43,7 @@ class SceneBuilder {
     add_margins();
     settle_self_pairs();
     find_never_near();
+    add_tables();
     return std::move(scene_);
   }
 
@@ -193,10 +194,7 @@ class SceneBuilder {
   void find_never_near() {
     const std::vector<Coordinate>& coordinates = model_.coordinates();
     if (scene_.frames->poses_per_configuration() != 1) return;
-    std::vector<double> middle;
-    middle.reserve(coordinates.size());
-    for (const Coordinate& c : coordinates)
-      middle.push_back(c.discrete() ? c.values.front() : 0.5 * (c.lower + c.upper));
+    const std::vector<double> middle = middle_configuration();
     for (BodyPair& pair : scene_.pairs) {
       const Eigen::VectorXd& travel = pair.travel.front();
       Eigen::Index moving = 0;
@@ -208,6 +206,34 @@ class SceneBuilder {
       last[std::size_t(moving)] = c.upper + beyond_limits;
       pair.never_near = keeps_apart(scene_, pair, 0, first, last, most_steps);
     }
+  }
+
+  /// Of most links two or three joints decide how far they are apart, whatever the others do.
+  void add_tables() {
+    if (scene_.frames->poses_per_configuration() != 1) return;
+    const std::vector<Coordinate>& coordinates = model_.coordinates();
+    std::vector<double> middle = middle_configuration();
+    for (BodyPair& pair : scene_.pairs) {
+      std::vector<ApartTable::Axis> axes;
+      bool fits = !pair.never_near;
+      for (std::size_t k = 0; k < coordinates.size(); ++k) {
+        const double travel = pair.travel.front()[Eigen::Index(k)];
+        const Coordinate& c = coordinates[k];
+        if (!(travel > 0)) continue;
+        fits = fits && !c.discrete() && c.lower < c.upper && axes.size() < ApartTable::most_axes;
+        if (fits)
+          axes.push_back({k, c.lower - beyond_limits, c.upper + beyond_limits, scene_.frames->period(k), travel});
+      }
+      if (fits && !axes.empty()) pair.table = std::make_shared<ApartTable>(std::move(axes), middle);
+    }
+  }
+
+  std::vector<double> middle_configuration() const {
+    std::vector<double> middle;
+    middle.reserve(model_.coordinates().size());
+    for (const Coordinate& c : model_.coordinates())
+      middle.push_back(c.discrete() ? c.values.front() : 0.5 * (c.lower + c.upper));
+    return middle;
   }
 
   const std::string& name(int body) const { return scene_.bodies[std::size_t(body)].name; }

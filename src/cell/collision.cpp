@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "apart_memory.hpp"
 #include "posewright/support/dense.hpp"
@@ -18,9 +19,18 @@ constexpr double most_distance = 10.0;  // m
 // States looked at before a motion is followed from its beginning: most that collide do so at one of these.
 constexpr std::array<double, 7> first_looks = {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875};
 
-/// Poses of all bodies; kept per thread so that checks do not allocate.
-Poses& place_bodies(const Scene& scene, std::span<const double> q, int pose) {
+/// Poses of all bodies; kept per thread so that checks do not allocate, and because many lines of sight are asked for
+/// at one state.
+const Poses& place_bodies(const Scene& scene, std::span<const double> q, int pose) {
   static thread_local Poses frames, bodies;
+  static thread_local std::vector<double> last;
+  static thread_local std::uint64_t last_scene = 0;
+  static thread_local int last_pose = 0;
+  if (last_scene == scene.number && last_pose == pose && std::equal(q.begin(), q.end(), last.begin(), last.end()))
+    return bodies;
+  last.assign(q.begin(), q.end());
+  last_scene = scene.number;
+  last_pose = pose;
   frames.resize(std::size_t(scene.frames->count()));
   bodies.resize(scene.bodies.size());
   scene.frames->poses(q, pose, frames);
@@ -57,6 +67,7 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
       const std::size_t place = std::size_t(pose) * scene.pairs.size() + p;
       if (pair.never_near || memory.covers(pair, place, pose, q)) continue;
       if (memory.is_too_near(pair, place, pose, q)) return &pair;
+      if (pair.table != nullptr && pair.table->spare_at_least(scene, pair, q, certain) > 0) continue;
       if (X == nullptr) X = &place_bodies(scene, q, pose);
       const double spare = spare_of(scene, pair, *X, memory.is_near(pair, place, pose, q) ? look_ahead : 0.0);
       memory.keep(place, q, spare);

@@ -4,8 +4,8 @@
 namespace posewright {
 namespace {
 
-// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
-constexpr double near_enough = 0.002;
+// Spare room that is worth a step without a look at the bodies, m.
+constexpr double least_step = 0.0005;
 
 }  // namespace
 
@@ -22,6 +22,11 @@ bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<c
   for (double t = 0; t < 1; --most_steps) {
     if (most_steps <= 0) return false;
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
+    if (pair.table != nullptr)
+      if (const double least = pair.table->spare_at_least(scene, pair, q, least_step); least > 0) {
+        t += (least + motion_resolution) / rate;
+        continue;
+      }
     scene.frames->poses(q, pose, frames);
     const Eigen::Isometry3d X_a = frames[std::size_t(a.frame)] * a.X_FrameBody;
     const Eigen::Isometry3d X_b = frames[std::size_t(b.frame)] * b.X_FrameBody;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apart_table.hpp"
 #include "body_frames.hpp"
 #include "posewright/cell/collision.hpp"
 #include "posewright/cell/solid.hpp"
@@ -21,6 +22,12 @@ inline constexpr double motion_resolution = 0.5e-3;
 /// Distances on a motion are asked for up to this much beyond the clearance, m: further ones cost more than the steps
 /// they save.
 inline constexpr double look_ahead = 0.08;
+
+/// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
+inline constexpr double near_enough = 0.002;
+
+/// What a distance between meshes, hulls and shapes is off by at most, m.
+inline constexpr double certain = 1e-4;
 
 /// One solid on a frame. Links, tool parts and obstacles are made of them; what they belong to has the name.
 struct Body {
@@ -41,6 +48,7 @@ struct BodyPair {
   double asked = 0.0;                   ///< m, without margins
   std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
   bool never_near = false;              ///< keeps its clearance wherever the robot may stand: need not be looked at
+  std::shared_ptr<const ApartTable> table{};  ///< of a pair that few coordinates move; null: none
 };
 
 /// Links, tool and obstacles, and which pairs of them must keep apart.

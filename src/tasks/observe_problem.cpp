@@ -1,11 +1,16 @@
 #include "posewright/tasks/observe_problem.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <memory>
+#include <utility>
 
+#include "posewright/model/model_factory.hpp"
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/error.hpp"
+#include "without_roadmap.hpp"
 
 namespace posewright {
 namespace {
@@ -54,22 +59,64 @@ Observation observe(const Variant& variant, const Configurations& configurations
   return result;
 }
 
+/// Configurations of the variants that came before: robots that stand alike reach and see the same.
+class Draws {
+ public:
+  Draws(const Problem& problem, const ObserveOptions& options, const Monitor& monitor)
+      : problem_(problem), cell_(make_cell(problem)), monitor_(monitor) {
+    sampling_.count = std::size_t(options.candidates);
+    sampling_.seed = options.seed;
+    sampling_.threads = options.threads;
+  }
+
+  /// The variant, and where it is looked at.
+  std::pair<Variant, const Configurations*> of(const VariantSpec& spec) {
+    const std::shared_ptr<const IdentificationModel> model = make_model(problem_, spec);
+    for (const Drawn& known : drawn_)
+      if (known.spec->convention == spec.convention && stand_alike(*known.model, *model))
+        return {place_variant(without_roadmap(problem_), spec, cell_, monitor_), &known.configurations};
+    Variant variant = place_variant(problem_, spec, cell_, monitor_);
+    Configurations configurations = sample_configurations(*variant.workspace, sampling_, monitor_);
+    drawn_.push_back({&spec, model, std::move(configurations)});
+    return {std::move(variant), &drawn_.back().configurations};
+  }
+
+ private:
+  static bool stand_alike(const IdentificationModel& a, const IdentificationModel& b) {
+    const auto same = [](const Parameter& p, const Parameter& q) { return p.name == q.name && p.nominal == q.nominal; };
+    const auto alike = [](const Coordinate& c, const Coordinate& d) {
+      return c.name == d.name && c.values == d.values;
+    };
+    return std::equal(a.parameters().begin(), a.parameters().end(), b.parameters().begin(), b.parameters().end(),
+                      same) &&
+           std::equal(a.coordinates().begin(), a.coordinates().end(), b.coordinates().begin(), b.coordinates().end(),
+                      alike);
+  }
+
+  struct Drawn {
+    const VariantSpec* spec;
+    std::shared_ptr<const IdentificationModel> model;
+    Configurations configurations;
+  };
+
+  const Problem& problem_;
+  std::shared_ptr<const Cell> cell_;
+  const Monitor& monitor_;
+  SamplingOptions sampling_;
+  std::deque<Drawn> drawn_;  // whoever was handed one keeps it
+};
+
 }  // namespace
 
 std::vector<Observation> observe_problem(const Problem& problem, const ObserveOptions& options,
                                          const Monitor& monitor) {
-  SamplingOptions sampling;
-  sampling.count = std::size_t(options.candidates);
-  sampling.seed = options.seed;
-  sampling.threads = options.threads;
   if (!options.variant.empty()) find_variant(problem, options.variant);
-  const std::shared_ptr<const Cell> cell = make_cell(problem);
+  Draws draws(problem, options, monitor);
   std::vector<Observation> observations;
   for (const VariantSpec& spec : problem.variants) {
     if (!options.variant.empty() && spec.name != options.variant) continue;
-    const Variant variant = place_variant(problem, spec, cell, monitor);
-    observations.push_back(
-        observe(variant, sample_configurations(*variant.workspace, sampling, monitor), problem, options, monitor));
+    const auto [variant, configurations] = draws.of(spec);
+    observations.push_back(observe(variant, *configurations, problem, options, monitor));
   }
   return observations;
 }

@@ -26,6 +26,33 @@ bool collides(const Scene& scene, const std::vector<double>& q, double beside) {
   return false;
 }
 
+/// What tables say of a pair is less than what it has, and they do say something.
+void expect_less_than_pairs_have(const Problem& problem) {
+  const auto cell = make_cell(problem);
+  const Scene& scene = cell->collision->scene();
+  Random random(11, 0);
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count()));
+  std::vector<double> q;
+  int told = 0, tables = 0;
+  for (int i = 0; i < 200; ++i) {
+    q.clear();
+    for (const Coordinate& c : cell->model->coordinates()) q.push_back(random.uniform(c.lower, c.upper));
+    scene.frames->poses(q, 0, X);
+    for (const BodyPair& pair : scene.pairs) {
+      if (pair.table == nullptr) continue;
+      ++tables;
+      const double least = pair.table->spare_at_least(scene, pair, q, 0.0);
+      if (least < 0) continue;
+      ++told;
+      const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+      const double d = distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                                X[std::size_t(b.frame)] * b.X_FrameBody, pair.clearance + least + 0.01);
+      EXPECT_GT(d - pair.clearance, least - 1e-5) << a.name << " and " << b.name;
+    }
+  }
+  EXPECT_GT(told, tables / 4);
+}
+
 /// @param steps  states looked at after each draw, nearer and nearer to each other as those of a search are
 void expect_the_definition(const Problem& problem, int draws, int steps = 0) {
   const auto cell = make_cell(problem);
@@ -75,6 +102,8 @@ TEST(Collision, OfAVendorsMeshesIsThatOfAllTheirPairs) {
             "[1.2, 0.8, 0.7], at: [1.9, 0.3, 0.35]}, {name: post, cylinder: {radius: 0.08, length: 2.5}, at: " +
             "[0.6, 0.6, 1.25]}]}\n"));
   };
+  expect_less_than_pairs_have(problem("ur10/example-robot-data/robots/ur_description/urdf/ur10_robot.urdf",
+                                      "[0.1, 0.05, 0.04], at: [0, 0.06, 0]"));
   expect_the_definition(
       problem("kuka_kr300_r2700_2/kuka_quantec_support/urdf/kr300_r2700_2.urdf", "[0.3, 0.3, 0.03], at: [0, 0, 0.03]"),
       30, 9);

@@ -139,7 +139,7 @@ DhChain::DhChain(DhDescription chain) : chain_(std::move(chain)) {
   for (int i = 0; i < int(parameters_.size()); ++i) geometric_.push_back({i, i < 6 ? 0 : i >= tool_ ? 1 : 2});
 }
 
-HarmonicColumns DhChain::harmonic_columns(std::span<const int> selected, std::span<const double>) const {
+HarmonicColumns DhChain::harmonic_columns(std::span<const int> selected, const Point&) const {
   HarmonicColumns result;
   result.selected.assign(selected.begin(), selected.end());
   result.degrees.assign(coordinates_.size(), 1);

@@ -232,7 +232,7 @@ void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::s
     const Spring& spring = springs_[i];
     const auto c = std::size_t(spring.coordinate);
     derivative[i] = 0.0;
-    if (spring.kind == Spring::Kind::listed && q[c] != spec_.listed->at[std::size_t(spring.listed)]) continue;
+    if (!acts(spring, q)) continue;
     if (spring.kind == Spring::Kind::compliance || spring.kind == Spring::Kind::listed) {
       deflection[c] = value(i) * torque[c];
       derivative[i] = torque[c];
@@ -282,16 +282,27 @@ ElasticChain::Bent& ElasticChain::bent(const Point& at, std::span<const int> sel
 bool ElasticChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
                              Twists* reading_twists) const {
   Bent& b = bent(at, selected);
-  Twists* readings = reading_twists != nullptr ? reading_twists : &b.readings;
-  chain_.linearise_deflected(at.q.first(b.deflection.size()), b.deflection, b.rigid, b.selected, X, twists, readings);
+  linearise_as(b, at, selected, X, twists, reading_twists != nullptr ? *reading_twists : b.readings);
+  return true;
+}
+
+bool ElasticChain::linearise_bent(const Point& at, double share, std::span<const int> selected, Eigen::Isometry3d& X,
+                                  Twists& twists) const {
+  Bent& b = bent(at, selected);
+  for (double& deflection : b.deflection) deflection *= share;
+  linearise_as(b, at, selected, X, twists, b.readings);
+  return true;
+}
+
+void ElasticChain::linearise_as(const Bent& b, const Point& at, std::span<const int> selected, Eigen::Isometry3d& X,
+                                Twists& twists, Twists& readings) const {
+  chain_.linearise_deflected(at.q.first(b.deflection.size()), b.deflection, b.rigid, b.selected, X, twists, &readings);
   for (std::size_t c = 0; c < selected.size(); ++c) {
     const int i = selected[c] - first_;
     if (i < 0 || i >= int(springs_.size())) continue;
     const int joint = springs_[std::size_t(i)].coordinate;
-    twists.col(Eigen::Index(c)) =
-        readings->col(joint) * (b.derivative[std::size_t(i)] / b.gear(chain_.layout(), joint));
+    twists.col(Eigen::Index(c)) = readings.col(joint) * (b.derivative[std::size_t(i)] / b.gear(chain_.layout(), joint));
   }
-  return true;
 }
 
 bool ElasticChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,

@@ -15,10 +15,15 @@ using RowMatrix = BlockArray::RowMatrix;
 // Steps in which the share of a common displacement is searched.
 constexpr int share_steps = 1000;
 
+// A share of the deflections: columns by it are odd beyond their first order, and deflections are small, so that the
+// central difference is right to rounding.
+constexpr double bent_share = 0.01;
+
 struct ExplicitWork : HarmonicRows::Work {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   Twists twists, readings;
   Eigen::MatrixXd rows;  // of the instrument: columns, then joint readings
+  Eigen::MatrixXd bent;  // what deflections make of them
   Eigen::VectorXd y;     // what it reads
   RowMatrix all, parts;  // the same by rows; of all parts
 };
@@ -50,12 +55,15 @@ class ExplicitRows : public HarmonicRows {
         tip_parameters_(tip_parameters) {
     degrees_ = std::move(columns.degrees);
     factors_ = std::move(columns.factors);
+    order_ = columns.order;
+    bends_ = columns.bends;
     for (const double sigma : tip.reading_noise())
       if (sigma > 0) joints_ = int(tip.reading_noise().size());
     targets_ = noise_.kind == Kind::beams ? instrument_.rows() / 3 : instrument_.rows();
     take_displacement(repeatability);
     if (noise_.kind == Kind::constant) factorise(repeatability);
     list_parts();
+    if (bends_) take_remainders(columns.remainders);
     K_.setZero(joints_, Eigen::Index(selected_.size()));
   }
 
@@ -71,7 +79,9 @@ class ExplicitRows : public HarmonicRows {
   void take_displacement(const Repeatability& repeatability);
   void factorise(const Repeatability& repeatability);
   void list_parts();
+  void take_remainders(const std::vector<HarmonicColumns::Remainder>& remainders);
   bool read(std::span<const double> q, std::span<const double> factors, ExplicitWork& w) const;
+  bool rows_of_tip(std::span<const double> q, const double* share, ExplicitWork& w) const;
   void to_parts(ExplicitWork& w, std::span<double> squares) const;
   void choose_share(double square);
 
@@ -83,6 +93,8 @@ class ExplicitRows : public HarmonicRows {
   std::vector<double> correction_;
   std::vector<int> selected_;
   int tip_parameters_;
+  int order_ = 1;
+  bool bends_ = false;
   int targets_ = 0;
   int joints_ = 0;             // readings with noise; 0: none
   double displacement_ = 0.0;  // 1σ common to several targets of a tracker, m
@@ -126,7 +138,7 @@ void ExplicitRows::list_parts() {
     parts_.push_back({rows, turn, length, distance, more, less});
   };
   const InverseVariance one{1.0}, none{};
-  if (noise_.kind == Kind::constant) part(instrument_.rows(), 1, 1, -1, one, none);
+  if (noise_.kind == Kind::constant) part(instrument_.rows(), order_, order_, -1, one, none);
   if (noise_.kind == Kind::beams) {
     distances_ = targets_;
     const InverseVariance across_taken = over_square(noise_.across);
@@ -145,11 +157,53 @@ void ExplicitRows::list_parts() {
   if (joints_ > 0) part(joints_, 0, 0, -1, one, none);
 }
 
+/// Of whitened columns: points' changes are off by what the tip says, at each point's distance from its origin.
+void ExplicitRows::take_remainders(const std::vector<HarmonicColumns::Remainder>& remainders) {
+  const Eigen::Isometry3d at_the_tip = Eigen::Isometry3d::Identity();
+  const MeasurementModel::Sighting sighting{at_the_tip, own_correction(), station_};
+  const Eigen::Index rows = instrument_.rows();
+  Eigen::MatrixXd turned(rows, 3);
+  Twists turns = Twists::Zero(6, 3);
+  turns.bottomRows<3>().setIdentity();
+  instrument_.rows_of_twists(sighting, turns, turned);
+  const Eigen::MatrixXd L = covariance_.matrixL();
+  const double smallest = Eigen::JacobiSVD<Eigen::MatrixXd>(L).singularValues().minCoeff();
+  for (const HarmonicColumns::Remainder& remainder : remainders) {
+    double square = 0;
+    for (Eigen::Index first = 0; first < rows; first += 3) {
+      const double lever = turned.middleRows(first, 3).norm() / std::sqrt(2.0);
+      const double off = remainder.constant + remainder.lever * lever;
+      square += off * off;
+    }
+    remainders_.push_back(std::sqrt(square) / smallest * (1 + 1e-9));
+  }
+}
+
 /// The instrument's rows along every column and every joint reading, and what it reads.
 bool ExplicitRows::read(std::span<const double> q, std::span<const double> factors, ExplicitWork& w) const {
+  if (!bends_) {
+    if (!rows_of_tip(q, nullptr, w)) return false;
+  } else {
+    for (const double share : {-bent_share, bent_share}) {
+      if (!rows_of_tip(q, &share, w)) return false;
+      if (share < 0) w.bent = w.rows;
+      else w.bent = (w.rows - w.bent) / (2 * bent_share);
+    }
+    const double share = 0;
+    if (!rows_of_tip(q, &share, w)) return false;
+    w.rows += w.bent;
+  }
+  for (std::size_t f = 0; f < factors_.size(); ++f) w.rows.col(factors_[f].column) *= factors[f];
+  return true;
+}
+
+/// Columns without their factors, of the arm bent by a share of its deflections; null: as it stands.
+bool ExplicitRows::rows_of_tip(std::span<const double> q, const double* share, ExplicitWork& w) const {
   const std::size_t tip = correction_.empty() ? 0 : std::size_t(tip_parameters_);
   const Point at{q.first(tip_.coordinates().size()), std::span(correction_).first(tip), 0, load_case_};
-  if (!tip_.linearise(at, selected_, w.X, w.twists, joints_ > 0 ? &w.readings : nullptr)) return false;
+  if (!(share != nullptr ? tip_.linearise_bent(at, *share, selected_, w.X, w.twists)
+                         : tip_.linearise(at, selected_, w.X, w.twists, joints_ > 0 ? &w.readings : nullptr)))
+    return false;
   const MeasurementModel::Sighting sighting{w.X, own_correction(), station_};
   const auto columns = Eigen::Index(selected_.size());
   w.rows.resize(instrument_.rows(), columns + joints_);
@@ -165,7 +219,6 @@ bool ExplicitRows::read(std::span<const double> q, std::span<const double> facto
     const int own = selected_[std::size_t(c)] - tip_parameters_;
     if (own >= 0 && !measurement_.motion(sighting, own, nullptr)) measurement_.own_column(sighting, own, w.rows.col(c));
   }
-  for (std::size_t f = 0; f < factors_.size(); ++f) w.rows.col(factors_[f].column) *= factors[f];
   for (int j = 0; j < joints_; ++j) w.readings.col(j) *= tip_.reading_noise()[std::size_t(j)];
   if (joints_ > 0) instrument_.rows_of_twists(sighting, w.readings, w.rows.rightCols(joints_));
   if (noise_.kind == Kind::constant) return true;
@@ -275,6 +328,21 @@ void ExplicitRows::tune(const std::vector<std::vector<double>>& configurations, 
   K_ = normal.llt().solve(right);
 }
 
+/// Whether an instrument's rows are changes of points, three a point, in all directions alike.
+bool reads_points(const MeasurementModel& measurement, const HarmonicNoise& noise) {
+  const MeasurementModel& instrument = noise.instead != nullptr ? *noise.instead : measurement;
+  const Eigen::Index rows = instrument.rows();
+  if (rows % 3 != 0) return false;
+  const Eigen::Isometry3d anywhere = Eigen::Isometry3d::Identity();
+  Eigen::MatrixXd moved(rows, 3);
+  instrument.rows_of_twists({anywhere, {}, 0}, Twists::Identity(6, 3), moved);
+  for (Eigen::Index first = 0; first < rows; first += 3) {
+    const Eigen::Matrix3d own = moved.middleRows(first, 3);
+    if (!(own * own.transpose()).isIdentity(1e-12)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 double value_of(const ColumnFactor& factor, double x) {
@@ -299,8 +367,18 @@ std::unique_ptr<HarmonicRows> make_harmonic_rows(const TipModel& tip, const Meas
   }
   if (!why_not.empty()) return nullptr;
   const std::size_t in_use = at.correction.empty() ? 0 : std::size_t(tip_parameters);
-  HarmonicColumns columns = tip.harmonic_columns(of_tip, at.correction.first(in_use));
+  Point of_the_tip = at;
+  of_the_tip.correction = at.correction.first(in_use);
+  HarmonicColumns columns = tip.harmonic_columns(of_tip, of_the_tip);
   why_not = columns.why_not;
+  if (columns.bends || columns.order > 1) {
+    if (noise.kind != Kind::constant || !reads_points(measurement, noise))
+      why_not = "an elastic arm whose readings are not of points with one noise";
+    for (const int i : selected)
+      if (i >= tip_parameters && columns.bends &&
+          measurement.motion({Eigen::Isometry3d::Identity(), {}, 0}, i - tip_parameters, nullptr))
+        why_not = "stations of an elastic arm";
+  }
   if (!why_not.empty()) return nullptr;
   for (std::size_t c = 0; c < selected.size(); ++c)
     if (selected[c] >= tip_parameters) columns.selected[c] = selected[c];

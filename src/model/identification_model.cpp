@@ -76,6 +76,14 @@ std::unique_ptr<HarmonicRows> IdentificationModel::do_harmonic_rows(const Point&
 std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_rows(std::span<const double> q,
                                                                  std::span<const int> selected,
                                                                  std::string& why_not) const {
+  auto rows = harmonic_expansion(q, selected, why_not);
+  if (rows == nullptr || rows->remainders().empty()) return rows;
+  return with_remainders(std::move(rows));
+}
+
+std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_expansion(std::span<const double> q,
+                                                                      std::span<const int> selected,
+                                                                      std::string& why_not) const {
   require_size(q.size(), coordinates_.size(), "configuration");
   return do_harmonic_rows(point(q, shift_), selected, why_not);
 }

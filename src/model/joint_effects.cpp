@@ -169,8 +169,8 @@ double JointEffects::coefficient(const Point& at, std::size_t effect) const {
   return parameters_[i].nominal + (at.correction.empty() ? 0.0 : at.correction[i]);
 }
 
-HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected,
-                                               std::span<const double> correction) const {
+HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected, const Point& at) const {
+  const std::span<const double> correction = at.correction;
   const int count = int(effects_.size());
   for (std::size_t e = 0; e < effects_.size(); ++e)
     if (parameters_[std::size_t(first_) + e].nominal != 0.0 ||
@@ -193,8 +193,11 @@ HarmonicColumns JointEffects::harmonic_columns(std::span<const int> selected,
     }
   }
   std::vector<double> rest;
-  HarmonicColumns result = arm_->harmonic_columns(of_arm, without_block(correction, first_, effects_.size(), rest));
+  Point inside = at;
+  inside.correction = without_block(correction, first_, effects_.size(), rest);
+  HarmonicColumns result = arm_->harmonic_columns(of_arm, inside);
   if (!result.why_not.empty()) return result;
+  if (result.order > 1 || result.bends) return {"effects of joints that bend, too", {}, {}, {}};
   // Back to the indices of this robot.
   for (int& index : result.selected)
     if (index >= first_) index += count;

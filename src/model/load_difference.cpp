@@ -1,7 +1,10 @@
 #include "load_difference.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -61,6 +64,20 @@ bool LoadDifference::do_read(const Point& at, Eigen::VectorXd& y) const {
   if (!inside_->predict(at.q, at.correction, loaded) || !inside_->predict(same, at.correction, unloaded)) return false;
   inside_->difference(loaded, unloaded, y);
   return true;
+}
+
+std::unique_ptr<HarmonicRows> LoadDifference::do_harmonic_rows(const Point& at, std::span<const int> selected,
+                                                               std::string& why_not) const {
+  std::vector<double> same(at.q.begin(), at.q.end());
+  same[load_] = 0.0;
+  auto loaded = inside_->harmonic_expansion(at.q, selected, why_not);
+  auto unloaded = loaded != nullptr ? inside_->harmonic_expansion(same, selected, why_not) : nullptr;
+  if (unloaded == nullptr) return nullptr;
+  if (loaded->parts().size() != 1 || loaded->parts().front().distance >= 0 || unloaded->parts().size() != 1) {
+    why_not = "loaded minus unloaded readings whose noise is not the same everywhere";
+    return nullptr;
+  }
+  return harmonic_difference(std::move(loaded), std::move(unloaded));
 }
 
 bool LoadDifference::do_measurable(const Point& at) const {

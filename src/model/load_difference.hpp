@@ -20,6 +20,8 @@ class LoadDifference : public IdentificationModel {
   bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
                     const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
+  std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
+                                                 std::string& why_not) const override;
   bool do_measurable(const Point& at) const override;
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 

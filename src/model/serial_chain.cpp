@@ -103,7 +103,8 @@ bool SerialChain::linearise(const Point& at, std::span<const int> selected, Eige
   return true;
 }
 
-HarmonicColumns SerialChain::harmonic_columns(std::span<const int> selected, std::span<const double> correction) const {
+HarmonicColumns SerialChain::harmonic_columns(std::span<const int> selected, const Point& at) const {
+  const std::span<const double> correction = at.correction;
   HarmonicColumns result;
   for (std::size_t c = 0; c < coordinates_.size(); ++c) {
     int highest = 0;

@@ -48,8 +48,13 @@ bool TipModel::pull_back(const Point& at, std::span<const int> selected, const T
   return true;
 }
 
-HarmonicColumns TipModel::harmonic_columns(std::span<const int>, std::span<const double>) const {
+HarmonicColumns TipModel::harmonic_columns(std::span<const int>, const Point&) const {
   return {"columns of this robot that are no polynomials of the joints' cosines and sines", {}, {}, {}};
+}
+
+bool TipModel::linearise_bent(const Point& at, double, std::span<const int> selected, Eigen::Isometry3d& X,
+                              Twists& twists) const {
+  return linearise(at, selected, X, twists, nullptr);
 }
 
 int TipModel::offset_of(int) const { return -1; }

@@ -92,12 +92,13 @@ int BoxTensor::most_varied() const {
   return most;
 }
 
-std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes) {
+std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes, const std::vector<int>& degrees) {
   std::vector<SearchBox> boxes(1);
-  for (const HarmonicAxis& axis : axes) {
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const HarmonicAxis& axis = axes[a];
     // A turn and more is one turn.
     const double width = axis.turns ? std::min(axis.upper - axis.lower, 2 * std::numbers::pi) : axis.upper - axis.lower;
-    const int parts = axis.turns ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
+    const int parts = axis.turns && degrees[a] > 0 ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
     std::vector<SearchBox> finer;
     for (const SearchBox& box : boxes)
       for (int k = 0; k < parts; ++k) {

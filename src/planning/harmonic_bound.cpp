@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "box_tensor.hpp"
 #include "posewright/support/dense.hpp"
@@ -23,7 +24,10 @@ constexpr int places_compared = 100;
 constexpr double loose_factor = 0.04;
 // How near an instrument may come is worth so much work.
 constexpr long boxes_for_a_distance = 20'000;
-constexpr std::uint64_t compared_stream = 0x9f00f;
+constexpr std::uint64_t compared_stream = 0x9f00f, lines_stream = 0x11e5;
+// A harmonic whose amplitude is below this share of a function's size along all of so many random lines is not there.
+constexpr double harmonic_of_rounding = 1e-10;
+constexpr int lines_an_axis = 3;
 
 std::vector<int> sum_of(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> sum(a);
@@ -42,22 +46,17 @@ bool fits(const std::vector<int>& degrees, const std::vector<int>& room) {
   return true;
 }
 
-/// Degrees of ‖B_k T‖², and with the distance.
-std::vector<int> squared(const HarmonicForm& form, std::size_t part) {
-  return sum_of(form.degrees()[part], form.degrees()[part]);
-}
-std::vector<int> with_distance(const HarmonicForm& form, std::size_t part) {
+std::vector<int> with_distance(const HarmonicForm& form, const HarmonicDegrees& squares, std::size_t part) {
   const int distance = form.parts()[part].distance;
-  const std::vector<int> square = squared(form, part);
-  return distance < 0 ? square : sum_of(square, form.distance_degrees()[std::size_t(distance)]);
+  return distance < 0 ? squares[part] : sum_of(squares[part], form.distance_degrees()[std::size_t(distance)]);
 }
 
 /// Degrees of all tensors: with every product if they are not too large.
-std::vector<int> common_degrees(const HarmonicForm& form) {
+std::vector<int> common_degrees(const HarmonicForm& form, const HarmonicDegrees& squares) {
   std::vector<int> plain(form.axes().size(), 0), all = plain;
   for (std::size_t k = 0; k < form.parts().size(); ++k) {
-    plain = larger_of(plain, squared(form, k));
-    all = larger_of(all, with_distance(form, k));
+    plain = larger_of(plain, squares[k]);
+    all = larger_of(all, with_distance(form, squares, k));
   }
   return harmonic_size(form.axes(), all) <= most_with_products ? all : plain;
 }
@@ -114,7 +113,56 @@ std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, Random&
   return values;
 }
 
+/// Amplitudes of f's harmonics, f at 2D + 1 equispaced angles of one axis: the highest that is not rounding.
+int highest_harmonic_of(const std::vector<double>& values, double size) {
+  const int n = int(values.size());
+  for (int h = (n - 1) / 2; h > 0; --h) {
+    double cosine = 0, sine = 0;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * double(h) * double(i) / double(n);
+      cosine += values[std::size_t(i)] * std::cos(angle);
+      sine += values[std::size_t(i)] * std::sin(angle);
+    }
+    if (2 * std::hypot(cosine, sine) / double(n) > harmonic_of_rounding * size) return h;
+  }
+  return 0;
+}
+
 }  // namespace
+
+HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed) {
+  const auto& axes = form.axes();
+  const std::size_t parts = form.parts().size();
+  HarmonicDegrees possible, found;
+  for (std::size_t k = 0; k < parts; ++k) {
+    possible.push_back(sum_of(form.degrees()[k], form.degrees()[k]));
+    // Numbers keep their degree: they are cheap.
+    found.push_back(possible.back());
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      if (axes[a].turns) found[k][a] = 0;
+  }
+  PartSquares squares(form, T);
+  Random random(seed, lines_stream);
+  std::vector<double> at(parts);
+  for (int line = 0; line < lines_an_axis; ++line)
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (!axes[a].turns) continue;
+      std::vector<double> place = random_values(axes, random);
+      for (std::size_t k = 0; k < parts; ++k) {
+        const int n = 2 * possible[k][a] + 1;
+        std::vector<double> values;
+        double size = 0;
+        for (int i = 0; i < n; ++i) {
+          place[a] = 2 * std::numbers::pi * double(i) / double(n);
+          squares(place, at);
+          values.push_back(at[k]);
+          size = std::max(size, std::abs(at[k]));
+        }
+        found[k][a] = std::max(found[k][a], std::isfinite(size) ? highest_harmonic_of(values, size) : possible[k][a]);
+      }
+    }
+  return found;
+}
 
 /// One thread's.
 class HarmonicJudge : public BoxJudge {
@@ -263,13 +311,14 @@ FactorBound factor_bound(const HarmonicPart& part, double lower, double upper, b
   return {high - (low - high) / (upper - lower) * lower - part.minus.value(middle) + fall * middle, slope};
 }
 
-double HarmonicSensitivity::cost(const HarmonicForm& form) {
-  return double(harmonic_size(form.axes(), common_degrees(form))) * double(2 * form.parts().size());
+double HarmonicSensitivity::cost(const HarmonicForm& form, const HarmonicDegrees& squares) {
+  return double(harmonic_size(form.axes(), common_degrees(form, squares))) * double(2 * form.parts().size());
 }
 
-HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed,
-                                         int threads, const Monitor& monitor)
-    : form_(form), T_(T), degrees_(common_degrees(form)) {
+HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T,
+                                         const HarmonicDegrees& degrees_of_parts, std::uint64_t seed, int threads,
+                                         const Monitor& monitor)
+    : form_(form), T_(T), degrees_(common_degrees(form, degrees_of_parts)) {
   const auto& axes = form.axes();
   const std::size_t parts = form.parts().size();
   Random random(seed, compared_stream);
@@ -304,7 +353,7 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
 
   // Parts of the same degrees are sampled together.
   std::map<std::vector<int>, std::vector<std::size_t>> groups;
-  for (std::size_t k = 0; k < parts; ++k) groups[squared(form, k)].push_back(k);
+  for (std::size_t k = 0; k < parts; ++k) groups[degrees_of_parts[k]].push_back(k);
   std::vector<std::vector<double>> direct(places.size(), std::vector<double>(parts));
   for (std::size_t i = 0; i < places.size(); ++i) squares(places[i], direct[i]);
   for (const auto& [degrees, members] : groups) {
@@ -330,7 +379,7 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
       // The constant more makes it a bound of the part.
       const HarmonicFunction upper = functions[i].raised(difference_factor * difference + own_rounding * size);
       const HarmonicPart& part = form.parts()[k];
-      const bool affine = part.distance >= 0 && fits(with_distance(form, k), degrees_);
+      const bool affine = part.distance >= 0 && fits(with_distance(form, degrees_of_parts, k), degrees_);
       Term& term = term_of(part, affine);
       add_to(term.plain, upper.lifted(degrees_).coefficients());
       if (affine)
@@ -377,15 +426,15 @@ double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluat
   return sum;
 }
 
-std::vector<SearchBox> HarmonicSensitivity::first_boxes() const { return parts_of_everything(form_.axes()); }
+std::vector<SearchBox> HarmonicSensitivity::first_boxes() const { return parts_of_everything(form_.axes(), degrees_); }
 
 std::unique_ptr<BoxJudge> HarmonicSensitivity::judge() const { return std::make_unique<HarmonicJudge>(*this); }
 
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
                               const Monitor& monitor) {
   return largest_value(
-      parts_of_everything(function.axes()), [&] { return std::make_unique<FunctionJudge>(function); }, options,
-      monitor);
+      parts_of_everything(function.axes(), function.degrees()),
+      [&] { return std::make_unique<FunctionJudge>(function); }, options, monitor);
 }
 
 BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,

@@ -87,14 +87,19 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   proof.why_not = forms.why_not;
   if (!proof.why_not.empty()) return;
   double cost = 0;
-  for (const auto& form : forms.forms) cost += HarmonicSensitivity::cost(*form);
+  std::vector<HarmonicDegrees> degrees;
+  for (const auto& form : forms.forms) {
+    degrees.push_back(degrees_of_squares(*form, result.factor, options.seed));
+    cost += HarmonicSensitivity::cost(*form, degrees.back());
+  }
   if (forms.forms.empty() || cost > most_coefficients) proof.why_not = "more joints and effects than memory holds";
   else if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
     proof.why_not = "a quick look at fewer than 1,000 candidates";
   if (proof.why_not.empty())
     if (const double loose = looseness(forms, support, space, result.factor, rows); loose > most_loose)
       proof.why_not = fmt::format(
-          "noise of the joints or of the visit, beside the instrument's, is bounded {:.0f} % too high", 100 * loose);
+          "noise of the joints or of the visit, beside the instrument's, or deflections are bounded {:.0f} % too high",
+          100 * loose);
   if (proof.why_not.empty() && !options.proof.seconds && grows_with_distance(forms))
     proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 600";
   if (!proof.why_not.empty()) return;
@@ -107,9 +112,9 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   const bool boxes_alone = several_processes(monitor);
   if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);
   std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
-  for (const auto& form : forms.forms) {
-    functions.push_back(
-        std::make_unique<HarmonicSensitivity>(*form, result.factor, options.seed, options.threads, own));
+  for (std::size_t f = 0; f < forms.forms.size(); ++f) {
+    functions.push_back(std::make_unique<HarmonicSensitivity>(*forms.forms[f], result.factor, degrees[f], options.seed,
+                                                              options.threads, own));
     if (functions.back()->defined()) continue;
     proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;

@@ -11,8 +11,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/model/whitening.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/space.hpp"
@@ -67,20 +69,38 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
 struct Kind {
   std::string name, robot, measurement, columns;
   bool tight;
+  bool turns = false;    ///< all its joints
+  bool follows = false;  ///< the last joint follows the first
+  int joints = 0;        ///< 0: any number
 };
 
 std::vector<Kind> kinds() {
   const std::string isotropic = "device: {type: isotropic, noise: 0.1 mm}";
   const std::string tracker =
       "device: {type: laser_tracker, noise: {range: 3 um, range_per_m: 1 um, angle: 6 urad}, stations: {A: [3, 1, 0.5]";
-  return {{"points", "", isotropic, "", true},
-          {"tracker", "", tracker + "}}", "", true},
-          {"tracker with a displacement of each visit", "", tracker + "}}\n  repeatability: 100 um", "", false},
-          {"two stations", "", tracker + ", B: [-2, -3, 1]}}", "station.B.x, ", true},
-          {"noise of the joints", ", encoder_noise: 0.0003", isotropic, "", false},
-          {"gear", "", isotropic, "j0.gear, ", false},
-          {"eccentricity and gear teeth", ", joint_effects: {j0: {eccentricity: yes, gear_ratio: 31}}", isotropic,
-           "j0.cos1, j0.sin1, j0.cos2, j0.sin2, j0.cos_g, j0.sin_g, ", false}};
+  const std::string elastic =
+      ", elastostatic: {loads: {light: {mass: 2, centre_of_mass: [0.1, 0, 0.2]}, heavy: {force: [20, -40, -150], "
+      "point: "
+      "[0.1, 0.2, -0.1], moment: [3, -2, 5]}}";
+  return {
+      {"points", "", isotropic, "", true},
+      {"tracker", "", tracker + "}}", "", true},
+      {"tracker with a displacement of each visit", "", tracker + "}}\n  repeatability: 100 um", "", false},
+      {"two stations", "", tracker + ", B: [-2, -3, 1]}}", "station.B.x, ", true},
+      {"noise of the joints", ", encoder_noise: 0.0003", isotropic, "", false},
+      {"gear", "", isotropic, "j0.gear, ", false},
+      {"position", "", "type: position\n  target: [0.1, 0.05, -0.02]\n  " + isotropic, "", true},
+      {"pose", "", "type: pose\n  device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.01 deg}}", "", true},
+      {"distances", "",
+       "type: distance\n  targets: {A: [0.1, 0.05, -0.02]}\n  anchors: {P: [3, 2, 0.5], Q: [-2, 3, 1]}\n  " + isotropic,
+       "", false},
+      {"a joint that follows", "", isotropic, "", true, true, true},
+      {"compliances", elastic + "}", isotropic, "j0.compliance, ", true, true},
+      {"deflections", elastic + ", compliance: {j0: 1e-5}}", isotropic, "j0.compliance, ", false, true},
+      {"loaded minus unloaded", elastic + ", compliance: {j0: 1e-5}}", isotropic + "\n  load: loaded_minus_unloaded",
+       "j0.compliance, ", false, true},
+      {"eccentricity and gear teeth", ", joint_effects: {j0: {eccentricity: yes, gear_ratio: 31}}", isotropic,
+       "j0.cos1, j0.sin1, j0.cos2, j0.sin2, j0.cos_g, j0.sin_g, ", false}};
 }
 
 /// A chain of one to four random joints with small ranges, seen by points; what a test of its sensitivity needs.
@@ -97,29 +117,32 @@ struct RandomArm {
                          random.uniform(-size, size));
     };
     std::string text = "<robot name=\"chain\"><link name=\"base\"/>", parent = "base", joints;
-    const int count = 1 + random.index(4);
+    const int count = kind.joints > 0 ? kind.joints : (kind.follows ? 2 : 1) + random.index(kind.turns ? 2 : 4);
     for (int k = 0; k < count; ++k) {
       const std::string child = fmt::format("l{}", k);
       // Effects of joints are of the first, and of one that turns.
-      const bool turns = random.uniform() < 0.7 || (k == 0 && !kind.robot.empty());
+      const bool turns = random.uniform() < 0.7 || (k == 0 && !kind.robot.empty()) || kind.turns;
+      const bool follows = kind.follows && k == count - 1;
       const double middle = random.uniform(-2, 2), half = random.uniform(0.05, turns ? 0.5 : 0.2);
       text += fmt::format(
           "<link name=\"{0}\"/><joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/><origin "
           "xyz=\"{4}\" rpy=\"{5}\"/><axis xyz=\"{6}\"/><limit lower=\"{7}\" upper=\"{8}\" effort=\"1\" "
-          "velocity=\"1\"/></joint>",
-          child, k, turns ? "revolute" : "prismatic", parent, triple(0.5), triple(3), triple(1), middle - half,
-          middle + half);
-      joints += fmt::format("j{0}.offset, j{0}.x, j{0}.rx, j{0}.rz, ", k);
+          "velocity=\"1\"/>{9}</joint>",
+          child, k, turns ? "revolute" : "prismatic", parent, triple(0.5), triple(3), triple(1),
+          follows ? -4 : middle - half, follows ? 4 : middle + half,
+          follows ? "<mimic joint=\"j0\" multiplier=\"-1\"/>" : "");
+      joints += fmt::format("{1}j{0}.x, j{0}.rx, j{0}.rz, ", k, follows ? "" : fmt::format("j{}.offset, ", k));
       parent = child;
     }
     folder.write("arm.urdf", text + "</robot>");
-    problem = read_problem(folder.write(
-        "p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot +
-                      "}\nmeasurement:\n  type: points\n  targets: {A: [" +
-                      fmt::format("{}, {}, 0.1], B: [{}, 0.05, {}", random.uniform(-0.3, 0.3),
-                                  random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)) +
-                      "]}\n  " + kind.measurement + "\nvariants: {v: {parameters: [" + joints + kind.columns +
-                      "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}}\n"));
+    const std::string points =
+        fmt::format("type: points\n  targets: {{A: [{}, {}, 0.1], B: [{}, 0.05, {}]}}\n  ", random.uniform(-0.3, 0.3),
+                    random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    problem = read_problem(
+        folder.write("p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot + "}\nmeasurement:\n  " +
+                                   (kind.measurement.starts_with("type") ? "" : points) + kind.measurement +
+                                   "\nvariants: {v: {parameters: [" + joints + kind.columns +
+                                   "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}}\n"));
     model = make_model(problem);
     workspace = std::make_unique<Workspace>(*model, problem, nullptr);
     selected = select_columns(*model, problem, problem.variants.front()).selected;
@@ -142,7 +165,7 @@ struct RandomArm {
 TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
   const char* wanted = std::getenv("POSEWRIGHT_RANDOM_ARMS");
   const int arms = wanted != nullptr ? std::atoi(wanted) : 140;
-  int wide = 0, refused = 0;
+  int wide = 0, refused = 0, loose = 0;
   const std::vector<Kind> all = kinds();
   for (int i = 0; i < arms; ++i) {
     Random random(23, std::uint64_t(i));
@@ -185,18 +208,65 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     WorkspaceBoundOptions options;
     options.proof.seconds = 0.25;
     prove_workspace(result, *space, 1000, rows, options, Monitor{});
-    if (!kind.tight && result.proof.why_not.find("too high") != std::string::npos) {
+    // "stopped": a busy machine did not even interpolate it in time.
+    if (!kind.tight &&
+        (result.proof.why_not.find("too high") != std::string::npos || result.proof.why_not == "stopped")) {
       ++refused;
       continue;
     }
     ASSERT_EQ(result.proof.why_not, "") << "arm " << i;
     EXPECT_GE(result.proof.max_ratio * result.degree, largest * (1 - 1e-12)) << "arm " << i;
     wide += int(kind.tight && result.proof.max_ratio * result.degree > 1.005 * largest);
-    EXPECT_LT(result.proof.max_ratio * result.degree, 20 * largest);
+    if (kind.tight) {
+      EXPECT_LT(result.proof.max_ratio * result.degree, 20 * largest) << "arm " << i;
+    }
+    loose += int(result.proof.max_ratio * result.degree > 20 * largest);
   }
   // A bound that is nowhere near would hold as well; random steps do not always find the largest value.
   EXPECT_LT(wide, arms / 20);
   EXPECT_LT(refused, arms / 7);
+  EXPECT_LT(loose, arms / 100);
+}
+
+TEST_F(WorkspaceProofs, NoColumnOfAnElasticArmIsFartherFromItsExpansionThanStated) {
+  double nearest = 0;
+  for (Kind kind : kinds()) {
+    if (kind.name != "deflections" && kind.name != "loaded minus unloaded") continue;
+    // Deflections of some degrees: what the first order leaves out is far above rounding.
+    kind.robot.replace(kind.robot.find("1e-5"), 4, "3e-4, j1: 2e-4");
+    kind.columns += "j1.gear, j1.compliance, ";
+    for (int i = 0; i < 40; ++i) {
+      Random random(37, std::uint64_t(i));
+      kind.joints = 2 + i % 2;
+      const RandomArm arm(folder_, kind, random);
+      const int m = int(arm.selected.size()), rows = arm.model->block_rows(arm.selected);
+      Linearisation scratch;
+      BlockArray::RowMatrix J(rows, m), B;
+      for (int sample = 0; sample < 50; ++sample) {
+        std::vector<double> q, factors;
+        for (const Coordinate& c : arm.workspace->coordinates())
+          q.push_back(c.discrete() ? c.values[std::size_t(random.index(int(c.values.size())))]
+                                   : random.uniform(c.lower, c.upper));
+        std::string why_not;
+        const auto expansion = arm.model->harmonic_expansion(q, arm.selected, why_not);
+        ASSERT_NE(expansion, nullptr) << why_not;
+        for (const ColumnFactor& f : expansion->factors()) factors.push_back(q[std::size_t(f.coordinate)]);
+        ASSERT_TRUE(expansion->at(q, factors, *expansion->work(), B, {}));
+        ASSERT_TRUE(whitened_block(*arm.model, q, {}, arm.selected, scratch, J.data(), m));
+        const std::vector<double>& remainders = expansion->remainders();
+        for (int c = 0; c < m; ++c) {
+          const double off = (J.col(c) - B.col(c)).norm(),
+                       stated = remainders.empty() ? 0.0 : remainders[std::size_t(c)];
+          EXPECT_LE(off, stated * (1 + 1e-9) + 1e-8 * J.col(c).norm() + 1e-9)
+              << kind.name << " " << i << ": "
+              << arm.model->parameters()[std::size_t(arm.selected[std::size_t(c)])].name;
+          if (stated > 0) nearest = std::max(nearest, off / stated);
+        }
+      }
+    }
+  }
+  // A remainder that is nowhere near would hold as well.
+  EXPECT_GT(nearest, 0.2);
 }
 
 TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {

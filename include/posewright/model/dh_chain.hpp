@@ -39,7 +39,7 @@ class DhChain : public TipModel {
   explicit DhChain(DhDescription chain);
 
   /// Degree 1 in each joint.
-  HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
+  HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const override;
 
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;

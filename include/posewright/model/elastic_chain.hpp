@@ -42,12 +42,25 @@ class ElasticChain : public TipModel {
 
   void take_loads_at(std::span<const double> correction) override;
 
+  /// Columns to the first order in the deflections, and how far these may be from the columns: where compliances are
+  /// constant (no compensator), joints turn, and geometry is nominal.
+  HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const override;
+  bool linearise_bent(const Point& at, double share, std::span<const int> selected, Eigen::Isometry3d& X,
+                      Twists& twists) const override;
+
   /// Torque (N·m or N) at every coordinate under load case `load`; with the links' weight where it counts.
   void torques(std::span<const double> q, int load, std::span<double> out) const {
     torques(q, load, spec_.link_gravity, out);
   }
 
  private:
+  std::string why_not_expanded(const Point& at) const;
+  /// No torque under the point's load case is larger, whatever the joints that move stand at.
+  std::vector<double> largest_torques(const Point& at) const;
+  std::vector<HarmonicColumns::Remainder> remainders_of(std::span<const int> selected,
+                                                        std::span<const double> deflection,
+                                                        std::span<const double> torque,
+                                                        std::span<const ColumnFactor> factors, const Point& at) const;
   void torques(std::span<const double> q, int load, bool link_weights, std::span<double> out) const;
   /// One elastostatic parameter and the coordinate it acts on.
   struct Spring {
@@ -56,11 +69,15 @@ class ElasticChain : public TipModel {
     int listed = 0;  ///< which of the listed positions
   };
   void add_springs(const SourcePlace& place);
+  /// Whether a compliance counts where the joints stand: one that is listed does at its own position alone.
+  bool acts(const Spring& spring, std::span<const double> q) const;
   /// Torque at one coordinate by the load case, without the weight of links.
   double load_alone(const Point& at, std::size_t coordinate) const;
   /// One configuration as the chain without springs takes it; held by this thread.
   struct Bent;
   Bent& bent(const Point& at, std::span<const int> selected) const;
+  void linearise_as(const Bent& b, const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
+                    Twists& readings) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
   void deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const;
   /// Adds what f changes because torques change with q, given its derivatives by deflections and by their derivatives.

@@ -23,6 +23,8 @@ class HarmonicRows {
   const std::vector<int>& degrees() const { return degrees_; }
   /// Distances that factors of parts depend on.
   int distances() const { return distances_; }
+  /// Each column of the parts may be off by a vector of at most this length; empty: by none.
+  const std::vector<double>& remainders() const { return remainders_; }
 
   /// Chooses what can be chosen so that the bound is near d at these configurations.
   virtual void tune(const std::vector<std::vector<double>>& configurations, std::span<const double> weights) = 0;
@@ -44,7 +46,17 @@ class HarmonicRows {
   std::vector<ColumnFactor> factors_;
   std::vector<int> degrees_;
   int distances_ = 0;
+  std::vector<double> remainders_;
 };
+
+/// Rows whose columns may be off by their remainders as rows that bound the sensitivity all the same (theory.md eq.
+/// (55)). One part of constant noise is what they may have.
+std::unique_ptr<HarmonicRows> with_remainders(std::unique_ptr<HarmonicRows> inside);
+
+/// Of the difference of two readings at the same configuration with the same constant noise: those of one less those of
+/// the other.
+std::unique_ptr<HarmonicRows> harmonic_difference(std::unique_ptr<HarmonicRows> one,
+                                                  std::unique_ptr<HarmonicRows> other);
 
 /// The factor at a coordinate's value.
 double value_of(const ColumnFactor& factor, double x);

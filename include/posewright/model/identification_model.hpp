@@ -127,6 +127,9 @@ class IdentificationModel {
   /// target counts as seen, which only tells more. Null: nothing does, `why_not` says why.
   std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
                                               std::string& why_not) const;
+  /// The same but for what its rows may be off (HarmonicRows::remainders()), which is left to the caller.
+  std::unique_ptr<HarmonicRows> harmonic_expansion(std::span<const double> q, std::span<const int> selected,
+                                                   std::string& why_not) const;
 
   /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and what is not negative where q is within
   /// reach and its actuators within their travel.

@@ -31,7 +31,7 @@ class JointEffects : public TipModel {
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const override;
   /// The offset's columns times the effects' functions, as long as no effect is known to be there.
-  HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
+  HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const override;
   void take_loads_at(std::span<const double> correction) override;
 
  private:

@@ -26,7 +26,7 @@ class SerialChain : public TipModel {
 
   /// Degree 1 in each joint; in one that others follow, the sum of their whole ratios. A gear's column is that of the
   /// offset times the joint's own reading.
-  HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const override;
+  HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const override;
 
   int offset_of(int coordinate) const override { return layout_.offset[std::size_t(coordinate)]; }
 

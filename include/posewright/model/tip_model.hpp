@@ -29,6 +29,17 @@ struct HarmonicColumns {
   std::vector<int> selected;  ///< columns that are polynomials, in place of those that were selected
   std::vector<int> degrees;   ///< of pose and columns in each coordinate; 0 for a choice
   std::vector<ColumnFactor> factors;
+
+  /// Of a robot that bends, its columns expanded to the first order in its deflections (theory.md eq. (54)): their
+  /// degree in an angle of degree 1, whether deflections are not zero, and what the expansion leaves out.
+  int order = 1;
+  bool bends = false;
+  /// The change of a point that the tip carries at a distance l of its origin by a column's parameter is off by at most
+  /// constant + lever l.
+  struct Remainder {
+    double constant = 0.0, lever = 0.0;
+  };
+  std::vector<Remainder> remainders{};  ///< one a column; empty: none
 };
 
 /// A robot that carries one tip frame: where the tip is and how each parameter moves it.
@@ -63,9 +74,14 @@ class TipModel {
   virtual bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                          std::span<double> gradient) const;
 
-  /// How the tip's pose and these columns depend on the joints, at these corrections (all parameters, or empty;
-  /// theory.md eq. (37)). Twists of zero columns are polynomials.
-  virtual HarmonicColumns harmonic_columns(std::span<const int> selected, std::span<const double> correction) const;
+  /// How the tip's pose and these columns depend on the joints, with the choices and corrections (all parameters, or
+  /// empty) of this point; theory.md eq. (37). Twists of zero columns are polynomials.
+  virtual HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const;
+
+  /// linearise() of a robot that is bent by this share of what bends it; the columns of what gives way count its whole
+  /// load. A stiff robot is not bent by any.
+  virtual bool linearise_bent(const Point& at, double share, std::span<const int> selected, Eigen::Isometry3d& X,
+                              Twists& twists) const;
 
   /// Index of the parameter that moves the tip as the reading of this coordinate does; −1: there is none.
   virtual int offset_of(int coordinate) const;

@@ -13,17 +13,26 @@ namespace posewright {
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
                               const Monitor& monitor);
 
+/// Of each part k, degrees of ‖B_k T‖² along every axis.
+using HarmonicDegrees = std::vector<std::vector<int>>;
+
+/// Twice those of the part, or less where the square does not turn as high as its entries do (an arm's first joint
+/// turns all readings alike): by the harmonics along random lines. Whoever interpolates with these degrees finds out if
+/// one is too low.
+HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed);
+
 /// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39)).
 class HarmonicSensitivity {
  public:
   /// Interpolates ‖B_k T‖² and the distances.
   /// @param T  columns × any
+  /// @param squares  degrees_of_squares()
   /// Throws nothing of its own: defined() says whether all is as the form says, and nothing stopped it.
-  HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed, int threads,
-                      const Monitor& monitor);
+  HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, const HarmonicDegrees& squares,
+                      std::uint64_t seed, int threads, const Monitor& monitor);
 
   /// Coefficients of a form's tensors together: what memory and a box's time go with.
-  static double cost(const HarmonicForm& form);
+  static double cost(const HarmonicForm& form, const HarmonicDegrees& squares);
 
   const HarmonicForm& form() const { return form_; }
   /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.

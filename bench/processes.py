@@ -1,40 +1,59 @@
-"""bench/processes.py PROGRAM PROBLEM PLAN OUT.csv OUT.svg: virtual calibrations by 1 and 2 processes, and by simulation up to 1,000.
+"""bench/processes.py PROGRAM PROBLEM PLAN [--draws N] [--repeats K] [--table OUT.csv] [--picture OUT.svg]
 
-Measured: seconds of `simulate --draws N`, with one thread a process (mpirun on this machine). Simulated, event by event:
-a first process that hands out indices and takes results as src/processes does, with the task times that one process
-measured and MESSAGE seconds of its core for a message, LATENCY seconds on the way. Everybody's own start (reading the problem, MPI) is in all of them.
+Virtual calibrations (`simulate --draws N`) by one process of two threads and by two processes of a thread each, in turn,
+K times: wall time, seconds of the cores, and what the second takes more. Then one process of one thread, and by simulation up
+to 1,000 processes of a thread each.
+
+The simulation is event by event: a first process that hands out indices and takes results as src/processes does, with the
+task's mean time as one process measured it, and with a message's cost as bench/message_cost.cpp measures it between two
+processes of this machine (compiled by mpicxx); once more with NETWORK seconds on the way, as between machines joined by
+Ethernet. Everybody's own start (reading the problem, MPI) is in all of them, as measured with two draws.
 """
+import argparse
 import csv
 import heapq
 import math
 import os
+import pathlib
 import random
+import statistics
 import subprocess
-import sys
+import tempfile
 import time
 
-DRAWS = 12_000
-MESSAGE, LATENCY = 5e-6, 50e-6  # a message's work for the first process; a fast network has a tenth of that latency
+NETWORK = 50e-6  # assumed, not measured: seconds on the way between two machines
 AHEAD, MOST = 8e-3, 4096
 COUNTS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def seconds(processes, program, problem, plan, draws):
+def message_cost():
+    """Seconds on the way, and of the first process's work for one that it receives or sends."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = os.path.join(folder, "message_cost")
+        subprocess.run(["mpicxx", "-O2", "-std=c++20", pathlib.Path(__file__).with_name("message_cost.cpp"), "-o", program], check=True)
+        words = subprocess.run(["mpirun", "-n", "2", program], check=True, capture_output=True, text=True, env=ENVIRONMENT).stdout.split()
+    cost = dict(zip(words[::2], (1e-6 * float(word) for word in words[1::2])))
+    return cost["way"], (cost["received"] + cost["sent"]) / 2
+
+
+def seconds(processes, threads, arguments, draws):
+    """Wall time and seconds of the cores."""
     start = ["mpirun", "-n", str(processes)] if processes > 1 else []
     begin, used = time.monotonic(), os.times()
-    subprocess.run([*start, program, "simulate", problem, plan, "--draws", str(draws), "--threads", "1", "--json", "--quiet"],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([*start, arguments.program, "simulate", arguments.problem, arguments.plan, "--draws", str(draws),
+                    "--threads", str(threads), "--json", "--quiet"], check=True, stdout=subprocess.DEVNULL, env=ENVIRONMENT)
     now = os.times()
     return time.monotonic() - begin, now.children_user + now.children_system - used.children_user - used.children_system
 
 
-def simulated(processes, tasks, mean, start):
-    """Wall time of so many tasks of exponentially spread length (mean ± 30 %), one thread a process."""
+def simulated(processes, tasks, mean, start, way, work):
+    """Wall time of so many tasks of length mean ± 30 %, one thread a process."""
     draw = random.Random(processes)
     ahead = 1 + min(math.ceil(AHEAD / mean), MOST)
     left, first_free = tasks, 0.0  # of the first process's attention
     # An event: a process asks for more when it has fewer than `ahead` tasks; here, when it has done half of them.
-    events = [(LATENCY, p) for p in range(1, processes)]
+    events = [(way, p) for p in range(1, processes)]
     heapq.heapify(events)
     ends = [0.0] * processes
     own = 0.0
@@ -46,22 +65,25 @@ def simulated(processes, tasks, mean, start):
             continue
         at, p = heapq.heappop(events)
         begin = max(at, first_free)
-        first_free = begin + 3 * MESSAGE  # question, answer, bundled results
-        own += 3 * MESSAGE                # its core is not at its own tasks then
+        first_free = begin + 3 * work  # question, answer, bundled results
+        own += 3 * work                # its core is not at its own tasks then
         given = min(max(1, ahead // 2), left)
         left -= given
-        work = sum(max(0.0, draw.gauss(mean, 0.3 * mean)) for _ in range(given))
-        ready = max(ends[p], begin + MESSAGE + LATENCY)
-        ends[p] = ready + work
+        length = sum(max(0.0, draw.gauss(mean, 0.3 * mean)) for _ in range(given))
+        ready = max(ends[p], begin + work + way)
+        ends[p] = ready + length
         # Half of what it has is still ahead when it asks again.
-        heapq.heappush(events, (max(begin + MESSAGE + 2 * LATENCY, ends[p] - work), p))
-    result = max(ends) + LATENCY
+        heapq.heappush(events, (max(begin + work + 2 * way, ends[p] - length), p))
+    result = max(ends) + way
     # All results go to everybody at the end, down a tree.
-    return start + result + math.ceil(math.log2(processes)) * LATENCY if processes > 1 else start + result
+    return start + result + math.ceil(math.log2(processes)) * way if processes > 1 else start + result
+
+
+COLOURS = ["#1f6f8b", "#b3541e"]
 
 
 def plot(rows, file):
-    width, height, left, right, top, bottom = 640, 360, 64, 24, 40, 52
+    width, height, left, right, top, bottom = 640, 400, 64, 24, 40, 52
     x = lambda p: left + math.log10(p) / 3 * (width - left - right)
     y = lambda s: height - bottom - math.log10(s) / 3 * (height - top - bottom)
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">'
@@ -72,37 +94,75 @@ def plot(rows, file):
                    f'<text x="{left - 8}" y="{y(10 ** k) + 4:.1f}" text-anchor="end" fill="#444">{10 ** k}</text>'
                    f'<text x="{x(10 ** k):.1f}" y="{height - bottom + 20}" text-anchor="middle" fill="#444">{10 ** k:,}</text>')
     svg.append(f'<line x1="{x(1)}" y1="{y(1)}" x2="{x(1000)}" y2="{y(1000)}" stroke="#bbb" stroke-dasharray="4 4"/>')
-    colours = {"12,000 draws": "#1f6f8b", "1,000,000 draws": "#b3541e"}
-    for name, colour in colours.items():
+    series = [name for name in dict.fromkeys(r["series"] for r in rows if r["how"] == "simulated")]
+    for k, name in enumerate(series):
         some = [r for r in rows if r["series"] == name and r["how"] == "simulated"]
         points = " ".join(f'{x(r["processes"]):.1f},{y(r["speedup"]):.1f}' for r in some)
-        svg.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>'
-                   f'<text x="{x(1000):.1f}" y="{y(some[-1]["speedup"]) + 18:.1f}" text-anchor="end" fill="{colour}">{name}, simulated</text>')
+        dash = ' stroke-dasharray="6 3"' if k % 2 else ""
+        svg.append(f'<polyline points="{points}" fill="none" stroke="{COLOURS[k // 2]}" stroke-width="2"{dash}/>'
+                   f'<line x1="{left + 12}" x2="{left + 28}" y1="{top + 30 + 20 * k}" y2="{top + 30 + 20 * k}" stroke="{COLOURS[k // 2]}" '
+                   f'stroke-width="2"{dash}/><text x="{left + 36}" y="{top + 34 + 20 * k}" fill="{COLOURS[k // 2]}">{name}, simulated</text>')
     for r in (r for r in rows if r["how"] == "measured"):
         svg.append(f'<circle cx="{x(r["processes"]):.1f}" cy="{y(r["speedup"]):.1f}" r="4" fill="#222"/>')
-    svg.append(f'<circle cx="{left + 20}" cy="{top + 10}" r="4" fill="#222"/><text x="{left + 32}" y="{top + 14}" fill="#222">measured</text>'
+    svg.append(f'<circle cx="{left + 20}" cy="{top + 10}" r="4" fill="#222"/><text x="{left + 36}" y="{top + 14}" fill="#222">measured</text>'
                f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle" fill="#444">processes, a thread each</text></svg>')
     with open(file, "w", encoding="utf-8") as out:
         out.write("\n".join(svg) + "\n")
 
 
+def compared(arguments):
+    """Two threads of one process and two processes of one thread in turn."""
+    rows = []
+    for _ in range(arguments.repeats):
+        rows.append([seconds(1, 2, arguments, arguments.draws), seconds(2, 1, arguments, arguments.draws)])
+        (wall, cores), (wall_2, cores_2) = rows[-1]
+        print(f"{arguments.draws:,} draws: two threads {wall:.1f} s wall, {cores:.1f} s of the cores; two processes {wall_2:.1f} s, "
+              f"{cores_2:.1f} s; {100 * (wall_2 / wall - 1):+.1f} % wall, {100 * (cores_2 / cores - 1):+.1f} % of the cores", flush=True)
+    ratios = [[two[k] / one[k] - 1 for one, two in rows] for k in (0, 1)]
+    print("two processes take " + ", ".join(f"{100 * min(r):.1f} to {100 * max(r):.1f} % more {what} (median {100 * statistics.median(r):.1f} %)"
+                                            for r, what in zip(ratios, ("wall time", "seconds of the cores"))))
+    return [statistics.median(two[0] for _, two in rows), statistics.median(two[1] for _, two in rows)]
+
+
 def main():
-    program, problem, plan, table, picture = sys.argv[1:]
-    (one, used), (two, used_by_two) = (seconds(p, program, problem, plan, DRAWS) for p in (1, 2))
-    start = {1: seconds(1, program, problem, plan, 2)[0], 2: seconds(2, program, problem, plan, 2)[0]}
-    mean = (used - seconds(1, program, problem, plan, 2)[1]) / DRAWS
-    rows = [{"series": "12,000 draws", "how": "measured", "processes": p, "seconds": s, "cpu": c, "speedup": one / s}
+    parser = argparse.ArgumentParser()
+    for name in ("program", "problem", "plan"):
+        parser.add_argument(name)
+    parser.add_argument("--draws", type=int, default=18_000)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--table")
+    parser.add_argument("--picture")
+    arguments = parser.parse_args()
+    two, used_by_two = compared(arguments)
+    if not arguments.table and not arguments.picture:
+        return
+    one, used = seconds(1, 1, arguments, arguments.draws)
+    start, begun = {}, {}
+    for p in (1, 2):
+        start[p], begun[p] = seconds(p, 1, arguments, 2)
+    mean = (used - begun[1]) / arguments.draws
+    way, work = message_cost()
+    print(f"a task {1e3 * mean:.2f} ms; a start {start[1]:.2f} s, of two processes {start[2]:.2f} s; a message {1e6 * way:.2f} µs on the "
+          f"way, {1e6 * work:.2f} µs of work; 2 processes {one / two:.2f} times as fast as one")
+    measured = f"{arguments.draws:,} draws"
+    rows = [{"series": measured, "how": "measured", "processes": p, "seconds": s, "cpu": c, "speedup": one / s}
             for p, s, c in ((1, one, used), (2, two, used_by_two))]
-    for name, draws in (("12,000 draws", DRAWS), ("1,000,000 draws", 1_000_000)):
-        alone = simulated(1, draws, mean, start[1])
-        for p in COUNTS:
-            s = alone if p == 1 else simulated(p, draws, mean, start[2])
-            rows.append({"series": name, "how": "simulated", "processes": p, "seconds": s, "cpu": "", "speedup": alone / s})
-    with open(table, "w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, list(rows[0]))
-        writer.writeheader()
-        writer.writerows({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in r.items()} for r in rows)
-    plot(rows, picture)
+    for draws in (arguments.draws, 1_000_000):
+        alone = simulated(1, draws, mean, start[1], way, work)
+        for on_the_way in (way, NETWORK):
+            for p in COUNTS:
+                s = alone if p == 1 else simulated(p, draws, mean, start[2], on_the_way, work)
+                rows.append({"series": f"{draws:,} draws, {1e6 * on_the_way:.0f} µs", "how": "simulated", "processes": p, "seconds": s,
+                             "cpu": "", "speedup": alone / s})
+    if arguments.table:
+        with open(arguments.table, "w", newline="", encoding="utf-8") as out:
+            writer = csv.DictWriter(out, list(rows[0]))
+            writer.writeheader()
+            writer.writerows({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in r.items()} for r in rows)
+    if arguments.picture:
+        plot(rows, arguments.picture)
+    for r in rows:
+        print(f"{r['series']}, {r['how']}: {r['processes']} processes, {r['seconds']:.2f} s, {r['speedup']:.1f} times as fast")
 
 
 main()

@@ -11,6 +11,8 @@ namespace posewright {
 bool is_npy(std::string_view bytes);
 /// Without holding the file in memory; fills in its hash.
 BlockFile read_npy(const std::filesystem::path& file, std::optional<int> rows);
+BlockShare read_npy_share(const std::filesystem::path& file, std::optional<int> rows, int rank, int processes,
+                          std::size_t spare);
 BlockFile parse_csv(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
 
 /// n from the number of table rows; throws if `rows` does not divide it or n or m is zero.

@@ -132,15 +132,20 @@ std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, s
   return {n, r, m};
 }
 
-/// Row i of all rows, from the bytes of its numbers.
-void fill_row(BlockArray& blocks, std::size_t i, const char* bytes, int item, const SourcePlace& place) {
-  const auto r = std::size_t(blocks.rows());
-  double* row = blocks.row(i / r, int(i % r));
-  for (int j = 0; j < blocks.columns(); ++j) {
+/// Where a row is, for messages.
+struct RowPlace {
+  std::size_t block;
+  int row;
+};
+
+/// A row of an array from the bytes of its numbers.
+void fill_numbers(double* row, int columns, const char* bytes, int item, const RowPlace& where,
+                  const SourcePlace& place) {
+  for (int j = 0; j < columns; ++j) {
     row[j] = number_at(bytes + j * item, item);
     if (!std::isfinite(row[j]))
       throw InputError(place,
-                       "block " + std::to_string(i / r) + ", row " + std::to_string(i % r) + ", column " +
+                       "block " + std::to_string(where.block) + ", row " + std::to_string(where.row) + ", column " +
                            std::to_string(j) + " is not finite",
                        "all numbers must be finite");
   }
@@ -154,33 +159,100 @@ BlockArray parse_npy(std::string_view bytes, std::optional<int> rows, const Sour
   const auto [n, r, m] = shape_of(header, bytes.size(), rows, place);
   BlockArray blocks(n, int(r), int(m));
   for (std::size_t i = 0; i < n * r; ++i)
-    fill_row(blocks, i, bytes.data() + header.data + i * m * std::size_t(header.item), header.item, place);
+    fill_numbers(blocks.row(i / r, int(i % r)), int(m), bytes.data() + header.data + i * m * std::size_t(header.item),
+                 header.item, {i / r, int(i % r)}, place);
   return blocks;
 }
 
-BlockFile read_npy(const std::filesystem::path& path, std::optional<int> rows) {
-  const SourcePlace place{path.string(), 0};
-  FileReader reader(path);
-  Sha256 hash;
-  std::string head(12, '\0');
-  head.resize(reader.read(head.data(), head.size()));
-  const std::size_t header_size = std::min<std::size_t>(header_end(head, place), reader.size());
-  const std::size_t known = head.size();
-  head.resize(std::max(known, header_size));
-  head.resize(known + reader.read(head.data() + known, head.size() - known));
-  hash.add(head);
-  const Header header = parse_header(head, place);
-  const auto [n, r, m] = shape_of(header, reader.size(), rows, place);
-  BlockFile file{BlockArray(n, int(r), int(m)), {}, {}};
-  std::vector<char> line(m * std::size_t(header.item));
-  for (std::size_t i = 0; i < n * r; ++i) {
-    if (reader.read(line.data(), line.size()) != line.size())
-      throw InputError(place, "is cut off", "it may have changed while it was read");
-    hash.add({line.data(), line.size()});
-    fill_row(file.blocks, i, line.data(), header.item, place);
+namespace {
+
+/// Numbers of a .npy that is read from front to back.
+class NpyReader {
+ public:
+  NpyReader(const std::filesystem::path& path, std::optional<int> rows) : place_{path.string(), 0}, reader_(path) {
+    std::string head(12, '\0');
+    head.resize(reader_.read(head.data(), head.size()));
+    if (!is_npy(head)) throw InputError(place_, "is not a .npy array", "save the array with numpy.save");
+    const std::size_t header_size = std::min<std::size_t>(header_end(head, place_), reader_.size());
+    const std::size_t known = head.size();
+    head.resize(std::max(known, header_size));
+    head.resize(known + reader_.read(head.data() + known, head.size() - known));
+    hash_.add(head);
+    header_ = parse_header(head, place_);
+    const auto [n, r, m] = shape_of(header_, reader_.size(), rows, place_);
+    count_ = n;
+    rows_ = int(r);
+    columns_ = int(m);
+    line_.resize(m * std::size_t(header_.item));
   }
-  file.sha256 = hash.hex();
+
+  std::size_t count() const { return count_; }
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+
+  void go_to(std::size_t block) { reader_.go_to(header_.data + block * std::size_t(rows_) * line_.size()); }
+  /// The next block; its bytes count for the hash.
+  void pass() {
+    for (int i = 0; i < rows_; ++i) next_line();
+  }
+  /// The same, as block `to` of an array; `block` is what messages call it.
+  void take(BlockArray& blocks, std::size_t to, std::size_t block) {
+    for (int i = 0; i < rows_; ++i) {
+      next_line();
+      fill_row(blocks.row(to, i), i, block);
+    }
+  }
+  std::string hash() { return hash_.hex(); }
+
+ private:
+  void next_line() {
+    if (reader_.read(line_.data(), line_.size()) != line_.size())
+      throw InputError(place_, "is cut off", "it may have changed while it was read");
+    hash_.add({line_.data(), line_.size()});
+  }
+  void fill_row(double* row, int i, std::size_t block) {
+    fill_numbers(row, columns_, line_.data(), header_.item, {block, i}, place_);
+  }
+
+  SourcePlace place_;
+  FileReader reader_;
+  Sha256 hash_;
+  Header header_;
+  std::size_t count_ = 0;
+  int rows_ = 0, columns_ = 0;
+  std::vector<char> line_;
+};
+
+}  // namespace
+
+BlockFile read_npy(const std::filesystem::path& path, std::optional<int> rows) {
+  NpyReader reader(path, rows);
+  BlockFile file{BlockArray(reader.count(), reader.rows(), reader.columns()), {}, {}};
+  for (std::size_t i = 0; i < reader.count(); ++i) reader.take(file.blocks, i, i);
+  file.sha256 = reader.hash();
   return file;
+}
+
+std::size_t first_of_share(std::size_t total, int rank, int processes) {
+  const std::size_t groups = (total + share_group - 1) / share_group;
+  return std::min(total, groups * std::size_t(rank) / std::size_t(processes) * share_group);
+}
+
+BlockShare read_npy_share(const std::filesystem::path& path, std::optional<int> rows, int rank, int processes,
+                          std::size_t spare) {
+  NpyReader reader(path, rows);
+  BlockShare share;
+  share.total = reader.count();
+  share.first = first_of_share(share.total, rank, processes);
+  share.count = first_of_share(share.total, rank + 1, processes) - share.first;
+  share.blocks = BlockArray(share.count + spare, reader.rows(), reader.columns());
+  reader.go_to(share.first);
+  for (std::size_t i = 0; i < share.count; ++i) reader.take(share.blocks, i, share.first + i);
+  if (rank > 0) return share;
+  // Process 0 has the first ones: it goes on to the end for the hash.
+  for (std::size_t i = share.count; i < share.total; ++i) reader.pass();
+  share.sha256 = reader.hash();
+  return share;
 }
 
 }  // namespace posewright

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "command.hpp"
@@ -5,6 +7,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/tasks/select_blocks.hpp"
 #include "task_options.hpp"
+#include "terminal.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
@@ -22,7 +25,8 @@ po::options_description select_command_options() {
       ("fixed", text("ROWS"), "blocks that are among the N: 3,17,25, from 0")                    //
       ("augment", text("ROWS"), "blocks that are measured already: N more come to them")         //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
-          "reserve", "maximise what is left when the block that hurts most is lost");
+          "reserve", "maximise what is left when the block that hurts most is lost")(
+          "spread", "each process (mpirun, srun) holds a share of the blocks: for more than fit into memory");
   options.add(output_options(false)).add(task_options());
   return options;
 }
@@ -45,6 +49,28 @@ std::vector<int> row_list(const po::variables_map& values, const std::string& op
   }
 }
 
+/// What went between the processes for each exchange.
+void tell_of_spread(const SpreadTraffic& traffic, int processes, const CommonOptions& common) {
+  if (!common.verbose) return;
+  const auto each = [](long of_all, long count) { return count > 0 ? double(of_all) / double(count) : 0.0; };
+  print_aside(fmt::format(
+      "posewright: blocks spread over {} processes; {} looks for an exchange, an all-reduce of {} bytes each; {} "
+      "blocks "
+      "of {} bytes sent to all; the busiest process had {:.2f} messages of {:.0f} bytes in all for a look, {:.2f} of "
+      "{:.0f} for a block\n",
+      processes, traffic.looks, traffic.look_bytes, traffic.blocks, traffic.block_bytes,
+      each(traffic.most_of_looks.messages, traffic.looks), each(traffic.most_of_looks.bytes, traffic.looks),
+      each(traffic.most_of_blocks.messages, traffic.blocks), each(traffic.most_of_blocks.bytes, traffic.blocks)));
+}
+
+/// Spread candidates have no tasks of their own: an exchange follows from the one before.
+void require_no_log(const po::variables_map& values) {
+  for (const char* option : {"resume", "shard"})
+    if (values.count(option) > 0)
+      throw InputError({}, std::string("--") + option + " with --spread",
+                       "one exchange follows from the other: there are no finished tasks to keep");
+}
+
 int run_select(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path file = single(positional, "BLOCKS");
@@ -63,8 +89,20 @@ int run_select(const po::variables_map& values, const Words& positional) {
   select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;
   select.threads = common.threads;
+  const bool spread = values.count("spread") > 0;
+  if (spread) require_no_log(values);
   const auto engine = engine_of(values, "select");
   const Outputs outputs(values, {file}, false);
+  if (spread)
+    return outputs.search_and_write(
+        common, time_limit(values),
+        [&](const Monitor& monitor) {
+          SpreadTraffic traffic;
+          Plan plan = select_spread(file, select, engine->workers(), monitor, traffic);
+          tell_of_spread(traffic, engine->workers().processes(), common);
+          return plan;
+        },
+        {}, engine.get());
   return outputs.search_and_write(
       common, time_limit(values), [&](const Monitor& monitor) { return select_blocks(file, select, monitor); }, {},
       engine.get());

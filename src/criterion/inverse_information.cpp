@@ -1,10 +1,12 @@
 #include "posewright/criterion/inverse_information.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/kernels.hpp"
 #include "posewright/criterion/sensitivity.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/parallel.hpp"
 #include "regular.hpp"
 
 namespace posewright {
@@ -16,12 +18,13 @@ constexpr double singular_swap = 1e-4;
 
 }  // namespace
 
-InverseInformation::InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior)
+InverseInformation::InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior, int threads)
     : blocks_(blocks),
       prior_(prior),
       columns_(columns),
       stride_(blocks.stride()),
       rows_(blocks.rows()),
+      threads_(threads),
       v_(std::size_t(columns) * std::size_t(stride_)),
       d_(blocks.count()),
       y_(std::size_t(2 * rows_ * stride_)),
@@ -43,7 +46,7 @@ bool InverseInformation::refresh(const std::vector<int>& members, double ridge) 
                                                                Eigen::OuterStride<>(stride_));
   v.noalias() = inverse_factor.transpose() * inverse_factor;
 
-  information_traces(blocks_, inverse_factor, columns_, d_);
+  information_traces(blocks_, inverse_factor, columns_, d_, threads_);
   return true;
 }
 
@@ -61,9 +64,15 @@ void InverseInformation::cross(int candidate, const std::vector<double>& y, Eige
   c.transposeInPlace();
 }
 
-void InverseInformation::own(int candidate, Eigen::MatrixXd& d) {
-  project(candidate, scratch_);
-  cross(candidate, scratch_, d);
+void InverseInformation::own(int candidate, std::vector<double>& y, Eigen::MatrixXd& d) const {
+  project(candidate, y);
+  cross(candidate, y, d);
+}
+
+void InverseInformation::measure(int candidate) {
+  Eigen::MatrixXd d(rows_, rows_);
+  own(candidate, scratch_, d);
+  d_[std::size_t(candidate)] = d.trace();
 }
 
 bool InverseInformation::change(int leave, int enter) {
@@ -84,7 +93,7 @@ bool InverseInformation::change(int leave, int enter) {
     first += rows_;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()));
-  const Eigen::VectorXd lambda = eigen.eigenvalues();
+  const Eigen::VectorXd& lambda = eigen.eigenvalues();
   if (!(lambda.cwiseAbs().minCoeff() > singular_swap)) return false;
 
   log_det_ += lambda.cwiseAbs().array().log().sum();
@@ -94,8 +103,12 @@ bool InverseInformation::change(int leave, int enter) {
   const Eigen::VectorXd sign = lambda.array().sign();
   Eigen::Map<BlockArray::RowMatrix> v(v_.data(), columns_, stride_);
   v.noalias() -= directions.leftCols(columns_).transpose() * sign.asDiagonal() * directions;
-  kernels().subtract_squares(blocks_.data(), blocks_.count(), rows_, stride_, directions.data(), sign.data(), size,
-                             d_.data());
+  constexpr std::size_t chunk = 8192;
+  parallel_for((blocks_.count() + chunk - 1) / chunk, threads_, [&](std::size_t c, int) {
+    const std::size_t first = c * chunk, count = std::min(chunk, blocks_.count() - first);
+    kernels().subtract_squares(blocks_.row(first, 0), count, rows_, stride_, directions.data(), sign.data(), size,
+                               d_.data() + first);
+  });
   return true;
 }
 

@@ -17,26 +17,28 @@ std::vector<double> tiled(const Eigen::MatrixXd& T, int columns, int stride) {
   return t;
 }
 
-}  // namespace
-
-void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
-                        std::vector<double>& d) {
+/// ‖x T‖² of the leading columns, by stretches of blocks: what each gets does not depend on its neighbours.
+void pass(const BlockArray& blocks, const Eigen::MatrixXd& T, int columns, int threads, std::vector<double>& d) {
   d.resize(blocks.count());
   const int stride = (columns + 15) / 16 * 16;
-  const std::vector<double> t = tiled(inverse_factor.transpose(), columns, stride);
-  kernels().traces(blocks.data(), blocks.count(), blocks.rows(), blocks.stride(), t.data(), stride, columns, d.data());
-}
-
-void sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T, int threads, std::vector<double>& d) {
-  d.resize(blocks.count());
-  const int columns = blocks.columns(), stride = (columns + 15) / 16 * 16;
   const std::vector<double> t = tiled(T, columns, stride);
   constexpr std::size_t chunk = 4096;
-  parallel_for((blocks.count() + chunk - 1) / chunk, thread_count(threads), [&](std::size_t c, int) {
+  parallel_for((blocks.count() + chunk - 1) / chunk, threads, [&](std::size_t c, int) {
     const std::size_t first = c * chunk, count = std::min(chunk, blocks.count() - first);
     kernels().traces(blocks.row(first, 0), count, blocks.rows(), blocks.stride(), t.data(), stride, columns,
                      d.data() + first);
   });
+}
+
+}  // namespace
+
+void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
+                        std::vector<double>& d, int threads) {
+  pass(blocks, inverse_factor.transpose(), columns, threads, d);
+}
+
+void sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T, int threads, std::vector<double>& d) {
+  pass(blocks, T, blocks.columns(), thread_count(threads), d);
 }
 
 }  // namespace posewright

@@ -14,10 +14,6 @@
 namespace posewright {
 namespace {
 
-// Weights of more candidates than this are settled at a gap that no figure shows: a step costs the cube of their
-// number.
-constexpr std::size_t most_settled = 1200;
-constexpr double settled_gap = 1e-6;
 // Less is what an interior point leaves on candidates that are in no solution.
 constexpr double trace_of_weight = 1e-6;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,10 @@
 
 namespace posewright {
 
+// Weights of more candidates than this are settled at a gap that no figure shows: a step costs the cube of their
+// number.
+inline constexpr std::size_t most_settled = 1200;
+inline constexpr double settled_gap = 1e-6;
 /// A bound with the rounding of the pass behind it, generously.
 double with_margin(double bound);
 

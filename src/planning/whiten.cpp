@@ -31,10 +31,18 @@ double Whitening::log_det_offset(int nuisance) const {
 }
 
 Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior) {
-  const int m = blocks.columns();
+  const auto solve = [&](const Eigen::MatrixXd& r) {
+    for_each_chunk(blocks, [&](auto rows) { r.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows); });
+  };
+  return whiten(
+      blocks.columns(), [&] { return gram(blocks); }, solve, prior);
+}
+
+Whitening whiten(int m, const std::function<Eigen::MatrixXd()>& gram,
+                 const std::function<void(const Eigen::MatrixXd& r)>& solve, const Eigen::MatrixXd& prior) {
   Whitening whitening{Eigen::MatrixXd::Identity(m, m), prior};
   for (int pass = 0; pass < 2; ++pass) {
-    Eigen::MatrixXd information = gram(blocks);
+    Eigen::MatrixXd information = gram();
     if (prior.size() > 0) information += whitening.prior;
     Eigen::VectorXd scale = information.diagonal().cwiseSqrt();
     if (!(scale.minCoeff() > 0)) throw CannotDo("a parameter has no effect on any candidate");
@@ -44,7 +52,7 @@ Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior) {
     if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() > 1e-7))
       throw CannotDo("the parameters cannot be identified from these candidates: columns are linearly dependent");
     const Eigen::MatrixXd r = factor.matrixU() * Eigen::MatrixXd(scale.asDiagonal());
-    for_each_chunk(blocks, [&](auto rows) { r.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows); });
+    solve(r);
     whitening.R = r * whitening.R;
     if (prior.size() == 0) continue;
     const auto upper = r.triangularView<Eigen::Upper>();

@@ -11,11 +11,13 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/process_module.hpp"
+#include "tree.hpp"
 
 namespace posewright {
 namespace {
@@ -24,7 +26,7 @@ using namespace std::chrono_literals;
 
 // A process looks for messages this often: soon at first and where threads wait, then less and less, because looking
 // takes time from the tasks.
-constexpr std::chrono::nanoseconds first_pause = 100us, longest_pause = 2ms;
+constexpr std::chrono::nanoseconds first_pause = 100us;
 // After an error the others are waited for no longer.
 constexpr auto patience = 2s;
 // A process has tasks ahead for so long, so that no thread waits for a message. Of long tasks none: at the end another
@@ -34,7 +36,7 @@ constexpr double most_ahead = 4096;
 // Broadcasts in pieces: MPI counts in int.
 constexpr std::size_t piece = std::size_t(1) << 30;
 
-enum Tag : int { asks = 1, tasks = 2, result = 3 };
+enum Tag : int { asks = 1, tasks = 2, result = 3 };  // 4: tree.cpp
 
 using Results = std::vector<std::pair<std::size_t, std::string>>;
 
@@ -131,21 +133,6 @@ class Pause {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), last_ = begin_;
 };
 
-/// Waits until the others are that far. MPI's own waiting keeps a core busy that another process of this machine may
-/// need; this one looks often at first, and then adds no more than a part of what was waited for.
-void wait(MPI_Request& request) {
-  constexpr int looks_at_once = 200, part = 8;
-  const auto begin = std::chrono::steady_clock::now();
-  for (int looks = 1;; ++looks) {
-    int there = 0;
-    MPI_Test(&request, &there, MPI_STATUS_IGNORE);
-    if (there != 0) return;
-    if (looks < looks_at_once) continue;
-    const auto waited = std::chrono::steady_clock::now() - begin;
-    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / part, longest_pause));
-  }
-}
-
 /// Messages on their way. MPI's own sending waits, on a busy core, until the other process looks for them.
 class Outbox {
  public:
@@ -186,11 +173,16 @@ class MpiWorkers : public Workers {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &processes_);
+    tree_.emplace(rank_, processes_);
   }
 
   int rank() const override { return rank_; }
   int processes() const override { return processes_; }
-  Traffic traffic() const override { return traffic_; }
+  Traffic traffic() const override {
+    const Traffic trees = tree_->all();
+    return {traffic_.messages + trees.messages, traffic_.bytes + trees.bytes};
+  }
+  Traffic own_traffic() const override { return tree_->own(); }
 
   void compute(const std::vector<std::size_t>& indices, int threads, const Task& task,
                const TaskResult& finished) override {
@@ -209,6 +201,9 @@ class MpiWorkers : public Workers {
     // A tree of messages: every other process gets it once.
     count(2L * (processes_ - 1), long(size + sizeof size) * (processes_ - 1));
   }
+
+  void share_from(int from, std::string& bytes) override { tree_->share(from, bytes); }
+  void combine(std::string& bytes, const Join& join) override { tree_->combine(bytes, join); }
 
   void leave(int exit_code) override {
     MPI_Request together = MPI_REQUEST_NULL;
@@ -329,16 +324,9 @@ class MpiWorkers : public Workers {
     return true;
   }
 
-  static std::string received(const MPI_Status& status) {
-    int size = 0;
-    MPI_Get_count(&status, MPI_BYTE, &size);
-    std::string message(std::size_t(size), '\0');
-    MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return message;
-  }
-
   int rank_ = 0, processes_ = 1;
   Outbox outbox_;
+  std::optional<Tree> tree_;
   Traffic traffic_;
 };
 

@@ -73,6 +73,8 @@ std::size_t FileReader::read(char* to, std::size_t count) {
   return std::size_t(in_.gcount());
 }
 
+void FileReader::go_to(std::uintmax_t byte) { in_.seekg(std::streamoff(byte)); }
+
 std::vector<fs::path> files_read() {
   InputRecord& record = input_record();
   const std::lock_guard lock(record.mutex);

@@ -25,7 +25,10 @@ class Threads : public Workers {
     });
   }
   void share(std::string&) override {}
+  void share_from(int, std::string&) override {}
+  void combine(std::string&, const Join&) override {}
   Traffic traffic() const override { return {}; }
+  Traffic own_traffic() const override { return {}; }
   void leave(int) override {}
 };
 

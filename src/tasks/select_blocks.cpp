@@ -1,8 +1,10 @@
 #include "posewright/tasks/select_blocks.hpp"
 
 #include <chrono>
+#include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "fill_plan.hpp"
 #include "posewright/blocks/read_blocks.hpp"
@@ -47,9 +49,9 @@ std::vector<int> given_blocks(const BlockFile& file, const SelectOptions& option
   return all;
 }
 
-void require_enough(const BlockFile& file, const SelectOptions& options) {
+void require_enough(const BlockArray& blocks, const SelectOptions& options) {
   const int poses = options.poses + int(options.measured.size());
-  const int m = file.blocks.columns(), r = file.blocks.rows();
+  const int m = blocks.columns(), r = blocks.rows();
   if (options.nuisance < 0 || options.nuisance >= m)
     throw InputError({}, "--nuisance " + std::to_string(options.nuisance),
                      "0 to " + std::to_string(m - 1) + " of the " + std::to_string(m) + " columns");
@@ -61,7 +63,7 @@ void require_enough(const BlockFile& file, const SelectOptions& options) {
 
 /// The candidates that are left, the information of the blocks that are given, and the blocks themselves.
 struct Start {
-  std::vector<int> free;
+  std::vector<int> free;  // empty: all of the file
   Eigen::MatrixXd prior;
   BlockArray given;
 };
@@ -118,7 +120,8 @@ void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation
     PlannedPose pose;
     pose.id = int(i) + 1;
     const bool chosen = i >= given.size();
-    pose.candidate = chosen ? start.free[std::size_t(found.design.members[i - given.size()])] : given[i];
+    const int member = chosen ? found.design.members[i - given.size()] : 0;
+    pose.candidate = !chosen ? given[i] : start.free.empty() ? member : start.free[std::size_t(member)];
     pose.measured = !chosen && i >= options.fixed.size();
     pose.fixed = !chosen && !pose.measured;
     pose.contribution = evaluation.contribution[Eigen::Index(i)];
@@ -129,23 +132,69 @@ void fill(Plan& plan, const SelectOptions& options, const Evaluation& evaluation
   plan.proved_optimal = found.design.optimal;
 }
 
-}  // namespace
+void fill(Plan& plan, const std::vector<Parameter>& parameters, const Evaluation& evaluation,
+          const SearchResult& found) {
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    plan.parameters.push_back({parameters[j], "", evaluation.sigma[Eigen::Index(j)], ""});
+  plan.interrupted = found.stopped;
+  plan.statistics.exchanges = found.design.exchanges;
+  plan.statistics.restarts = found.design.restarts;
+}
 
-Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& monitor) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_known(options.criterion, options.method, {}, {});
-  require_block_criterion(options.criterion);
+Plan begun_plan(const SelectOptions& options, const std::string& sha256) {
   Plan plan;
   plan.seed = options.seed;
   name_criterion(plan, options.criterion);
   plan.method = options.method;
   plan.scaling = "none";
   plan.reserve = options.reserve;
-  plan.problem_sha256 = file.sha256;
+  plan.problem_sha256 = sha256;
+  return plan;
+}
+
+/// What a search over spread candidates does not do is said before anything is read.
+void require_spread(const SelectOptions& options) {
+  const auto refuse = [](const std::string& what, const char* instead) {
+    throw InputError({}, what + " with --spread", instead);
+  };
+  if (options.criterion != "o1" && options.criterion != "ds") refuse("--criterion " + options.criterion, "o1 or ds");
+  if (options.method != "exchange" && options.method != "greedy")
+    refuse("--method " + options.method, "exchange or greedy");
+  if (options.nuisance > 0) refuse("--nuisance", "all columns count; without --spread they may be eliminated");
+  if (!options.fixed.empty()) refuse("--fixed", "all blocks are chosen; leave it out");
+  if (!options.measured.empty()) refuse("--augment", "all blocks are chosen; leave it out");
+  if (options.reserve) refuse("--reserve", "leave it out");
+  if (options.restarts) refuse("--restarts", "it starts from the optimal weights and from nothing; leave it out");
+}
+
+/// read_block_share(); what a process finds wrong is thrown on all, the first candidate's error first.
+BlockShare share_of(const std::filesystem::path& file, const SelectOptions& options, Workers& workers) {
+  BlockShare share;
+  std::string wrong;
+  try {
+    share = read_block_share(file, options.rows, workers.rank(), workers.processes(), std::size_t(options.poses) + 1);
+  } catch (const InputError& error) {
+    wrong = error.what();
+  }
+  workers.combine(wrong, [](std::string_view lower, std::string_view higher) {
+    return std::string(lower.empty() ? higher : lower);
+  });
+  if (!wrong.empty()) throw InputError({}, wrong, "");
+  workers.share_from(0, share.sha256);
+  return share;
+}
+
+}  // namespace
+
+Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_known(options.criterion, options.method, {}, {});
+  require_block_criterion(options.criterion);
+  Plan plan = begun_plan(options, file.sha256);
   const std::vector<int> given = given_blocks(file, options);
   if (options.reserve && !options.fixed.empty())
     throw InputError({}, "--reserve stands beside --fixed", "one of both: what is fixed may be lost, too");
-  require_enough(file, options);
+  require_enough(file.blocks, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
   SearchRequest request;
@@ -171,11 +220,7 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   const std::vector<double> without =
       given.empty() ? std::vector<double>{} : without_given(all, given.size(), request, options, found.degree);
   fill(plan, options, evaluation, found, start, given, without);
-  for (std::size_t j = 0; j < parameters.size(); ++j)
-    plan.parameters.push_back({parameters[j], "", evaluation.sigma[Eigen::Index(j)], ""});
-  plan.interrupted = found.stopped;
-  plan.statistics.exchanges = found.design.exchanges;
-  plan.statistics.restarts = found.design.restarts;
+  fill(plan, parameters, evaluation, found);
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }
@@ -184,6 +229,32 @@ Plan select_blocks(const std::filesystem::path& path, const SelectOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   Plan plan = select_blocks(read_blocks(path, options.rows), options, monitor);
   plan.problem_file = path.string();
+  plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
+}
+
+Plan select_spread(const std::filesystem::path& file, const SelectOptions& options, Workers& workers,
+                   const Monitor& monitor, SpreadTraffic& traffic) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_known(options.criterion, options.method, {}, {});
+  require_spread(options);
+  BlockShare share = share_of(file, options, workers);
+  require_enough(share.blocks, options);
+  if (double(options.poses) >= double(share.total) * options.repeats.most)
+    throw CannotDo(std::to_string(options.poses) + " of " + std::to_string(share.total) +
+                   " candidates leave nothing to choose");
+  if (share.total > std::size_t(std::numeric_limits<int>::max()))
+    throw CannotDo(std::to_string(share.total) + " candidates are more than can be numbered");
+  Plan plan = begun_plan(options, share.sha256);
+  plan.problem_file = file.string();
+  std::vector<std::string> names(std::size_t(share.blocks.columns()));
+  for (std::size_t j = 0; j < names.size(); ++j) names[j] = "column " + std::to_string(j);
+  const std::vector<Parameter> parameters = labels(names, 0);
+  const SearchResult found = search_spread(
+      std::move(share), {options.method, options.poses, options.repeats, options.threads}, workers, monitor, traffic);
+  const Evaluation evaluation = evaluate(found.chosen.front(), parameters);
+  fill(plan, options, evaluation, found, {}, {}, {});
+  fill(plan, parameters, evaluation, found);
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

@@ -62,6 +62,30 @@ TEST(ReadBlocks, CsvWithHeaderNamesColumns) {
   EXPECT_EQ(file.blocks.block(0)(1, 1), -0.4);
 }
 
+TEST(ReadBlocks, SharesOfAnyNumberOfProcessesAreTheWholeFileInItsOrder) {
+  const TemporaryFolder folder;
+  constexpr std::size_t total = 1000;
+  std::vector<double> numbers(total * 2 * 3);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = double(i);
+  const auto path = folder.write("b.npy", npy(header("(1000, 2, 3)"), numbers));
+  const BlockFile whole = read_blocks(path, {});
+  for (const int processes : {1, 2, 3, 7, 40}) {
+    std::size_t next = 0;
+    for (int rank = 0; rank < processes; ++rank) {
+      const BlockShare share = read_block_share(path, {}, rank, processes, 4);
+      EXPECT_EQ(share.first, next);
+      EXPECT_EQ(share.total, total);
+      EXPECT_EQ(share.blocks.count(), share.count + 4);
+      EXPECT_EQ(share.sha256, rank == 0 ? whole.sha256 : "");
+      for (std::size_t i = 0; i < share.count; ++i)
+        EXPECT_EQ(share.blocks.block(i), whole.blocks.block(next + i)) << processes << " processes, " << rank;
+      next += share.count;
+    }
+    EXPECT_EQ(next, total);
+  }
+  EXPECT_THROW(read_block_share(folder.write("t.csv", "1,2\n3,4\n"), 1, 0, 2, 0), InputError);
+}
+
 struct Bad {
   const char* what;
   std::string bytes;

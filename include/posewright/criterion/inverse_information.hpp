@@ -11,7 +11,8 @@ namespace posewright {
 /// d_j = tr(J_j V J_jᵀ) of every candidate j. Updated by rank 2r (Sherman–Morrison–Woodbury), refreshed by Cholesky.
 class InverseInformation {
  public:
-  InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior);
+  /// @param threads  for the passes over all candidates, ≥ 1
+  InverseInformation(const BlockArray& blocks, int columns, const Eigen::MatrixXd* prior, int threads = 1);
 
   /// From scratch. Returns false (and leaves everything untouched) where M is not safely positive definite.
   bool refresh(const std::vector<int>& members, double ridge);
@@ -26,7 +27,10 @@ class InverseInformation {
   /// J_candidate Yᵀ: r × r, Y from project().
   void cross(int candidate, const std::vector<double>& y, Eigen::MatrixXd& c) const;
   /// D_candidate = J V Jᵀ, r × r.
-  void own(int candidate, Eigen::MatrixXd& d);
+  /// @param y  room for Y
+  void own(int candidate, std::vector<double>& y, Eigen::MatrixXd& d) const;
+  /// d of a candidate whose block is another one now.
+  void measure(int candidate);
   /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter; −1 for nobody. Returns false if the update would lose all accuracy:
   /// nothing has changed then and the caller refreshes instead.
   bool change(int leave, int enter);
@@ -34,7 +38,7 @@ class InverseInformation {
  private:
   const BlockArray& blocks_;
   const Eigen::MatrixXd* prior_;  ///< null: none
-  int columns_, stride_, rows_;
+  int columns_, stride_, rows_, threads_;
   std::vector<double> v_;  ///< columns × stride, row-major
   std::vector<double> d_;
   double log_det_ = 0.0;

@@ -11,7 +11,7 @@ namespace posewright {
 /// @param inverse_factor  L⁻¹ of M = L Lᵀ; its leading columns × columns part is used
 /// @param d               resized to blocks.count()
 void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
-                        std::vector<double>& d);
+                        std::vector<double>& d, int threads = 1);
 
 /// d_i = tr(J_i S J_iᵀ) of every candidate for S = T Tᵀ: what a unit of weight on i adds to Φ (see Expansion). One pass
 /// over the blocks, O(n r m²/2), on `threads` threads (0 = all).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "posewright/blocks/block_array.hpp"
 
@@ -21,5 +22,11 @@ struct Whitening {
 /// Throws CannotDo if the columns are linearly dependent.
 /// With a prior (information per pose) Σ JᵀJ / n + prior becomes I, so that candidates need not tell everything.
 Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior = {});
+
+/// The same of m columns of blocks wherever they are.
+/// @param gram   Σ JᵀJ / n, its lower triangle
+/// @param solve  replaces every J by J r⁻¹, r upper triangular
+Whitening whiten(int columns, const std::function<Eigen::MatrixXd()>& gram,
+                 const std::function<void(const Eigen::MatrixXd& r)>& solve, const Eigen::MatrixXd& prior);
 
 }  // namespace posewright

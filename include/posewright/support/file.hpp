@@ -18,6 +18,8 @@ class FileReader {
   explicit FileReader(const std::filesystem::path& file);
   /// Up to `count` bytes into `to`; fewer only at the end.
   std::size_t read(char* to, std::size_t count);
+  /// The next byte that is read is this one of the file.
+  void go_to(std::uintmax_t byte);
   std::uintmax_t size() const { return size_; }
 
  private:

@@ -10,7 +10,9 @@
 #include "posewright/outputs/plan.hpp"
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/search/spread_search.hpp"
 #include "posewright/support/monitor.hpp"
+#include "posewright/support/workers.hpp"
 
 namespace posewright {
 
@@ -37,6 +39,14 @@ struct SelectOptions {
 Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor& monitor);
 /// The same for a file.
 Plan select_blocks(const std::filesystem::path& file, const SelectOptions& options, const Monitor& monitor);
+
+/// The same for a .npy file whose blocks are spread over processes, each of which holds its share (search_spread()).
+/// @param traffic  what went between the processes
+/// Throws InputError, on every process alike, for what this search does not do: criteria other than o1 and ds, methods
+/// other than exchange and greedy, nuisance columns, fixed or measured blocks, a reserve, restarts, as many poses as
+/// candidates.
+Plan select_spread(const std::filesystem::path& file, const SelectOptions& options, Workers& workers,
+                   const Monitor& monitor, SpreadTraffic& traffic);
 
 /// What chosen blocks are worth by a criterion in its own terms (docs/plan-file.md).
 /// @param evaluation  of the same blocks

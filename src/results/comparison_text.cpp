@@ -18,9 +18,9 @@ constexpr std::size_t names_shown = 3;
 constexpr double no_bias = 1e-9;
 
 std::string headline(const Comparison& c) {
-  std::string text = fmt::format("{} variant{}, {} plan{}; {} candidates that every variant can take\n",
-                                 c.variants.size(), c.variants.size() == 1 ? "" : "s", c.plans.size(),
-                                 c.plans.size() == 1 ? "" : "s", c.candidates);
+  std::string text =
+      fmt::format("{} variant{}, {} plan{}; {} candidates that every variant can take\n", c.variants.size(),
+                  c.variants.size() == 1 ? "" : "s", c.plans.size(), c.plans.size() == 1 ? "" : "s", c.candidates);
   if (!c.method.empty())
     text += fmt::format("Plans searched for each variant alone: criterion {}, method {}.\n", c.criterion, c.method);
   return text;

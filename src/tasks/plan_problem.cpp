@@ -210,14 +210,16 @@ class PlanSearch {
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;
-    if (std::string risk =
-            poses_at_risk(study_.first(), poses, int(study_.measured.count()) + 1, settings_.planner.seed);
-        !risk.empty())
-      plan.statistics.notes.push_back(std::move(risk));
+    if (problem_.workspace.readable_for == 0) warn_of_lost_poses(plan, poses);
     plan.proved_optimal = found.design.optimal;
     // A search that had its say before the signal came is not distinguished: the run was ended.
     plan.interrupted = found.stopped || monitor_.was_interrupted();
     return plan;
+  }
+
+  void warn_of_lost_poses(Plan& plan, const Configurations& poses) const {
+    std::string risk = poses_at_risk(study_.first(), poses, int(study_.measured.count()) + 1, settings_.planner.seed);
+    if (!risk.empty()) plan.statistics.notes.push_back(std::move(risk));
   }
 
   /// Fixed poses, then what the search chose.

@@ -68,7 +68,7 @@ def pixels(T, board):
 def lost_poses(folder, chain, draws=200):
     """Poses a draw of which the board is not whole in the picture, camera and board 5 mm and 1 deg (1 sigma) off along each axis."""
     plan, random = json.loads((folder / "plan.json").read_text()), np.random.default_rng(11)
-    tips = [forward(chain, [pose["configuration"][f"joint_a{k}"] for k in range(1, 7)]) for pose in plan["poses"]]
+    tips = [forward(chain, pose["configuration"]) for pose in plan["poses"]]
     camera, board = rigid([0.25, 0.06, 0], [0, np.sqrt(0.5), 0, np.sqrt(0.5)]), rigid([1.25, 0.0625, -0.74], [1, 0, 0, 0])
     sigma, lost = np.array([5e-3] * 3 + [np.pi / 180] * 3), 0
     assert all(pixels(T @ camera, board)[1] for T in tips)

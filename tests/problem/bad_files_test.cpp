@@ -242,6 +242,7 @@ const BadFile cells[] = {
     {"ToolInDegrees", cell, "\"2 m\"", "\"2 deg\"", 11, "wrong unit"},
     {"SingularityNegative", cell, "smallest: 0.05", "smallest: -1", 12, "> 0"},
     {"UncalibratedNegative", cell, "uncalibrated: 3", "uncalibrated: -3", 13, ">= 0"},
+    {"ReadableForNegative", cell, "uncalibrated: 3", "readable_for: -1", 13, "0 to 1000"},
     {"SamplerUnknown", cell, "gaussian: 1", "gauss: 1", 14, "unknown key 'gauss'"},
     {"SamplersDrawNothing", cell, "{even: 2, boundary: 1, obstacle_based: 1, gaussian: 1, clearance: 0}", "{even: 0}",
      14, "draws nothing"},

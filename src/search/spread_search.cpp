@@ -66,11 +66,13 @@ void count(Traffic& traffic, const Traffic& before, const Traffic& after) {
 class SpreadDesign {
  public:
   /// @param offset  what is added to Φ for people
-  SpreadDesign(SpreadCandidates& candidates, const SpreadRequest& request, double offset, const Monitor& monitor,
-               SpreadTraffic& traffic)
+  /// @param so_far  the best Φ of earlier starts, for progress
+  SpreadDesign(SpreadCandidates& candidates, const SpreadRequest& request, double offset, double so_far,
+               const Monitor& monitor, SpreadTraffic& traffic)
       : candidates_(candidates),
         request_(request),
         offset_(offset),
+        so_far_(so_far),
         monitor_(monitor),
         traffic_(traffic),
         state_(candidates.own(), candidates.own_count(), request.poses, thread_count(candidates.threads())) {}
@@ -201,13 +203,13 @@ class SpreadDesign {
       ++accepted;
     }
     exchanges_ += accepted;
-    monitor_.report({"exchange", double(exchanges_), 0, state_.value() + offset_, {}, {}});
+    monitor_.report({"exchange", double(exchanges_), 0, std::max(state_.value(), so_far_) + offset_, {}, {}});
     return accepted;
   }
 
   SpreadCandidates& candidates_;
   const SpreadRequest& request_;
-  double offset_;
+  double offset_, so_far_;
   const Monitor& monitor_;
   SpreadTraffic& traffic_;
   ShareState state_;
@@ -271,7 +273,7 @@ Design best_design(SpreadCandidates& candidates, const SpreadRequest& request, c
   const bool greedy = request.method == "greedy";
   for (const bool by_weights : {true, false}) {
     if ((by_weights && greedy) || best.stopped) continue;
-    SpreadDesign design(candidates, request, offset, monitor, traffic);
+    SpreadDesign design(candidates, request, offset, best.value, monitor, traffic);
     if (by_weights) design.begin(rounded(weights, request));
     design.fill();
     if (!greedy) design.settle();

@@ -1,6 +1,7 @@
 // mpicxx -O2 -std=c++20 bench/message_cost.cpp -o message_cost; mpirun -n 2 message_cost
 // Prints microseconds: of a message of 64 bytes on its way (half of there and back), and of the work for one that is
-// received, as src/processes does it (look, size, take), and sent. bench/processes.py simulates with them.
+// received, as src/processes does it (look, size, take), and sent; and of a megabyte of a long message.
+// The least of several repeats: other programs of the machine only add. bench/processes.py simulates with them.
 #include <mpi.h>
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace {
 
-constexpr int rounds = 5000, repeats = 9, size = 64;
+constexpr int rounds = 1000, repeats = 40, size = 64;
 
 bool look(int from, MPI_Status& status) {
   int there = 0;
@@ -65,10 +66,21 @@ void work(int rank, double& receiving, double& sending) {
   MPI_Bcast(&sending, 1, MPI_DOUBLE, 1, MPI_COMM_WORLD);
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + long(values.size()) / 2, values.end());
-  return values[values.size() / 2];
+/// Seconds for a million bytes of a long message.
+double long_message(int rank) {
+  constexpr int million = 1000000, count = 4, sendings = 2;
+  static std::vector<char> bytes(std::size_t(count) * million);
+  MPI_Barrier(MPI_COMM_WORLD);
+  const double begin = MPI_Wtime();
+  for (int i = 0; i < sendings; ++i) {
+    if (rank == 1) MPI_Send(bytes.data(), int(bytes.size()), MPI_BYTE, 0, 2, MPI_COMM_WORLD);
+    else MPI_Recv(bytes.data(), int(bytes.size()), MPI_BYTE, 1, 2, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return (MPI_Wtime() - begin) / (count * sendings);
 }
+
+double least(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
 
 }  // namespace
 
@@ -76,15 +88,17 @@ int main(int count, char** arguments) {
   MPI_Init(&count, &arguments);
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  std::vector<double> ways, received, sent;
+  std::vector<double> ways, received, sent, millions;
   for (int i = 0; i < repeats; ++i) {
     ways.push_back(there_and_back(rank) / 2);
     double receiving = 0, sending = 0;
     work(rank, receiving, sending);
     received.push_back(receiving);
     sent.push_back(sending);
+    millions.push_back(long_message(rank));
   }
   if (rank == 0)
-    std::printf("way %.3f received %.3f sent %.3f\n", 1e6 * median(ways), 1e6 * median(received), 1e6 * median(sent));
+    std::printf("way %.3f received %.3f sent %.3f megabyte %.1f\n", 1e6 * least(ways), 1e6 * least(received),
+                1e6 * least(sent), 1e6 * least(millions));
   MPI_Finalize();
 }

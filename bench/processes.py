@@ -1,13 +1,14 @@
 """bench/processes.py PROGRAM PROBLEM PLAN [--draws N] [--repeats K] [--table OUT.csv] [--picture OUT.svg]
 
-Virtual calibrations (`simulate --draws N`) by one process of two threads and by two processes of a thread each, in turn,
-K times: wall time, seconds of the cores, and what the second takes more. Then one process of one thread, and by simulation up
-to 1,000 processes of a thread each.
+Virtual calibrations (`simulate --draws N`) by one thread, by two threads of one process and by two processes of a thread each,
+in turn, K times: wall time, seconds of the cores, and what two processes take more than two threads. With --table or --picture
+also, by simulation, up to 1,000 processes of a thread each.
 
-The simulation is event by event: a first process that hands out indices and takes results as src/processes does, with the
-task's mean time as one process measured it, and with a message's cost as bench/message_cost.cpp measures it between two
-processes of this machine (compiled by mpicxx); once more with NETWORK seconds on the way, as between machines joined by
-Ethernet. Everybody's own start (reading the problem, MPI) is in all of them, as measured with two draws.
+The simulation is event by event: a first process that hands out indices and takes results as src/processes does. Task times,
+bytes of a result (counted by --verbose) and everybody's start (reading the problem, MPI; with two draws) are those that were
+measured, and so is a message's cost: bench/message_cost.cpp measures it between two processes of this machine (compiled by
+mpicxx). The table has the same once more with a network of NETWORK_WAY and NETWORK_MEGABYTE. At the end all results go to
+everybody through a chain of processes, each of which receives and passes on.
 """
 import argparse
 import csv
@@ -16,25 +17,35 @@ import math
 import os
 import pathlib
 import random
+import re
 import statistics
 import subprocess
 import tempfile
 import time
 
-NETWORK = 50e-6  # assumed, not measured: seconds on the way between two machines
+# Assumed, not measured: seconds on the way between two machines, and for a megabyte (10 Gbit/s).
+NETWORK_WAY, NETWORK_MEGABYTE = 50e-6, 1e-3
 AHEAD, MOST = 8e-3, 4096
 COUNTS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def message_cost():
-    """Seconds on the way, and of the first process's work for one that it receives or sends."""
+    """Seconds on the way, of the first process's work for one that it receives or sends, and for a megabyte."""
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "message_cost")
         subprocess.run(["mpicxx", "-O2", "-std=c++20", pathlib.Path(__file__).with_name("message_cost.cpp"), "-o", program], check=True)
         words = subprocess.run(["mpirun", "-n", "2", program], check=True, capture_output=True, text=True, env=ENVIRONMENT).stdout.split()
     cost = dict(zip(words[::2], (1e-6 * float(word) for word in words[1::2])))
-    return cost["way"], (cost["received"] + cost["sent"]) / 2
+    return cost["way"], (cost["received"] + cost["sent"]) / 2, cost["megabyte"]
+
+
+def bytes_of_result(arguments):
+    """The second process gets all results, and sends its own, about half of them."""
+    draws = 400
+    told = subprocess.run(["mpirun", "-n", "2", arguments.program, "simulate", arguments.problem, arguments.plan, "--draws", str(draws),
+                           "--threads", "1", "--json", "--verbose"], check=True, capture_output=True, text=True, env=ENVIRONMENT).stderr
+    return int(re.search(r"messages, (\d+) bytes", told)[1]) / (1.5 * draws)
 
 
 def seconds(processes, threads, arguments, draws):
@@ -47,7 +58,7 @@ def seconds(processes, threads, arguments, draws):
     return time.monotonic() - begin, now.children_user + now.children_system - used.children_user - used.children_system
 
 
-def simulated(processes, tasks, mean, start, way, work):
+def simulated(processes, tasks, mean, start, size, way, work, megabyte):
     """Wall time of so many tasks of length mean ± 30 %, one thread a process."""
     draw = random.Random(processes)
     ahead = 1 + min(math.ceil(AHEAD / mean), MOST)
@@ -65,18 +76,19 @@ def simulated(processes, tasks, mean, start, way, work):
             continue
         at, p = heapq.heappop(events)
         begin = max(at, first_free)
-        first_free = begin + 3 * work  # question, answer, bundled results
-        own += 3 * work                # its core is not at its own tasks then
         given = min(max(1, ahead // 2), left)
+        busy = 3 * work + 1e-6 * given * size * megabyte  # question, answer, bundled results
+        first_free = begin + busy
+        own += busy  # its core is not at its own tasks then
         left -= given
         length = sum(max(0.0, draw.gauss(mean, 0.3 * mean)) for _ in range(given))
         ready = max(ends[p], begin + work + way)
         ends[p] = ready + length
         # Half of what it has is still ahead when it asks again.
         heapq.heappush(events, (max(begin + work + 2 * way, ends[p] - length), p))
-    result = max(ends) + way
-    # All results go to everybody at the end, down a tree.
-    return start + result + math.ceil(math.log2(processes)) * way if processes > 1 else start + result
+    if processes == 1:
+        return start + max(ends)
+    return start + max(ends) + processes * way + 2e-6 * tasks * size * megabyte
 
 
 COLOURS = ["#1f6f8b", "#b3541e"]
@@ -110,18 +122,21 @@ def plot(rows, file):
         out.write("\n".join(svg) + "\n")
 
 
+RUNS = {"one thread": (1, 1), "two threads": (1, 2), "two processes": (2, 1)}
+
+
 def compared(arguments):
-    """Two threads of one process and two processes of one thread in turn."""
+    """One thread, two threads of one process and two processes of one thread in turn; wall time and seconds of the cores of each."""
     rows = []
     for _ in range(arguments.repeats):
-        rows.append([seconds(1, 2, arguments, arguments.draws), seconds(2, 1, arguments, arguments.draws)])
-        (wall, cores), (wall_2, cores_2) = rows[-1]
-        print(f"{arguments.draws:,} draws: two threads {wall:.1f} s wall, {cores:.1f} s of the cores; two processes {wall_2:.1f} s, "
-              f"{cores_2:.1f} s; {100 * (wall_2 / wall - 1):+.1f} % wall, {100 * (cores_2 / cores - 1):+.1f} % of the cores", flush=True)
-    ratios = [[two[k] / one[k] - 1 for one, two in rows] for k in (0, 1)]
-    print("two processes take " + ", ".join(f"{100 * min(r):.1f} to {100 * max(r):.1f} % more {what} (median {100 * statistics.median(r):.1f} %)"
-                                            for r, what in zip(ratios, ("wall time", "seconds of the cores"))))
-    return [statistics.median(two[0] for _, two in rows), statistics.median(two[1] for _, two in rows)]
+        rows.append({name: seconds(*how, arguments, arguments.draws) for name, how in RUNS.items()})
+        print(f"{arguments.draws:,} draws: " + "; ".join(f"{name} {wall:.1f} s wall, {cores:.1f} s of the cores"
+                                                        for name, (wall, cores) in rows[-1].items()), flush=True)
+    for what, k in (("wall time", 0), ("seconds of the cores", 1)):
+        more = [100 * (row["two processes"][k] / row["two threads"][k] - 1) for row in rows]
+        print(f"two processes take {min(more):.1f} to {max(more):.1f} % more {what} than two threads (median {statistics.median(more):.1f} %)")
+    # Other programs of the machine only add.
+    return {name: tuple(min(row[name][k] for row in rows) for k in (0, 1)) for name in RUNS}
 
 
 def main():
@@ -133,27 +148,29 @@ def main():
     parser.add_argument("--table")
     parser.add_argument("--picture")
     arguments = parser.parse_args()
-    two, used_by_two = compared(arguments)
+    least = compared(arguments)
     if not arguments.table and not arguments.picture:
         return
-    one, used = seconds(1, 1, arguments, arguments.draws)
+    (one, used), (two, used_by_two) = least["one thread"], least["two processes"]
     start, begun = {}, {}
     for p in (1, 2):
-        start[p], begun[p] = seconds(p, 1, arguments, 2)
+        start[p], begun[p] = (min(values) for values in zip(*(seconds(p, 1, arguments, 2) for _ in range(5))))
     mean = (used - begun[1]) / arguments.draws
-    way, work = message_cost()
-    print(f"a task {1e3 * mean:.2f} ms; a start {start[1]:.2f} s, of two processes {start[2]:.2f} s; a message {1e6 * way:.2f} µs on the "
-          f"way, {1e6 * work:.2f} µs of work; 2 processes {one / two:.2f} times as fast as one")
+    way, work, megabyte = message_cost()
+    size = bytes_of_result(arguments)
+    print(f"a task {1e3 * mean:.2f} ms, its result {size:.0f} bytes; a start {start[1]:.2f} s, of two processes {start[2]:.2f} s; a message "
+          f"{1e6 * way:.2f} µs on the way, {1e6 * work:.2f} µs of work, {1e6 * megabyte:.0f} µs a megabyte; 2 processes {one / two:.2f} "
+          "times as fast as one")
     measured = f"{arguments.draws:,} draws"
     rows = [{"series": measured, "how": "measured", "processes": p, "seconds": s, "cpu": c, "speedup": one / s}
             for p, s, c in ((1, one, used), (2, two, used_by_two))]
     for draws in (arguments.draws, 1_000_000):
-        alone = simulated(1, draws, mean, start[1], way, work)
-        for on_the_way in (way, NETWORK):
+        for name, cost in (("", (way, work, megabyte)), (", network", (NETWORK_WAY, work, NETWORK_MEGABYTE))):
+            alone = simulated(1, draws, mean, start[1], size, *cost)
             for p in COUNTS:
-                s = alone if p == 1 else simulated(p, draws, mean, start[2], on_the_way, work)
-                rows.append({"series": f"{draws:,} draws, {1e6 * on_the_way:.0f} µs", "how": "simulated", "processes": p, "seconds": s,
-                             "cpu": "", "speedup": alone / s})
+                s = alone if p == 1 else simulated(p, draws, mean, start[2], size, *cost)
+                rows.append({"series": f"{draws:,} draws{name}", "how": "simulated", "processes": p, "seconds": s, "cpu": "",
+                             "speedup": alone / s})
     if arguments.table:
         with open(arguments.table, "w", newline="", encoding="utf-8") as out:
             writer = csv.DictWriter(out, list(rows[0]))

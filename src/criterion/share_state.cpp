@@ -128,12 +128,15 @@ Swap ShareState::best_swap(int position, double min_gain) {
 
 void ShareState::block(int candidate, bool blocked) { running_->blocked[std::size_t(candidate)] = blocked ? 1 : 0; }
 
-void ShareState::add(const double* entering) {
+void ShareState::put(const double* entering) {
   Running& run = *running_;
-  const int place = run.write(run.free.back(), entering);
+  run.members.push_back(run.write(run.free.back(), entering));
   run.free.pop_back();
-  run.members.push_back(place);
-  run.change(-1, place);
+}
+
+void ShareState::add(const double* entering) {
+  put(entering);
+  running_->change(-1, running_->members.back());
 }
 
 void ShareState::replace(int position, const double* entering) {

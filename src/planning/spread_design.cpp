@@ -9,6 +9,7 @@
 
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
+#include "posewright/support/tasks.hpp"
 #include "restricted_design.hpp"
 
 namespace posewright {
@@ -136,10 +137,11 @@ ApproximateDesign solve_spread_design(SpreadBlocks& candidates, const Informatio
   result.bound = std::numeric_limits<double>::infinity();
   double gap = 1.0;
   int unchanged = 0;
-  // Where processes stop they stop together: between rounds.
+  // Where processes stop they stop together, between rounds; and a bound says something after the first.
   const Monitor unstopped;
   for (int round = 1;; ++round) {
-    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)), unstopped);
+    const Monitor& watch = round == 1 || several_processes(monitor) ? unstopped : monitor;
+    result.newton_steps += restricted.solve(std::max(0.2 * options.tolerance, 0.03 * std::min(gap, 1.0)), watch);
     candidates.pass(restricted.factor());
     const double ratio = std::max(1.0, largest_mean(candidates, options.cap) / degree);
     const double bound = with_margin(restricted.value() + degree * std::log(ratio));

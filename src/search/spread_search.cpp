@@ -66,20 +66,23 @@ void count(Traffic& traffic, const Traffic& before, const Traffic& after) {
 class SpreadDesign {
  public:
   /// @param offset  what is added to Φ for people
-  SpreadDesign(SpreadCandidates& candidates, const SpreadRequest& request, double offset, const Monitor& monitor,
-               SpreadTraffic& traffic)
+  /// @param so_far  the best Φ of earlier starts, for progress
+  SpreadDesign(SpreadCandidates& candidates, const SpreadRequest& request, double offset, double so_far,
+               const Monitor& monitor, SpreadTraffic& traffic)
       : candidates_(candidates),
         request_(request),
         offset_(offset),
+        so_far_(so_far),
         monitor_(monitor),
         traffic_(traffic),
         state_(candidates.own(), candidates.own_count(), request.poses, thread_count(candidates.threads())) {}
 
-  void add(int candidate) {
-    fetch(candidate);
-    members_.push_back(candidate);
-    count_use(candidate, 1);
-    state_.add(block_.data());
+  void begin(const std::vector<int>& members) {
+    for (const int candidate : members) {
+      take_up(candidate);
+      state_.put(block_.data());
+    }
+    state_.refresh();
   }
 
   /// One pose after the other until there are enough; a stop does not end this.
@@ -87,7 +90,8 @@ class SpreadDesign {
     while (state_.size() < request_.poses) {
       const Found found = agree(state_.best_addition());
       if (found.candidate < 0) throw CannotDo("the candidates do not suffice for so many poses");
-      add(int(found.candidate));
+      take_up(int(found.candidate));
+      state_.add(block_.data());
     }
     state_.refresh();
   }
@@ -159,12 +163,20 @@ class SpreadDesign {
     std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(block_.data()));
   }
 
+  /// A new member, whose block is fetched.
+  void take_up(int candidate) {
+    fetch(candidate);
+    members_.push_back(candidate);
+    count_use(candidate, 1);
+  }
+
   void count_use(int candidate, int change) {
     const int used = used_[candidate] += change;
     if (candidates_.has(candidate)) state_.block(candidate - candidates_.first(), used >= request_.repeats.most);
   }
 
-  /// Every member once, the one that Φ misses least first. The first pass of a start is a whole one.
+  /// Every member once, the one that Φ misses least first. Of a start that is no plan yet the first pass is a whole
+  /// one.
   int pass() {
     std::vector<int> order(members_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -172,7 +184,7 @@ class SpreadDesign {
     for (const int position : order) loss[std::size_t(position)] = state_.loss(position);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
-    const bool whole = std::exchange(first_pass_, false);
+    const bool whole = std::exchange(first_pass_, false) && !std::isfinite(state_.value());
     int accepted = 0;
     for (const int position : order) {
       if (!whole && stopped_) break;
@@ -191,13 +203,13 @@ class SpreadDesign {
       ++accepted;
     }
     exchanges_ += accepted;
-    monitor_.report({"exchange", double(exchanges_), 0, state_.value() + offset_, {}, {}});
+    monitor_.report({"exchange", double(exchanges_), 0, std::max(state_.value(), so_far_) + offset_, {}, {}});
     return accepted;
   }
 
   SpreadCandidates& candidates_;
   const SpreadRequest& request_;
-  double offset_;
+  double offset_, so_far_;
   const Monitor& monitor_;
   SpreadTraffic& traffic_;
   ShareState state_;
@@ -261,9 +273,8 @@ Design best_design(SpreadCandidates& candidates, const SpreadRequest& request, c
   const bool greedy = request.method == "greedy";
   for (const bool by_weights : {true, false}) {
     if ((by_weights && greedy) || best.stopped) continue;
-    SpreadDesign design(candidates, request, offset, monitor, traffic);
-    if (by_weights)
-      for (const int candidate : rounded(weights, request)) design.add(candidate);
+    SpreadDesign design(candidates, request, offset, best.value, monitor, traffic);
+    if (by_weights) design.begin(rounded(weights, request));
     design.fill();
     if (!greedy) design.settle();
     ++best.restarts;

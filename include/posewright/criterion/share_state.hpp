@@ -37,6 +37,8 @@ class ShareState {
 
   /// A block comes in, which the caller has from the process that holds it: as the last member, or for another.
   void add(const double* entering);
+  /// As add(), but nothing is known of the design then until refresh(): for a start of several.
+  void put(const double* entering);
   void replace(int position, const double* entering);
   /// All running numbers afresh. False where M is singular.
   bool refresh();

@@ -47,8 +47,8 @@ def name_of(problem):
 
 def row(program, problem, folder, options):
     searched, _, _, search_cpu = planned(program, problem, folder, *options, "--proof-time", "0")
-    one, _, one_wall, one_cpu = planned(program, problem, folder, *options, "--threads", "1")
-    plan, text, wall, cpu = planned(program, problem, folder, *options)
+    one, _, _, one_cpu = planned(program, problem, folder, *options, "--threads", "1")
+    plan, text, wall, _ = planned(program, problem, folder, *options)
     ends_by_time = "--proof-time" in options
     if not ends_by_time and without_times(one) != without_times(plan):
         sys.exit(f"{problem}: the plan depends on the number of threads")
@@ -57,8 +57,8 @@ def row(program, problem, folder, options):
     if not proof["proved"]:
         proved = ["–", "–", "–"]
     values = [name_of(problem), str(len(plan["poses"])), f"{plan['criterion']['log_det']:.4f}", f"{search_cpu:.1f}", percent(found["efficiency"]), *proved,
-              f"{one_wall:.1f}", f"{wall:.1f}", f"{cpu:.1f}"]
-    sentences = [line for line in text.splitlines() if line.startswith(("Over the whole workspace", "Proved over the"))]
+              f"{one_cpu:.1f}", f"{wall:.1f}"]
+    sentences = [line for line in text.splitlines() if line.startswith(("Over the whole workspace", "Proved over", "Proved within"))]
     return "| " + " | ".join(values) + " |", sentences
 
 
@@ -68,8 +68,8 @@ def main():
     parser.add_argument("problems", nargs="+")
     parser.add_argument("--options", default="", help="for plan: --proof-time 600")
     arguments = parser.parse_args()
-    print("| problem | N | log det | search, CPU s | searched | proved | largest d over h | boxes | whole, one thread, s | all threads, s | CPU s |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("| problem | N | log det | search, CPU s | searched | proved | largest d over h | boxes | with the proof, one thread, CPU s | all threads, wall s |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     sentences = []
     with tempfile.TemporaryDirectory() as folder:
         for problem in arguments.problems:

@@ -14,14 +14,17 @@
 namespace posewright {
 namespace {
 
-// How many of the reduced search's results are taken through all candidates.
-constexpr std::size_t finished = 2;
+// How many of the reduced search's results are taken through all candidates. Where values have kinks the best of them
+// is seldom the best in the end.
+constexpr std::size_t finished = 2, finished_at_kinks = 8;
 // Under a time limit; nobody waits for so many.
 constexpr int most_starts = 100'000'000;
 
 /// The best few outcomes so far and totals over all: what is kept does not depend on the order in which they come.
 class BestOutcomes {
  public:
+  explicit BestOutcomes(std::size_t kept) : kept_(kept) {}
+
   void add(std::size_t restart, Outcome outcome) {
     ++count_;
     exchanges_ += outcome.exchanges;
@@ -36,7 +39,7 @@ class BestOutcomes {
     if (same != best_.end() && before(*same, entry)) return;
     if (same != best_.end()) best_.erase(same);
     best_.insert(std::upper_bound(best_.begin(), best_.end(), entry, before), std::move(entry));
-    if (best_.size() > finished) best_.pop_back();
+    if (best_.size() > kept_) best_.pop_back();
   }
 
   int count() const { return count_; }
@@ -49,6 +52,7 @@ class BestOutcomes {
 
  private:
   using Entry = std::pair<std::size_t, Outcome>;
+  std::size_t kept_;
   std::vector<Entry> best_;
   int count_ = 0;
   long exchanges_ = 0;
@@ -121,7 +125,7 @@ std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Ran
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search) {
   const ReducedTask reduced(task);
-  BestOutcomes best;
+  BestOutcomes best(task.criterion->smoother() == nullptr ? finished : finished_at_kinks);
   std::mutex mutex;
   const double degree = task.criterion->function().degree();
   // A limit is there to be used, where nobody says how many starts it is for.

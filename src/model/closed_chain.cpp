@@ -300,6 +300,14 @@ std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<con
   return std::nullopt;
 }
 
+HarmonicColumns ClosedChain::harmonic_columns(std::span<const int>, const Point&) const {
+  HarmonicColumns none;
+  none.why_not =
+      "a parallel robot; six legs are bounded where the instrument sees the whole pose with one noise and no target is "
+      "estimated";
+  return none;
+}
+
 bool ClosedChain::do_enclose(std::span<const TaylorModel>, std::span<const double>, std::span<const int>,
                              Enclosed&) const {
   return false;

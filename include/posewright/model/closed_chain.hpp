@@ -27,6 +27,8 @@ class ClosedChain : public TipModel {
   /// By theory.md eq. (50) where the robot gives the derivative of its loops, else TipModel's differences.
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const final;
+  /// None: the platform is no polynomial of its actuators. enclose_residual() is what bounds some of these robots.
+  HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const final;
   bool actuator_values(const Point& at, std::span<double> values) const final;
 
   std::vector<Polyline> skeleton(std::span<const double> q) const final;

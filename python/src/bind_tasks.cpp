@@ -490,9 +490,9 @@ one after the other; interpolate: predict with what the parameters leave as well
 whose intervals are by profile likelihood: "auto" (those that the curvature names), "none", "all", or names and globs.)");
   m.def("simulate", &simulate, py::arg("problem"), py::arg("poses"), py::arg("variant") = "", py::kw_only(),
         py::arg("truth") = "", py::arg("draws") = 1000, py::arg("exact") = false, py::arg("missing") = 0.0,
-        py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("profile") = false, py::arg("validation") = 50,
-        py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("profile") = false,
+        py::arg("validation") = 50, py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         "Measures the poses on robots with drawn parameters, calibrates, and compares with the truth "
         "(docs/simulate.md).");
   m.def("compensate", &compensate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("base") = false,

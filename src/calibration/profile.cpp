@@ -215,6 +215,7 @@ Profiles profile_intervals(const IdentificationModel& model, const VariantColumn
   result.intervals.resize(wanted.size());
   const int workers = std::min(thread_count(threads), int(wanted.size()));
   std::vector<std::unique_ptr<Profile>> profiles;
+  profiles.reserve(std::size_t(workers));
   for (int worker = 0; worker < workers; ++worker)
     profiles.push_back(std::make_unique<Profile>(model, columns, poses, options, fit));
   std::atomic<int> done{0};

@@ -651,6 +651,7 @@ def calibrate(
     hold_back: int = 0,
     in_steps: bool = False,
     interpolate: bool = False,
+    profile: Union[str, Sequence[str]] = "auto",
     progress: _Report = None,
 ) -> Calibration: ...
 def simulate(
@@ -665,6 +666,7 @@ def simulate(
     outliers: float = 0.0,
     weights: Optional[str] = None,
     prior: bool = True,
+    profile: bool = False,
     validation: int = 50,
     format: str = "",
     seed: int = 0,

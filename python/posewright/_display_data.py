@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ._core import Calibration, Comparison, Compensation, Exported, NextPoses, Report, Simulation, Stations, _shown
 from ._display_plan import percent
 from ._figures import bars, columns
@@ -11,7 +13,7 @@ from ._markup import folded, frame, listed, shown, table
 def calibration(result: Calibration) -> str:
     json = result.to_dict()
     rows = [(p["name"], _shown(p["nominal"], p["unit"]), _shown(p["value"], p["unit"]), _shown(p["sigma"], p["unit"]) if p["sigma"] is not None else None,
-             "" if p["estimated"] else p["why_not"] or "not estimated") for p in json["parameters"] if p["value"] is not None]
+             _interval(p), "" if p["estimated"] else p["why_not"] or "not estimated") for p in json["parameters"] if p["value"] is not None]
     axes = [(a["poses"], a["axis"], _shown(a["before"]["rms"], a["unit"]), _shown(a["after"]["rms"], a["unit"]),
              _shown(a["after"]["largest"], a["unit"])) for a in json["axes"] if a["before"] and a["after"]]
     histogram = json["histogram"]
@@ -25,20 +27,29 @@ def calibration(result: Calibration) -> str:
         table(("poses", "axis", "RMS before", "RMS after", "largest after"), axes, "  nnn"),
         columns("weighted residuals, in σ", bins),
         bars("change of each parameter in tolerances", moved, logarithmic=True, mark=1.0),
-        folded(f"{len(rows)} parameters", table(("parameter", "nominal", "value", "σ", ""), rows, " nnn ")))
+        folded(f"{len(rows)} parameters", table(("parameter", "nominal", "value", "σ", "95 % interval", ""), rows, " nnnn ")))
+
+
+def _interval(p: dict[str, Any]) -> str | None:
+    """Of one parameter, and by what it is if it is not the usual one."""
+    if p["interval"] is None:
+        return None
+    ends = ["no end" if end is None else _shown(end, p["unit"]) for end in p["interval"]]
+    return " to ".join(ends) + (" (profile)" if p["interval_by"] == "profile" else "")
 
 
 def simulation(result: Simulation) -> str:
     json = result.to_dict()
     ratios = [(p["name"], p["sigma_observed"] / p["sigma_predicted"]) for p in json["parameters"] if p["sigma_predicted"] and p["sigma_observed"] is not None]
     rows = [(p["name"], _shown(p["sigma_predicted"], p["unit"]) if p["sigma_predicted"] is not None else None,
-             _shown(p["sigma_observed"], p["unit"]) if p["sigma_observed"] is not None else None, percent(p["coverage"])) for p in json["parameters"]]
+             _shown(p["sigma_observed"], p["unit"]) if p["sigma_observed"] is not None else None, percent(p["coverage"]),
+             percent(p["profile_coverage"])) for p in json["parameters"]]
     return shown(
         f"{json['draws']['fitted']} of {json['draws']['asked']} calibrations of {json['poses']} poses: the prediction "
         + ("holds" if json["confirmed"] else "is not confirmed"),
         listed(json["verdict"]),
         bars("σ observed by σ predicted", ratios, mark=1.0),
-        folded(f"{len(rows)} parameters", table(("parameter", "σ predicted", "σ observed", "in the 95 % interval"), rows, " nnn")))
+        folded(f"{len(rows)} parameters", table(("parameter", "σ predicted", "σ observed", "in the 95 % interval", "by profile"), rows, " nnnn")))
 
 
 def next_poses(result: NextPoses) -> str:

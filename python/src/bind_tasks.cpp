@@ -104,7 +104,7 @@ Weighting weighting_named(const py::object& word) {
 
 MadeCalibration calibrate(const Shared& problem, const py::object& data, const std::string& variant,
                           const py::object& weights, bool prior, const py::object& validate, long long hold_back,
-                          bool in_steps, bool interpolate, py::object progress) {
+                          bool in_steps, bool interpolate, const py::object& profile, py::object progress) {
   CalibrateOptions options;
   std::vector<std::filesystem::path> files;
   if (py::isinstance<py::list>(data) || py::isinstance<py::tuple>(data))
@@ -120,6 +120,10 @@ MadeCalibration calibrate(const Shared& problem, const py::object& data, const s
   options.hold_back = hold_back == 0 ? 0 : checked("hold_back", hold_back, 2, most_poses);
   options.in_steps = in_steps;
   options.interpolate = interpolate;
+  if (py::isinstance<py::str>(profile)) options.profile = profile_choice(profile.cast<std::string>());
+  else options.profile = {ProfileChoice::named, profile.cast<std::vector<std::string>>()};
+  if (options.profile.choice == ProfileChoice::named && options.weighting == Weighting::robust)
+    throw py::value_error("profile: weights \"ols\" or \"wls\" are expected");
   return MadeCalibration::of(problem, options, {}, std::move(progress), calibrate_problem);
 }
 
@@ -154,8 +158,9 @@ py::dict frames_of(const MadeCalibration& made) {
 
 MadeSimulation simulate(const Shared& problem, const py::object& poses, const std::string& variant,
                         const std::string& truth, long long draws, bool exact, double missing, double outliers,
-                        const py::object& weights, bool prior, long long validation, const std::string& format,
-                        const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+                        const py::object& weights, bool prior, bool profile, long long validation,
+                        const std::string& format, const py::int_& seed, long long threads, Limit time_limit,
+                        py::object progress) {
   SimulateOptions options;
   options.variant = variant;
   options.truth = truth;
@@ -168,6 +173,7 @@ MadeSimulation simulate(const Shared& problem, const py::object& poses, const st
   experiment.outliers = outliers;
   experiment.fit.weighting = weighting_named(weights);
   experiment.fit.prior = prior ? Prior::manufactured : Prior::none;
+  experiment.profile = profile;
   options.validation = checked("validation", validation, 1, most_poses);
   experiment.seed = seed_of(seed);
   experiment.threads = checked("threads", threads, 0, most_threads);
@@ -483,17 +489,19 @@ void bind_tasks(py::module_& m) {
   const py::none none;
   m.def("calibrate", &calibrate, py::arg("problem"), py::arg("data"), py::arg("variant") = "", py::kw_only(),
         py::arg("weights") = none, py::arg("prior") = true, py::arg("validate") = none, py::arg("hold_back") = 0,
-        py::arg("in_steps") = false, py::arg("interpolate") = false, py::arg("progress") = none,
+        py::arg("in_steps") = false, py::arg("interpolate") = false, py::arg("profile") = "auto",
+        py::arg("progress") = none,
         R"(Estimates a variant's parameters from a file of measured data (docs/calibrate.md).
 
 data: a file, or a list of files: campaigns, each with a base of its own; weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
 that are not fitted; hold_back: every so many-th pose is not fitted; in_steps: also base and tool, geometry, stiffness
-one after the other; interpolate: predict with what the parameters leave as well (a variant with `unmodelled`).)");
+one after the other; interpolate: predict with what the parameters leave as well (a variant with `unmodelled`); profile: parameters
+whose intervals are by profile likelihood: "auto" (those that the curvature names), "none", "all", or names and globs.)");
   m.def("simulate", &simulate, py::arg("problem"), py::arg("poses"), py::arg("variant") = "", py::kw_only(),
         py::arg("truth") = "", py::arg("draws") = 1000, py::arg("exact") = false, py::arg("missing") = 0.0,
-        py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("validation") = 50,
-        py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none,
+        py::arg("outliers") = 0.0, py::arg("weights") = none, py::arg("prior") = true, py::arg("profile") = false,
+        py::arg("validation") = 50, py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
         "Measures the poses on robots with drawn parameters, calibrates, and compares with the truth "
         "(docs/simulate.md).");
   m.def("compensate", &compensate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("base") = false,

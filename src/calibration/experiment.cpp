@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "posewright/calibration/profile.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "posewright/support/bytes.hpp"
@@ -63,7 +65,18 @@ Eigen::VectorXd error_of(const VirtualExperiment& experiment, const Fit& fitted,
   return error;
 }
 
-VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
+/// Where the truth is on the profile of every column.
+Eigen::VectorXd tau_of_truth(const VirtualExperiment& experiment, const std::vector<MeasuredPose>& poses,
+                             const Fit& fitted, const Eigen::VectorXd& error, const Monitor& monitor) {
+  Profile profile(*experiment.model, experiment.columns, poses, experiment.options.fit, fitted);
+  Eigen::VectorXd tau(error.size());
+  for (Eigen::Index j = 0; j < tau.size(); ++j)
+    tau[j] =
+        profile.tau(int(j), fitted.change[j] - error[j], monitor).value_or(std::numeric_limits<double>::quiet_NaN());
+  return tau;
+}
+
+VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw, const Monitor& monitor) {
   VirtualCalibration result;
   try {
     std::vector<double> truth;
@@ -71,6 +84,8 @@ VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw) {
     const Fit fitted = fit(*experiment.model, experiment.columns, poses, experiment.options.fit);
     result.end = fitted.converged ? VirtualCalibration::End::fitted : VirtualCalibration::End::not_converged;
     result.error = error_of(experiment, fitted, truth);
+    if (experiment.options.profile && fitted.converged)
+      result.tau = tau_of_truth(experiment, poses, fitted, result.error, monitor);
     result.sigma = fitted.covariance.diagonal().cwiseSqrt();
     result.interval = interval_factor(interval_probability, fitted.scale_known, fitted.freedom);
     result.chi_square = fitted.chi_square;
@@ -89,6 +104,7 @@ std::string bytes_of(const VirtualCalibration& c) {
   bytes.put(c.why);
   bytes.put(c.error);
   bytes.put(c.sigma);
+  bytes.put(c.tau);
   for (const double value : {c.interval, c.chi_square, c.mean_square, c.largest}) bytes.put(value);
   bytes.put(c.freedom);
   bytes.put(c.lost);
@@ -102,6 +118,7 @@ VirtualCalibration calibration_in(std::string_view from) {
   bytes.get(c.why);
   bytes.get(c.error);
   bytes.get(c.sigma);
+  bytes.get(c.tau);
   for (double* value : {&c.interval, &c.chi_square, &c.mean_square, &c.largest}) bytes.get(*value);
   bytes.get(c.freedom);
   bytes.get(c.lost);
@@ -119,7 +136,7 @@ std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experime
     if (++done % step == 0) monitor.report({"draws", double(done), double(draws), {}, {}, {}});
   };
   run_tasks(
-      group, [&](std::size_t draw, int) { return bytes_of(calibrate(experiment, int(draw))); },
+      group, [&](std::size_t draw, int) { return bytes_of(calibrate(experiment, int(draw), monitor)); },
       [&](std::size_t draw, std::string_view bytes) { results[draw] = calibration_in(bytes); }, monitor);
   return results;
 }

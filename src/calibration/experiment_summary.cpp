@@ -22,19 +22,21 @@ double binomial_error(double share, std::size_t count) { return std::sqrt(share 
 ParameterErrors errors_of(const Draws& draws, Eigen::Index j) {
   ParameterErrors result;
   const auto count = double(draws.size());
-  double squares = 0, inside = 0;
+  double squares = 0, inside = 0, profiled = 0;
   std::vector<double> in_sigma;
   for (const auto* draw : draws) {
     in_sigma.push_back(draw->sigma[j] > 0 ? draw->error[j] / draw->sigma[j] : 0.0);
     result.bias += draw->error[j] / count;
     result.stated += draw->sigma[j] * draw->sigma[j] / count;
     inside += std::abs(draw->error[j]) <= draw->interval * draw->sigma[j] ? 1 : 0;
+    if (draw->tau.size() > 0) profiled += std::abs(draw->tau[j]) <= draw->interval ? 1 : 0;
   }
   for (const auto* draw : draws) squares += std::pow(draw->error[j] - result.bias, 2);
   result.observed = std::sqrt(squares / (count - 1));
   result.stated = std::sqrt(result.stated);
   result.bias_error = result.observed / std::sqrt(count);
   result.coverage = inside / count;
+  if (draws.front()->tau.size() > 0) result.profiled = profiled / count;
   result.histogram = half_sigma_histogram(in_sigma);
   return result;
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/NonLinearOptimization>
 
+#include "minimise.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/distributions.hpp"
@@ -14,8 +14,6 @@
 namespace posewright {
 namespace {
 
-// Ends of Levenberg–Marquardt, relative: far below the noise, well above rounding.
-constexpr double tolerance = 1e-11;
 // Weights follow the solution: they are taken anew until that moves it by less than a thousandth of its σ all in all.
 // The covariance hardly changes with the parameters, unless a base was found elsewhere.
 constexpr int most_weight_rounds = 10;
@@ -29,38 +27,11 @@ constexpr int noise_rounds = 200;
 constexpr double settled_noise = 1e-9;
 // Pivots of unit columns below this mean that double precision cannot tell a column from the others.
 constexpr double rank_tolerance = 1e-11;
-// What Levenberg–Marquardt sees of a step that no robot can take: it will try a shorter one.
+// Stands for the squares where a pose is out of reach.
 constexpr double out_of_reach = 1e12;
 
-/// The residuals as Eigen's port of MINPACK wants them.
-struct Functor {
-  using Scalar = double;
-  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-  using InputType = Eigen::VectorXd;
-  using ValueType = Eigen::VectorXd;
-  using JacobianType = Eigen::MatrixXd;
-
-  StackedReadings& stacked;
-  int inputs() const { return stacked.columns(); }
-  int values() const { return stacked.rows(); }
-  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& f) const {
-    if (!stacked.residual(x, f)) f.setConstant(stacked.rows(), out_of_reach);
-    return 0;
-  }
-  /// Only asked for where the residual was found, unless the robot stands in a singularity there.
-  int df(const Eigen::VectorXd& x, Eigen::MatrixXd& J) const { return stacked.jacobian(x, J) ? 0 : -1; }
-};
-
-/// Minimises from x on; false if it stopped for another reason than having arrived.
 bool minimise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, int& evaluations) {
-  Functor functor{stacked};
-  Eigen::LevenbergMarquardt<Functor> solver(functor);
-  solver.parameters.ftol = solver.parameters.xtol = tolerance;
-  solver.parameters.maxfev = options.most_evaluations;
-  const auto status = solver.minimize(x);
-  evaluations += int(solver.nfev);
-  using namespace Eigen::LevenbergMarquardtSpace;
-  return status != TooManyFunctionEvaluation && status != UserAsked && status != ImproperInputParameters;
+  return minimise(stacked, MinimiseOptions{.most_evaluations = options.most_evaluations}, x, evaluations);
 }
 
 /// (JᵀJ)⁻¹ by QR, in the units of x.

@@ -31,6 +31,9 @@ po::options_description calibrate_command_options() {
       ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
       ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")           //
       ("in-steps", "identify base and tool, geometry and stiffness one after the other, too")  //
+      ("profile", text("WHICH"),
+       "intervals by profile likelihood: auto (parameters that the curvature names), none, all, or names and globs "
+       "with commas between them (auto)")  //
       ("interpolate",
        "predict with what the parameters leave, too, interpolated between the poses (variant with `unmodelled`); "
        "refused if poses left out gain nothing");
@@ -93,7 +96,7 @@ std::optional<DhTable> table_of(const Results& wanted, const Problem& problem, c
                   wanted.dh == "distal" ? DhConvention::distal : DhConvention::proximal);
 }
 
-CalibrateOptions options_of(const po::variables_map& values, const Words& positional) {
+CalibrateOptions options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
   if (positional.size() < 2)
     throw InputError({}, positional.empty() ? "PROBLEM is missing" : "DATA.csv is missing",
                      "see posewright help calibrate");
@@ -108,6 +111,10 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);
   calibrate.in_steps = values.count("in-steps") > 0;
   calibrate.interpolate = values.count("interpolate") > 0;
+  if (values.count("profile") > 0) calibrate.profile = profile_choice(text_of(values, "profile"));
+  if (calibrate.profile.choice == ProfileChoice::named && calibrate.weighting == Weighting::robust)
+    throw InputError({}, "--profile with robust weights", "--weights ols or wls");
+  calibrate.threads = common.threads;
   return calibrate;
 }
 
@@ -150,7 +157,7 @@ int run_compliances(const CommonOptions& common, const Problem& problem, const C
 
 int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const CalibrateOptions calibrate = options_of(values, positional);
+  const CalibrateOptions calibrate = options_of(values, positional, common);
   const Problem problem = given_problem(positional.front(), values);
   const Results wanted(values, problem, calibrate);
   if (const std::vector<std::string> variants = variants_of(values); variants.size() > 1) {
@@ -161,8 +168,8 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
     refuse_results(wanted, "data that are readings of the instrument");
     return run_compliances(common, problem, calibrate);
   }
-  Calibration result =
-      watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); }).result;
+  auto [result, was_interrupted] =
+      watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); });
   const std::optional<DhTable> table = table_of(wanted, problem, result);
   std::vector<FileToWrite> files;
   if (!wanted.deformation.empty()) {
@@ -183,10 +190,10 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
                  written_text(written ? std::vector{wanted.parameters, wanted.urdf, wanted.deformation}
                                       : std::vector{wanted.deformation}));
-    return written ? done : cannot_do;
+  } else {
+    fmt::print("{}", json_text(calibration_json(problem, calibrate, result, table)));
   }
-  fmt::print("{}", json_text(calibration_json(problem, calibrate, result, table)));
-  return written ? done : cannot_do;
+  return was_interrupted ? interrupted : written ? done : cannot_do;
 }
 
 }  // namespace

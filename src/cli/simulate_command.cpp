@@ -31,6 +31,7 @@ po::options_description simulate_command_options() {
       ("truth-joints", text("ANGLE"), "what the measured robot's joint readings are off by, 1σ (as the problem)")     //
       ("no-prior", "plain least squares: tolerances of what was manufactured do not count in a calibration")          //
       ("exact", "true parameters are the nominal ones, not one tolerance off")                                        //
+      ("profile", "judge intervals by profiles, too: one more fit for every parameter and draw")                      //
       ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                          //
       ("weights", text("ols|wls|robust"), "what a reading counts: alike, by its noise, less far off (wls)")           //
       ("missing", text("SHARE"), "share of the targets that are not read (0)")                                        //
@@ -97,6 +98,7 @@ SimulateOptions options_of(const po::variables_map& values, const CommonOptions&
     throw InputError({}, "--outlier-size without outliers", "--outliers SHARE");
   experiment.fit.weighting = weighting_of(values);
   experiment.fit.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
+  experiment.profile = values.count("profile") > 0;
   experiment.seed = common.seed;
   experiment.threads = common.threads;
   simulate.validation = whole_number(values, "validation", 1, 1000000).value_or(simulate.validation);

@@ -177,6 +177,13 @@ VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kep
   return result;
 }
 
+std::vector<int> columns_named(const VariantColumns& columns, const std::string& pattern) {
+  std::vector<int> found;
+  for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+    if (matches(pattern, columns.parameters[j].name)) found.push_back(int(j));
+  return found;
+}
+
 const VariantSpec& find_variant(const Problem& problem, const std::string& name) {
   const std::string wanted = !name.empty() ? name : problem.design.variant ? problem.design.variant->value : "";
   if (wanted.empty()) return problem.variants.front();

@@ -68,6 +68,7 @@ Json numbers(const std::vector<double>& values) {
 Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
   const auto estimate = [&](double value) { return p.estimated ? Json(value) : Json(nullptr); };
   const bool interval = p.estimated && turned_frame(c, p) == nullptr;
+  const double half = p.half_width;
   return {{"name", p.label.name},
           {"unit", p.label.unit},
           {"role", p.label.role == Role::nuisance ? "nuisance" : "interest"},
@@ -79,7 +80,9 @@ Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
                                                : "assumed"},
           {"value", p.value},
           {"sigma", estimate(p.sigma)},
-          {"interval", interval ? Json({p.lower, p.upper}) : Json(nullptr)},
+          {"interval", interval ? Json({finite_or_null(p.lower), finite_or_null(p.upper)}) : Json(nullptr)},
+          {"interval_by", !interval ? Json(nullptr) : Json(p.profiled ? "profile" : "linear")},
+          {"linear_interval", interval ? Json({p.value - half, p.value + half}) : Json(nullptr)},
           {"tells_less_than_tolerance", p.weak},
           {"why_not", text_or_null(p.why_not)}};
 }
@@ -183,6 +186,7 @@ Json figures_json(const Calibration& c) {
           {"left_out", left_out_json(c.left_out)},
           {"weakest_combination", text_or_null(c.weakest)},
           {"curvature", finite_or_null(c.curvature.largest)},
+          {"intrinsic_curvature", finite_or_null(c.curvature.intrinsic)},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},
           {"axes", axes_json(c)},

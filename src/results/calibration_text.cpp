@@ -56,6 +56,15 @@ std::string orientations_text(const Calibration& c) {
   return "\n95 % intervals of orientations, as a rotation of the estimate\n" + table.text();
 }
 
+/// What is worth knowing of one parameter beside its numbers.
+std::string remark_of(const CalibratedParameter& p) {
+  std::string text = p.weak ? "the data add less than its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
+  if (!p.profiled) return text;
+  return text + fmt::format("{}profile; linear {} to {}", text.empty() ? "" : "; ",
+                            shown_to(p.value - p.half_width, p.sigma, p.label.unit),
+                            shown_to(p.value + p.half_width, p.sigma, p.label.unit));
+}
+
 std::string parameters_text(const Calibration& c) {
   Table table({"parameter", "tolerance", "nominal", "calibrated", "change", "σ", "95 % from", "to", ""},
               {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,
@@ -63,18 +72,19 @@ std::string parameters_text(const Calibration& c) {
   for (const CalibratedParameter& p : c.parameters) {
     if (!p.estimated) continue;
     const std::string& unit = p.label.unit;
-    const auto shown = [&](double value) { return shown_to(value, p.sigma, unit); };
+    const auto shown = [&](double value) { return std::isfinite(value) ? shown_to(value, p.sigma, unit) : "no end"; };
     const bool turns = turned_frame(c, p) != nullptr;
     table.row({p.label.name, tolerance_text(p), shown(p.label.nominal), shown(p.value),
                shown(p.value - p.label.nominal), turns ? "below" : shown(p.sigma), turns ? "" : shown(p.lower),
-               turns ? "" : shown(p.upper),
-               p.weak                           ? "the data add less than its tolerance"
-               : p.label.role == Role::nuisance ? "nuisance"
-                                                : ""});
+               turns ? "" : shown(p.upper), remark_of(p)});
   }
   std::string text = table.text() + orientations_text(c);
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
     text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
+  if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.profiled; }))
+    text +=
+        "profile: the interval ends where the sum of squares, all other parameters estimated anew, has risen by what "
+        "chance allows\n";
   const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
                                       [](const CalibratedParameter& p) { return !p.estimated; });
   if (c.automatic && left_out > 0)

@@ -57,9 +57,17 @@ std::string whiteness_text(const Calibration& c) {
                     c.tests.normality.probability < seldom ? ": not normal: gross errors? try --weights robust" : "");
   if (c.curvature.parameter >= 0 && c.curvature.largest > curvature_limit) {
     const auto at = std::size_t(c.curvature.parameter);
-    text += fmt::format(
-        "Not linear within its own uncertainty (curvature {:.2g} at one σ, most in {}): intervals are rough.\n",
-        c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
+    const auto profiled =
+        std::count_if(c.parameters.begin(), c.parameters.end(), [](const auto& p) { return p.profiled; });
+    text += fmt::format("Not linear within its own uncertainty (curvature {:.2g} at one σ, most in {}): ",
+                        c.curvature.largest, at < c.columns.size() ? c.columns[at] : "?");
+    text += profiled == 0 ? "intervals are rough.\n"
+            : c.curvature.intrinsic > curvature_limit
+                ? fmt::format(
+                      "σ are rough, and {} intervals by profile are better than linear ones, but rough too: what "
+                      "no other parameters make good bends by {:.2g}.\n",
+                      profiled, c.curvature.intrinsic)
+                : fmt::format("σ are rough; {} intervals are by profile.\n", profiled);
   }
   return text;
 }

@@ -24,6 +24,7 @@ Json options_json(const SimulateOptions& options) {
           {"outliers", e.outliers},
           {"outlier_size", e.outlier_size},
           {"weights", weighting_word(e.fit.weighting)},
+          {"profile", e.profile},
           {"prior", e.fit.prior != Prior::none}};
 }
 
@@ -57,6 +58,7 @@ Json parameter_json(const SimulatedParameter& p) {
           {"bias", figure(&ParameterErrors::bias)},
           {"bias_error", figure(&ParameterErrors::bias_error)},
           {"coverage", figure(&ParameterErrors::coverage)},
+          {"profile_coverage", p.errors ? value_or_null(p.errors->profiled) : Json(nullptr)},
           {"histogram", p.errors ? Json(p.errors->histogram) : Json(nullptr)}};
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "posewright/outputs/table.hpp"
@@ -44,10 +45,14 @@ std::string headline(const Simulation& s, const SimulateOptions& options) {
 }
 
 std::string parameters_text(const Simulation& s) {
-  Table table(
-      {"parameter", "tolerance", "σ predicted", "σ observed", "ratio", "σ stated", "bias", "± error", "covered"},
-      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,
-       Align::right});
+  const bool profiled = std::any_of(s.parameters.begin(), s.parameters.end(),
+                                    [](const auto& p) { return p.errors && p.errors->profiled; });
+  std::vector<std::string> header{"parameter", "tolerance", "σ predicted", "σ observed", "ratio",
+                                  "σ stated",  "bias",      "± error",     "covered"};
+  if (profiled) header.emplace_back("by profile");
+  std::vector<Align> aligned(header.size(), Align::right);
+  aligned.front() = Align::left;
+  Table table(header, aligned);
   for (const SimulatedParameter& p : s.parameters) {
     std::vector<std::string> cells{p.label.name + (p.label.role == Role::nuisance ? " (nuisance)" : ""),
                                    shown_value(p.label.tolerance, p.label.unit),
@@ -57,6 +62,7 @@ std::string parameters_text(const Simulation& s) {
       cells.insert(cells.end(), {shown_value(e.observed, p.label.unit), fmt::format("{:.3f}", e.observed / p.predicted),
                                  shown_value(e.stated, p.label.unit), shown_value(e.bias, p.label.unit),
                                  shown_value(e.bias_error, p.label.unit), fmt::format("{:.1f} %", 100 * e.coverage)});
+      if (profiled) cells.push_back(e.profiled ? fmt::format("{:.1f} %", 100 * *e.profiled) : "–");
     } else {
       cells.insert(cells.end(), 6, "–");
     }

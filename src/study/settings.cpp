@@ -86,6 +86,9 @@ void take_robust(const Problem& problem, const PlanOptions& options, Settings& s
     throw InputError(robust->line > 0 ? problem.at(robust->line) : SourcePlace{},
                      "a plan over drawn robots (robust) " + why, allowed);
   };
+  if (find_criterion(settings.criterion)->several_variants)
+    refuse("is for one variant, not for the several of criterion '" + settings.criterion + "'",
+           "criterion: o1 or ds, and variant: one of them");
   if (settings.criterion != "o1" && settings.criterion != "ds")
     refuse("is there for the determinant, not for criterion '" + settings.criterion + "'", "criterion: o1 or ds");
   if (settings.poses == 0) refuse("needs a number of poses", "set poses to a number, not auto");

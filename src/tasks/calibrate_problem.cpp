@@ -8,6 +8,7 @@
 
 #include "calibration_accuracy.hpp"
 #include "calibration_data.hpp"
+#include "calibration_profiles.hpp"
 #include "effects_left_out.hpp"
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/frame_shift.hpp"
@@ -27,6 +28,8 @@ namespace {
 
 // Residuals so many times the noise are no robot's.
 constexpr double absurd = 1000.0;
+// So often an estimate may be replaced by a better one that its profiles passed.
+constexpr int most_rounds = 4;
 constexpr int random_configurations = 300;
 constexpr std::uint64_t everywhere_stream = 0xe3e7;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
@@ -60,14 +63,11 @@ class CalibrationRun {
     choose_columns(all);
     leave_at_nominal_values(all, fit_options.start);
     place_again(fit_options);
-    result_.fit = fit(*model_, columns_, fitted_, fit_options);
-    if (options_.estimate_alone) return estimate_alone(fit_options);
-    result_.tests = test_residuals(result_.fit);
-    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
-    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
-                                       [this](const Problem& wider) { return model_of(wider); });
-    result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
-    allow_for_unmodelled(fit_options);
+    if (options_.estimate_alone) {
+      result_.fit = fit(*model_, columns_, fitted_, fit_options);
+      return estimate_alone(fit_options);
+    }
+    estimate_with_profiles(fit_options);
     report(1);
     result_.correction = result_.fit.correction;
     result_.weakest = weakest_combination(result_.fit, columns_);
@@ -77,11 +77,7 @@ class CalibrationRun {
     note_end();
     judge_noise();
     judge_frame();
-    result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
     fill_parameters();
-    result_.orientations =
-        orientations(*model_, columns_, result_.fit,
-                     interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom));
     fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
     if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic)
       fill_compensator(*arm->elastostatic, result_);
@@ -99,6 +95,35 @@ class CalibrationRun {
     report(2);
     return std::move(result_);
   }
+
+  /// With everything that the residuals say of it.
+  void estimate(FitOptions& fit_options) {
+    result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    result_.tests = test_residuals(result_.fit);
+    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
+    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
+                                       [this](const Problem& wider) { return model_of(wider); });
+    result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
+    allow_for_unmodelled(fit_options);
+    result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
+    result_.orientations = orientations(*model_, columns_, result_.fit, stretch());
+  }
+
+  /// A profile may pass a better estimate than the one that it began at.
+  void estimate_with_profiles(FitOptions& fit_options) {
+    const std::vector<int> named = columns_to_profile(options_, columns_);
+    const FitOptions plain = fit_options;
+    for (int round = 0; round == 0 || (profiled_.profiles.better > 0 && round < most_rounds); ++round) {
+      if (round > 0) {
+        fit_options = plain;
+        fit_options.start = profiled_.profiles.better_estimate;
+      }
+      estimate(fit_options);
+      profiled_ = profiles_of({*model_, columns_, fitted_, fit_options}, options_, named, stretch(), result_, monitor_);
+    }
+  }
+
+  double stretch() const { return interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom); }
 
   void read() {
     CalibrationData data = read_calibration_data(problem_, options_, *make_model(problem_, spec_), result_);
@@ -313,7 +338,6 @@ class CalibrationRun {
   }
 
   void fill_parameters() {
-    const double stretch = interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom);
     std::vector<CalibratedParameter> nuisance;
     for (std::size_t j = 0; j < columns_.parameters.size(); ++j) {
       const auto k = Eigen::Index(j);
@@ -322,8 +346,14 @@ class CalibrationRun {
       p.value = p.label.nominal + result_.fit.change[k];
       p.prior = counts(p.label, result_.prior);
       p.sigma = std::sqrt(result_.fit.covariance(k, k));
-      p.lower = p.value - stretch * p.sigma;
-      p.upper = p.value + stretch * p.sigma;
+      p.half_width = stretch() * p.sigma;
+      p.lower = p.value - p.half_width;
+      p.upper = p.value + p.half_width;
+      if (const ProfileInterval* profile = profiled_.of(int(j))) {
+        p.profiled = true;
+        p.lower = p.label.nominal + profile->lower;
+        p.upper = p.label.nominal + profile->upper;
+      }
       p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share : 1.0);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
@@ -375,6 +405,7 @@ class CalibrationRun {
   std::vector<MeasuredPose> fitted_, held_back_, validation_;
   std::vector<CalibratedParameter> left_out_;
   std::vector<double> placed_;
+  ProfiledColumns profiled_;
   std::vector<RepeatedReadings> repeated_;
   Calibration result_;
 };

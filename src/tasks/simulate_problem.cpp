@@ -46,6 +46,11 @@ class SimulationRun {
   }
 
   Simulation simulate(const PoseList& plan) {
+    if (options_.experiment.profile && options_.experiment.fit.weighting == Weighting::robust)
+      throw InputError({}, "profiles are not for robust weights", "weights ols or wls");
+    if (options_.experiment.profile && !experiment_.one_catalogue)
+      throw CannotDo("variants '" + spec_.name + "' and '" + truth_spec_.name +
+                     "' do not share one catalogue of parameters: the truth is on no profile");
     take_poses(plan);
     take_truth();
     predict();

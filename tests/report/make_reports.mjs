@@ -23,6 +23,7 @@ const cases = [
   { name: 'kr270', problem: () => 'examples/kr270/problem.yaml', poses: 12 },
   { name: 'test_poses', problem: withTestPoses, poses: 8 },
   { name: 'camera', problem: () => 'examples/instruments/camera_on_hand.yaml', poses: 10 },
+  { name: 'robust', problem: () => 'examples/instruments/camera_on_hand.yaml', poses: 12, robust: 20 },
   { name: 'cell', problem: () => 'examples/cell/problem.yaml', poses: 8, candidates: 80, route: true },
 ];
 
@@ -42,7 +43,8 @@ export function makeReports(program, out, names = cases.map((c) => c.name), full
       const size = full
         ? ['--candidates', '3000']
         : ['--poses', String(c.poses), '--candidates', String(c.candidates ?? 100), '--restarts', '1', '--method', 'exchange'];
-      run('plan', problem, ...size, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
+      const robust = c.robust ? ['--robust', String(c.robust)] : [];
+      run('plan', problem, ...size, ...robust, '-o', plan, '--poses-csv', '-', '--force', '--quiet');
       if (c.route) run('route', plan, '--from-home', '--closed', '--reading', '4', '-o', route, '--force', '--quiet');
       const data = JSON.parse(
         run('report', plan, ...(c.route ? ['--route', route] : []), '-o', page, '--force', '--quiet', '--json'),

@@ -98,7 +98,30 @@ async function takeScreenshots(browser, folder) {
   }
 }
 
-const cases = makeReports(values.program, values.out);
+/** A plan for the tolerances, at both widths: what the page says of drawn robots is what plan.json has. @param {any} browser @param {import('./make_reports.mjs').Case} c */
+async function checkRobots(browser, c) {
+  about(`${c.name}, drawn robots`);
+  const { robust } = c.plan;
+  for (const width of [1400, 420]) {
+    const { page, complaints } = await open(browser, c.page, { viewport: { width, height: 900 } });
+    const tile = await page.locator('.tile', { hasText: `on ${robust.draws} drawn robots` }).locator('b').textContent();
+    check(Math.abs(parseFloat(tile) - 100 * robust.value) < 0.0101, `the tile has the value at ${width} px`, tile);
+    const [x, own, nominal, bound] = await page.locator('#plot-robots').evaluate((f) => f.plot.data);
+    const sorted = (all) => [...all].sort((a, b) => a - b).map((e) => 100 * e).join();
+    check(x.length === robust.draws, 'one place a robot', x.length);
+    check(own.join() === sorted(robust.efficiency), 'the plan on each robot, worst first');
+    check(nominal.join() === sorted(robust.nominal_plan.efficiency), 'so the plan for the nominal robot');
+    check(bound.every((b) => Math.abs(b - 100 * Math.min(1, robust.bound)) < 1e-9), 'and the bound');
+    const wider = await overflow(page);
+    check(wider <= 0, `nothing is wider than the page at ${width} px`, wider);
+    check(complaints.length === 0, 'no complaint', complaints.join(' | '));
+    await page.close();
+  }
+}
+
+const every = makeReports(values.program, values.out);
+const drawn = every.filter((c) => c.plan.robust);
+const cases = every.filter((c) => !c.plan.robust);
 const browser = await launch({ webgl: true });
 for (const c of cases) await checkPicture(browser, c);
 // Software draws slowly, and every tick of the list draws again: the rest of the page is checked without WebGL below.
@@ -116,5 +139,7 @@ const plain = await launch({ webgl: false });
 for (const c of cases) await checkCase(plain, c);
 for (const c of cases) await checkSizes(plain, c);
 for (const c of cases.filter((k) => k.name !== 'test_poses')) await checkFallback(plain, c);
+for (const c of drawn) await checkRobots(plain, c);
+check(drawn.length > 0, 'there is a plan for the tolerances');
 await plain.close();
 process.exitCode = verdict();

@@ -284,6 +284,7 @@ TEST_F(DrawnRobotsOfProblems, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   refused(", robust: {measure: median}", "is no measure");
   refused(", robust: {robots: 5}", "robots");
   refused(", robust: {}, criterion: o3", "not for criterion 'o3'");
+  refused(", robust: {}, criterion: compound", "is for one variant");
   refused(", robust: {}, reserve: yes", "stands beside reserve");
 }
 

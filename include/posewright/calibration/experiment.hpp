@@ -18,6 +18,7 @@ struct ExperimentOptions {
   double outliers = 0.0;       ///< share of the targets with a gross error, [0, 1]
   double outlier_size = 20.0;  ///< of a gross error, in σ of its target along a random direction
   FitOptions fit;
+  bool profile = false;  ///< judge intervals by profiles, too: one more fit for every parameter
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
 };
@@ -61,6 +62,7 @@ struct VirtualCalibration {
   Eigen::VectorXd error;  ///< estimate − truth of every column, SI; empty without one catalogue
   Eigen::VectorXd sigma;  ///< 1σ that the calibration states for itself
   double interval = 0.0;  ///< half the 95 % interval in these σ: of the normal, or of Student's t (σ from residuals)
+  Eigen::VectorXd tau;    ///< profile t at the truth (Profile::tau()), NaN: none there; empty: not asked for
   double chi_square = 0.0;
   int freedom = 0;
   double mean_square = 0.0, largest = 0.0;  ///< distance at the places: weighted mean square (m²), largest (m)

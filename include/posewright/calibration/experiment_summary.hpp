@@ -14,7 +14,8 @@ struct ParameterErrors {
   double stated = 0.0;    ///< root mean square of the σ that the calibrations state for themselves
   double bias = 0.0;      ///< mean of estimate − truth
   double bias_error = 0.0;
-  double coverage = 0.0;  ///< share of the 95 % intervals that hold the truth
+  double coverage = 0.0;           ///< share of the 95 % intervals that hold the truth
+  std::optional<double> profiled;  ///< coverage of the intervals by profile, if they were asked for
   /// Draws by (estimate − truth) / the σ that the draw states for itself, as half_sigma_histogram().
   std::vector<int> histogram;
 };

@@ -40,6 +40,9 @@ std::vector<std::optional<double>> values_by_pattern(const VariantColumns& colum
                                                      const std::vector<PatternValue>& values, const Problem& problem,
                                                      const char* what);
 
+/// Columns whose name this shell-style pattern with * and ? matches, ascending.
+std::vector<int> columns_named(const VariantColumns& columns, const std::string& pattern);
+
 /// The columns that `kept` (ascending indices into columns) names.
 VariantColumns subset(const VariantColumns& columns, const std::vector<int>& kept);
 

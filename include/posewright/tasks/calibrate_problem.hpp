@@ -24,6 +24,17 @@
 
 namespace posewright {
 
+/// Parameters whose intervals are by profile (posewright::Profile): those that the curvature names, none, or those that
+/// these names and globs match.
+struct ProfileChoice {
+  enum Choice { automatic, none, named };
+  Choice choice = automatic;
+  std::vector<std::string> names{};
+};
+/// From what a user wrote: auto, none, all, or names and globs with commas between them. Throws InputError for an empty
+/// name.
+ProfileChoice profile_choice(const std::string& text);
+
 struct CalibrateOptions {
   std::filesystem::path data;
   std::optional<std::string> text{};  ///< of `data`, if the file is not to be read: it holds more than counts
@@ -37,7 +48,9 @@ struct CalibrateOptions {
   int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
   bool in_steps = false;           ///< identify base and tool, geometry, stiffness one after the other, too
   bool estimate_alone = false;     ///< the estimate and the smooth effect that the residuals show, no other judgement
-  bool interpolate = false;        ///< predict with what the parameters leave as well: a variant with `unmodelled`
+  ProfileChoice profile{};
+  bool interpolate = false;  ///< predict with what the parameters leave as well: a variant with `unmodelled`
+  int threads = 0;           ///< 0: all
 };
 
 /// One parameter of a calibrated variant.
@@ -46,7 +59,9 @@ struct CalibratedParameter {
   bool estimated = true;
   bool prior = false;                ///< its tolerance counted
   double value = 0.0, sigma = 0.0;   ///< SI
-  double lower = 0.0, upper = 0.0;   ///< 95 % interval
+  double lower = 0.0, upper = 0.0;   ///< 95 % interval; infinite: no end on that side
+  bool profiled = false;             ///< the interval is by profile, see Profile
+  double half_width = 0.0;           ///< of the linear interval
   std::string why_not{};             ///< not estimated: what the data cannot tell it from
   bool weak = false;                 ///< the data tell less than the tolerance
   std::optional<double> in_steps{};  ///< identified in steps, where that was asked for

@@ -5,6 +5,7 @@ import { summarySection, wordsSection } from '../sections/summary.js';
 import { posesSection } from '../sections/poses.js';
 import { parametersSection } from '../sections/parameters.js';
 import { accuracySection, informationSection } from '../sections/plots.js';
+import { robotsSection } from '../sections/robots.js';
 import { correlationSection } from '../sections/correlation.js';
 import { certificateSection, searchSection } from '../sections/certificate.js';
 import { reproduceSection } from '../sections/reproduce.js';
@@ -32,6 +33,7 @@ export function planPage(report) {
       ['In words', wordsSection(list)],
       ['Parameters', parametersSection(list)],
       ['Accuracy', accuracySection(list)],
+      ['Robots', robotsSection(report.plan)],
       ['Information', informationSection(list)],
       ['Correlation', correlationSection(list)],
       ['Certificate', certificateSection(report.plan)],

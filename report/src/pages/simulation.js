@@ -86,6 +86,7 @@ const verdictSection = (s) =>
 
 /** @param {any} s */
 function parametersSection(s) {
+  const profiled = s.parameters.some((p) => typeof p.profile_coverage === 'number');
   const rows = s.parameters.map((p, k) => [
     String(k + 1),
     p.name,
@@ -98,13 +99,14 @@ function parametersSection(s) {
     quantity(p.bias, p.unit, 2),
     quantity(p.bias_error, p.unit, 2),
     percent(p.coverage),
+    ...(profiled ? [percent(p.profile_coverage)] : []),
   ]);
   return section(
     'parameters',
     'Parameters',
     'σ predicted by the plan, observed over the draws, and stated by the calibrations for themselves; bias with its standard error.',
     table(
-      ['##', 'parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered'],
+      ['##', 'parameter', '', '#tolerance', '#σ predicted', '#σ observed', '#ratio', '#σ stated', '#bias', '#± error', '#covered', ...(profiled ? ['#by profile'] : [])],
       rows,
       'Parameters',
     ),

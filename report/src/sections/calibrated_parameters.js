@@ -10,7 +10,9 @@ function picture(p) {
   if (!p.estimated || !(p.tolerance > 0)) return '';
   const at = (value) => 60 + (60 * (value - p.nominal)) / p.tolerance / reach;
   const inside = (x) => Math.min(118, Math.max(2, x));
-  const [lower, upper] = p.interval ?? [p.value - 1.96 * p.sigma, p.value + 1.96 * p.sigma];
+  const [lower, upper] = p.interval
+    ? [p.interval[0] ?? -Infinity, p.interval[1] ?? Infinity]
+    : [p.value - 1.96 * p.sigma, p.value + 1.96 * p.sigma];
   const value = at(p.value);
   const beyond = value < 2 || value > 118;
   return svg(
@@ -32,6 +34,9 @@ function toSigma(value, p) {
   return `${(value * factor).toFixed(decimals).replace('-', '−')}${name ? ` ${name}` : ''}`;
 }
 
+/** @param {number | null} end of an interval @param {any} p */
+const endOf = (end, p) => (end === null ? 'no end' : toSigma(end, p));
+
 /** What a file's rounding left of zero is zero. @param {number} value SI */
 const clean = (value) => (Math.abs(value) < 1e-12 ? 0 : value);
 
@@ -41,12 +46,14 @@ function line(p) {
     toSigma(p.value, p),
     quantity(p.value - p.nominal, p.unit, 3),
     quantity(p.sigma, p.unit, 2),
-    p.interval ? `${toSigma(p.interval[0], p)} to ${toSigma(p.interval[1], p)}` : '–',
+    p.interval ? `${endOf(p.interval[0], p)} to ${endOf(p.interval[1], p)}` : '–',
   ];
   const notes = [
     p.role === 'nuisance' && 'nuisance',
     p.tells_less_than_tolerance && 'told less than its tolerance',
     p.prior === 'stated' && 'tolerance counts',
+    p.interval_by === 'profile' &&
+      `by profile; linear ${toSigma(p.linear_interval[0], p)} to ${toSigma(p.linear_interval[1], p)}`,
     p.prior === 'assumed' && 'tolerance counts, assumed',
   ].filter(Boolean);
   return h(

@@ -48,6 +48,13 @@ const asked = [
   ],
 ];
 
+/** What is left of intervals where the problem is not linear. @param {any} c */
+function notLinear(c) {
+  const profiled = c.parameters.filter((p) => p.interval_by === 'profile').length;
+  if (profiled === 0) return 'no: intervals are rough';
+  return `no: σ are rough; ${profiled} intervals are by profile${c.intrinsic_curvature > 0.15 ? ', and rough, too' : ''}`;
+}
+
 /** @param {any} c */
 function rowsOf(c) {
   const rows = asked
@@ -72,7 +79,7 @@ function rowsOf(c) {
       'Is it linear within one σ? (curvature)',
       number(c.curvature, 2),
       '',
-      c.curvature > 0.15 ? h('span', { class: 'refused' }, 'no: intervals are rough') : 'yes: intervals hold',
+      c.curvature > 0.15 ? h('span', { class: 'refused' }, notLinear(c)) : 'yes: intervals hold',
     ]);
   return rows;
 }

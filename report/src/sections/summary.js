@@ -36,9 +36,16 @@ function tiles(list) {
       ? tile(quantity(plan.accuracy.rho0, 'm', 3), 'position error', 'expected after calibration, 1σ')
       : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
     nearness(plan.certificate),
+    onDrawnRobots(plan.robust),
     jobTime(list.report.route),
   ];
 }
+
+/** A plan for the tolerances. @param {any} robust of plan.json */
+const onDrawnRobots = (robust) =>
+  robust && robust.efficiency.length > 0
+    ? tile(percentDown(robust.value), `on ${robust.draws} drawn robots`, `of the best plan for each, ${robust.measure}`)
+    : null;
 
 /** How long the robot is taken, by the route. @param {any} route */
 function jobTime(route) {

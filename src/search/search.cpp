@@ -350,7 +350,8 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   if (workspace && request.prove)
     prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), options, monitor);
   result.references = joined.references;
-  if (workspace) result.support = workspace->support;
+  // Only where the certificate counts them (below): a plan that takes others is not judged by it.
+  if (workspace && share > 0 && !result.design.added.empty()) result.support = workspace->support;
   result.certificate.proved = share > 0;
   BlockArray added;
   if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);

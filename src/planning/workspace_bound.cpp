@@ -273,7 +273,6 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
     result.stopped = monitor.should_stop();
     monitor.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result.max_ratio});
     if (result.stopped) break;
-    if (!options.thorough && result.max_ratio <= nearly) break;
     if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
     if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
     weights.start = design.weighted();

@@ -308,7 +308,6 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
     options.prior = bound_options(request, joined.prior).prior;
     options.seed = request.planner.seed;
     options.proof = request.proof;
-    options.thorough = !request.rough_workspace;
     options.threads = request.planner.threads;
     workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
   }

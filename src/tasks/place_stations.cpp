@@ -142,9 +142,7 @@ class Ranking {
     std::vector<StationRank> ranks = quick(choose);
     sort(ranks);
     PlanOptions full = options_.plan;
-    // Places are held against each other, not against what is possible.
-    full.proof.seconds = 0.0;
-    full.rough_workspace = true;
+    full.proof.seconds = 0.0;  // places are held against each other, not against what is possible
     std::size_t in_full = 0;
     while (in_full < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))) && ranks[in_full].why_not.empty())
       ++in_full;

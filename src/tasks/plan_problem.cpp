@@ -52,7 +52,6 @@ class PlanSearch {
   Plan plan(int poses) {
     SearchRequest request = spaced_request(study_, settings_, poses - fixed());
     if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
-    request.rough_workspace = settings_.rough_workspace;
     request.prove = settings_.poses > 0;
     request.proof = settings_.proof;
     SearchResult found = search(

@@ -31,7 +31,6 @@ struct WorkspaceBoundOptions {
                             ///< with fewer than 1,000 candidates, a quick look, no more than 8
   double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
   int evaluations = 400;    ///< of one local search
-  bool thorough = true;     ///< false: rounds end where no search finds d above degree·1.02
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
   ProofLimits proof{};
   std::uint64_t seed = 0;

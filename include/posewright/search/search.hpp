@@ -37,8 +37,7 @@ struct SearchRequest {
   bool certify = true;  ///< false: no bound is sought, which takes longer than the search for a few poses
   /// Of the bound: true at any, tight at a small one. If it is not shown, its weights are starts for the search alone.
   double bound_tolerance = ApproximateDesignOptions{}.tolerance;
-  bool rough_workspace = false;  ///< see WorkspaceBoundOptions::thorough
-  bool prove = false;            ///< the certificate over the workspace, after the search and where it can be proved
+  bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
   ProofLimits proof{};
   std::vector<double> references{};  ///< bounds of the parts' log det that count instead of this search's own, raw
   const Spacing* spacing = nullptr;  ///< with the candidates' points; null: no minimum distance

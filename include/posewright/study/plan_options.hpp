@@ -34,9 +34,6 @@ struct PlanOptions {
   std::optional<PoseList> candidates_from{};
   /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
-  /// Searches between the candidates end where what they find more of hardly moves a pose: the plan is as good, the
-  /// figure over the workspace may be some 2 % above what thorough ones would tell.
-  bool rough_workspace = false;
   /// A cell of the same robot with the same tool, of which only obstacles may stand elsewhere: what is known of the
   /// robot's own bodies is taken over. Null: none.
   std::shared_ptr<const Cell> same_robot{};

@@ -36,12 +36,13 @@ class SceneBuilder {
     scene_.bodies = build_bodies(problem, *scene_.frames);
   }
 
-  Scene build() {
+  Scene build(const Scene* same_robot) {
     read_ignored();
     if (spec_.self) add_self_pairs();
     add_obstacle_pairs();
     add_margins();
-    settle_self_pairs();
+    if (same_robot != nullptr) take_self_pairs(*same_robot);
+    else settle_self_pairs();
     find_never_near();
     add_tables();
     return std::move(scene_);
@@ -190,6 +191,25 @@ class SceneBuilder {
       if (always.count(names) == 0) scene_.reduced.push_back({names.first, names.second, kept});
   }
 
+  /// What settle_self_pairs(), find_never_near() and add_tables() found for the same bodies.
+  void take_self_pairs(const Scene& known) {
+    scene_.always = known.always;
+    scene_.reduced = known.reduced;
+    std::map<std::pair<int, int>, const BodyPair*> pairs;
+    for (const BodyPair& pair : known.pairs) pairs[{pair.a, pair.b}] = &pair;
+    const auto is_own = [&](const BodyPair& pair) {
+      return !scene_.bodies[std::size_t(pair.a)].obstacle && !scene_.bodies[std::size_t(pair.b)].obstacle;
+    };
+    std::erase_if(scene_.pairs, [&](const BodyPair& p) { return is_own(p) && pairs.count({p.a, p.b}) == 0; });
+    for (BodyPair& pair : scene_.pairs) {
+      if (!is_own(pair)) continue;
+      const BodyPair& same = *pairs.at({pair.a, pair.b});
+      pair.clearance = same.clearance;
+      pair.never_near = same.never_near;
+      pair.table = same.table;
+    }
+  }
+
   /// A tool that only the last joint turns past the wrist: one turn through the whole range answers for all poses.
   void find_never_near() {
     const std::vector<Coordinate>& coordinates = model_.coordinates();
@@ -200,7 +220,7 @@ class SceneBuilder {
       Eigen::Index moving = 0;
       travel.maxCoeff(&moving);
       const Coordinate& c = coordinates[std::size_t(moving)];
-      if ((travel.array() != 0).count() != 1 || c.discrete()) continue;
+      if (pair.never_near || (travel.array() != 0).count() != 1 || c.discrete()) continue;
       std::vector<double> first = middle, last = middle;
       first[std::size_t(moving)] = c.lower - beyond_limits;
       last[std::size_t(moving)] = c.upper + beyond_limits;
@@ -215,7 +235,7 @@ class SceneBuilder {
     std::vector<double> middle = middle_configuration();
     for (BodyPair& pair : scene_.pairs) {
       std::vector<ApartTable::Axis> axes;
-      bool fits = !pair.never_near;
+      bool fits = !pair.never_near && pair.table == nullptr;
       for (std::size_t k = 0; k < coordinates.size(); ++k) {
         const double travel = pair.travel.front()[Eigen::Index(k)];
         const Coordinate& c = coordinates[k];
@@ -247,8 +267,8 @@ class SceneBuilder {
 
 }  // namespace
 
-Scene build_scene(const Problem& problem, const IdentificationModel& model) {
-  return SceneBuilder(problem, model).build();
+Scene build_scene(const Problem& problem, const IdentificationModel& model, const Scene* same_robot) {
+  return SceneBuilder(problem, model).build(same_robot);
 }
 
 }  // namespace posewright

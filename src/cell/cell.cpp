@@ -78,10 +78,12 @@ std::vector<double> home_configuration(const Problem& problem, const std::vector
   return home;
 }
 
-std::shared_ptr<const Cell> make_cell(const Problem& problem) {
+std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_robot) {
   auto cell = std::make_shared<Cell>();
   cell->model = make_model(problem, find_variant(problem, ""));
-  if (problem.workspace.collision) cell->collision = std::make_unique<Collision>(problem, *cell->model);
+  if (problem.workspace.collision)
+    cell->collision = std::make_unique<Collision>(problem, *cell->model,
+                                                  same_robot == nullptr ? nullptr : same_robot->collision.get());
   cell->sight = LineOfSight::make(problem, *cell->model, cell->collision.get());
   cell->joint_margin = joint_margins(problem, *cell->model);
   cell->sight_is_asked = problem.workspace.line_of_sight.has_value();

@@ -158,8 +158,9 @@ class SmallestDistance {
 
 }  // namespace
 
-Collision::Collision(const Problem& problem, const IdentificationModel& model)
-    : scene_(std::make_unique<Scene>(build_scene(problem, model))) {}
+Collision::Collision(const Problem& problem, const IdentificationModel& model, const Collision* same_robot)
+    : scene_(std::make_unique<Scene>(
+          build_scene(problem, model, same_robot == nullptr ? nullptr : &same_robot->scene()))) {}
 Collision::~Collision() = default;
 
 const std::vector<std::string>& Collision::reasons() const { return scene_->reasons; }

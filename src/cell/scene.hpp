@@ -69,9 +69,10 @@ struct Scene {
 bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
                  std::span<const double> to, long most_steps = std::numeric_limits<long>::max());
 
-/// @param model  nominal one of the problem; must outlive the scene
+/// @param model       nominal one of the problem; must outlive the scene
+/// @param same_robot  see Collision
 /// Throws InputError and CannotDo for meshes, links and packages that are not there.
-Scene build_scene(const Problem& problem, const IdentificationModel& model);
+Scene build_scene(const Problem& problem, const IdentificationModel& model, const Scene* same_robot = nullptr);
 
 /// Links of the arm, tool and obstacles, in that order.
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames);

@@ -63,17 +63,16 @@ int run_compare(const po::variables_map& values, const Words& positional) {
   const Problem problem = given_problem(positional.front(), values);
   const CompareOptions compare = options_of(problem, values, positional, common);
   const auto engine = engine_of(values, "compare");
-  const Comparison result =
-      watched(
-          common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }, engine.get())
-          .result;
+  const auto [result, was_interrupted] = watched(
+      common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }, engine.get());
   print_notes(result.notes);
+  const int code = was_interrupted ? interrupted : done;
   if (!common.json) {
     print_report(comparison_text(result, !compare.truth.empty()));
-    return done;
+    return code;
   }
   fmt::print("{}", json_text(comparison_json(problem, compare, result)));
-  return done;
+  return code;
 }
 
 }  // namespace

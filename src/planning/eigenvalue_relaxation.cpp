@@ -16,15 +16,24 @@ constexpr double to_boundary = 0.95;
 // μ falls by this once the square of the Newton decrement is below 1: then the step leaves next to nothing.
 constexpr double fall = 0.15, centred = 1.0;
 
-/// H_ij += ‖Z_i Z_jᵀ‖² of blocks of r rows.
-void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H) {
-  const Eigen::MatrixXd squares = (Z * Z.transpose()).cwiseAbs2();
-  if (r == 1) {
-    H += squares;
-    return;
+// Rows of a tile of products: those of all pairs of candidates would fill hundreds of megabytes at every step.
+constexpr Eigen::Index tile_rows = 96;
+
+/// Lower triangle of H_ij += ‖Z_i Z_jᵀ‖² of blocks of r rows.
+void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H,
+                 Eigen::MatrixXd& tile) {
+  const Eigen::Index n = H.cols(), step = std::max<Eigen::Index>(1, tile_rows / r);
+  for (Eigen::Index first = 0; first < n; first += step) {
+    const Eigen::Index columns = std::min(step, n - first);
+    for (Eigen::Index top = first; top < n; top += step) {
+      const Eigen::Index rows = std::min(step, n - top);
+      tile.resize(rows * r, columns * r);
+      tile.noalias() = Z.middleRows(top * r, rows * r) * Z.middleRows(first * r, columns * r).transpose();
+      for (Eigen::Index j = 0; j < columns; ++j)
+        for (Eigen::Index i = 0; i < rows; ++i)
+          H(top + i, first + j) += r == 1 ? tile(i, j) * tile(i, j) : tile.block(i * r, j * r, r, r).squaredNorm();
+    }
   }
-  for (Eigen::Index j = 0; j < H.cols(); ++j)
-    for (Eigen::Index i = 0; i < H.rows(); ++i) H(i, j) += squares.block(i * r, j * r, r, r).sum();
 }
 
 Eigen::MatrixXd inverse_factor(const Eigen::LLT<Eigen::MatrixXd>& factor) {
@@ -73,19 +82,19 @@ EigenvalueRelaxation::EigenvalueRelaxation(RowMatrix rows, int r, int nuisance, 
 }
 
 bool EigenvalueRelaxation::factorise(const Eigen::VectorXd& n, double least, double most) {
-  RowMatrix weighted = rows_;
-  for (Eigen::Index i = 0; i < f_; ++i) weighted.middleRows(i * r_, r_) *= std::sqrt(n[i]);
+  scaled_ = rows_;
+  for (Eigen::Index i = 0; i < f_; ++i) scaled_.middleRows(i * r_, r_) *= std::sqrt(n[i]);
   information_ = known_;
-  information_.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  information_.selfadjointView<Eigen::Lower>().rankUpdate(scaled_.transpose());
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
-  Eigen::MatrixXd shifted = information_;
-  shifted.diagonal().tail(m_ - nuisance_).array() -= least;
-  low_.compute(shifted);
+  shifted_ = information_;
+  shifted_.diagonal().tail(m_ - nuisance_).array() -= least;
+  low_.compute(shifted_);
   if (low_.info() != Eigen::Success) return false;
   if (!with_ratio_) return true;
-  shifted = -information_;
-  shifted.diagonal().array() += most;
-  high_.compute(shifted);
+  shifted_ = -information_;
+  shifted_.diagonal().array() += most;
+  high_.compute(shifted_);
   return high_.info() == Eigen::Success;
 }
 
@@ -102,7 +111,7 @@ Eigen::MatrixXd EigenvalueRelaxation::most_factor() const {
 }
 
 /// Gradient and curvature of (s − tL)/μ + log det(M − s P) + log det(L I − M) + Σ ln n_i + Σ ln(room_i − n_i), but for
-/// the terms of s and L alone.
+/// the terms of s and L alone; of the curvature the lower triangle.
 void EigenvalueRelaxation::products() {
   const Eigen::Index size = f_ + (with_ratio_ ? 2 : 1);
   hessian_.setZero(size, size);
@@ -111,15 +120,16 @@ void EigenvalueRelaxation::products() {
   gradient_.head(f_) = above - below;
   hessian_.diagonal().head(f_) = above.square() + below.square();
   const auto add = [&](const Eigen::MatrixXd& inverse, Eigen::Index first, double sign, Eigen::Index at) {
-    const RowMatrix Z = rows_ * inverse;
-    add_squares(Z, r_, hessian_.topLeftCorner(f_, f_));
+    RowMatrix &Z = scaled_, &mixed = mixed_;
+    Z.noalias() = rows_ * inverse;
+    add_squares(Z, r_, hessian_.topLeftCorner(f_, f_), tile_);
     // V P V in the same factor: B Bᵀ with B = L⁻¹ P L⁻ᵀ.
     const Eigen::MatrixXd own = inverse.bottomRows(m_ - first).transpose() * inverse.bottomRows(m_ - first);
-    const RowMatrix mixed = Z * own;
+    mixed.noalias() = Z * own;
     for (Eigen::Index i = 0; i < f_; ++i) {
       const auto Zi = Z.middleRows(i * r_, r_);
       gradient_[i] += sign * Zi.squaredNorm();
-      hessian_(i, at) = hessian_(at, i) = -mixed.middleRows(i * r_, r_).cwiseProduct(Zi).sum();
+      hessian_(at, i) = -mixed.middleRows(i * r_, r_).cwiseProduct(Zi).sum();
     }
     gradient_[at] -= sign * own.trace();
     hessian_(at, at) += own.squaredNorm();
@@ -132,12 +142,12 @@ bool EigenvalueRelaxation::step(double t) {
   products();
   gradient_[f_] += 1 / mu_;
   if (with_ratio_) gradient_[f_ + 1] -= t / mu_;
-  const Eigen::LLT<Eigen::MatrixXd> factor(hessian_);
-  if (factor.info() != Eigen::Success) return false;
+  factor_.compute(hessian_);
+  if (factor_.info() != Eigen::Success) return false;
   Eigen::VectorXd ones = Eigen::VectorXd::Zero(hessian_.rows());
   ones.head(f_).setOnes();
-  change_ = factor.solve(gradient_);
-  const Eigen::VectorXd b = factor.solve(ones);
+  change_ = factor_.solve(gradient_);
+  const Eigen::VectorXd b = factor_.solve(ones);
   change_ -= change_.head(f_).sum() / b.head(f_).sum() * b;
   const double decrement = change_.dot(gradient_);
   if (!(decrement >= 0) || !std::isfinite(decrement)) return false;

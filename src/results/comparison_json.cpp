@@ -96,7 +96,9 @@ Json figures_json(const Comparison& c) {
                           })},
       {"scores", list_json(c.scores, score_json)},
       {"aliases", list_json(c.aliases, alias_json)},
-      {"worth", list_json(c.worths, worth_json)}};
+      {"worth", list_json(c.worths, worth_json)},
+      {"interrupted", c.interrupted},
+      {"not_planned", c.not_planned}};
 }
 
 }  // namespace

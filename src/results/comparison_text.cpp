@@ -26,6 +26,14 @@ std::string headline(const Comparison& c) {
   return text;
 }
 
+/// What an end before everything was known leaves out.
+std::string ended_early(const Comparison& c) {
+  if (!c.interrupted) return {};
+  std::string text = fmt::format("Ended early: {} of {} plans", c.plans.size(), c.plans.size() + c.not_planned.size());
+  if (!c.not_planned.empty()) text += fmt::format(", none for {}", fmt::join(c.not_planned, ", "));
+  return text + "; biases and whether more parameters pay are left out.\n";
+}
+
 std::string variants_text(const Comparison& c) {
   Table table({"variant", "parameters", "nuisance", ""}, {Align::left, Align::right, Align::right, Align::left});
   std::string reasons;
@@ -192,8 +200,8 @@ std::string worth_text(const ExtraWorth& w) {
 }
 
 std::string comparison_text(const Comparison& c, bool aliases_in_full) {
-  std::string text =
-      headline(c) + "\n" + variants_text(c) + "\n" + efficiency_text(c) + "\n" + scores_text(c) + reliance_text(c);
+  std::string text = headline(c) + ended_early(c) + "\n" + variants_text(c) + "\n" + efficiency_text(c) + "\n" +
+                     scores_text(c) + reliance_text(c);
   if (aliases_in_full)
     for (const VariantAlias& a : c.aliases) text += alias_in_full(a);
   else text += alias_lines(c);

@@ -29,12 +29,14 @@ std::string places_of(const StationRank& rank) {
   return places;
 }
 
+/// A full plan that was cut short leaves the quick one.
+bool looked_at(const StationRank& rank) { return !rank.stopped || rank.why_not.empty(); }
+
 /// What an end before everything was known left open; empty: nothing.
 std::string ended_early(const std::vector<StationRank>& ranks) {
   const auto count = [&](auto&& which) { return std::count_if(ranks.begin(), ranks.end(), which); };
   if (count([](const StationRank& r) { return r.stopped; }) == 0) return {};
-  return fmt::format("Ended early: {} of {} looked at, {} planned in full.\n",
-                     count([](const StationRank& r) { return !r.stopped || r.why_not.empty(); }), ranks.size(),
+  return fmt::format("Ended early: {} of {} looked at, {} planned in full.\n", count(looked_at), ranks.size(),
                      count([](const StationRank& r) { return r.in_full; }));
 }
 
@@ -78,7 +80,7 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
     for (const StationSpec& s : rank.stations)
       stations[s.name] = {{"position", {s.placement.position.x(), s.placement.position.y(), s.placement.position.z()}},
                           {"rpy", {s.placement.rpy.x(), s.placement.rpy.y(), s.placement.rpy.z()}}};
-    Json json = {{"stations", stations}};
+    Json json = {{"stations", stations}, {"looked_at", looked_at(rank)}};
     if (!rank.why_not.empty()) {
       json["why_not"] = rank.why_not;
     } else {

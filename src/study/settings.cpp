@@ -74,6 +74,7 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   s.planner.restarts_stated = options.restarts || design.restarts.line > 0;
   s.planner.seed = options.seed;
   s.candidates_alone = options.candidates_alone;
+  s.same_robot = options.same_robot;
   s.proof = options.proof;
   s.planner.threads = options.threads;
   return s;

@@ -149,7 +149,7 @@ void append(Configurations& list, const Configurations& from, std::size_t i) {
 Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
                  Unidentifiable unidentifiable) {
   Study study;
-  study.cell = make_cell(problem);
+  study.cell = make_cell(problem, settings.same_robot.get());
   for (const DesignSpec::Weighted& wanted : settings.variants) {
     Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell, monitor);
     variant.weight = wanted.weight;

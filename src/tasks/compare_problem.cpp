@@ -35,8 +35,13 @@ class ComparisonRun {
     judged_.resize(poses_.size());
     for (std::size_t p = 0; p < poses_.size(); ++p)
       for (const Variant& variant : study_.variants) result_.scores.push_back(score(p, variant));
-    for (std::size_t p = 0; p < poses_.size(); ++p) alias(p);
-    if (monitor_.was_interrupted()) throw CannotDo("the comparison was interrupted");
+    for (std::size_t p = 0; p < poses_.size() && !monitor_.should_stop(); ++p) alias(p);
+    result_.interrupted = monitor_.should_stop();
+    // A part of them would read as if the others had none.
+    if (result_.interrupted) {
+      result_.aliases.clear();
+      result_.worths.clear();
+    }
     return std::move(result_);
   }
 
@@ -52,6 +57,7 @@ class ComparisonRun {
     result_.method = options_.plans.empty() ? settings_.method : "";
     result_.plans = std::move(plans.plans);
     result_.notes = std::move(plans.notes);
+    result_.not_planned = std::move(plans.not_planned);
     poses_ = std::move(plans.poses);
   }
 
@@ -80,7 +86,8 @@ class ComparisonRun {
       const Evaluation& e = judged_[plan][&variant] = std::move(worth.evaluation);
       score.log_det = e.log_det;
       score.condition = e.condition;
-      score.reliance = reliance_of(problem_, study_, variant, all, e, settings_.planner.threads);
+      if (!monitor_.should_stop())
+        score.reliance = reliance_of(problem_, study_, variant, all, e, settings_.planner.threads);
       fill_sigma(score, columns, e);
       std::vector<double> each;
       if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, worth.errors, each);
@@ -111,6 +118,7 @@ class ComparisonRun {
   std::optional<double> bound_of(const Variant& variant, int poses) {
     const auto key = std::pair(&variant, poses);
     if (const auto known = bounds_.find(key); known != bounds_.end()) return known->second;
+    if (monitor_.should_stop()) return std::nullopt;
     SearchRequest wanted = request_for(study_, variant, settings_, poses);
     wanted.criterion = "o1";
     std::optional<double> bound;
@@ -130,6 +138,7 @@ class ComparisonRun {
       for (const auto& truth : study_.variants) {
         if (&truth == &fitted || !truth.why_not.empty()) continue;
         if (!options_.truth.empty() && options_.truth != truth.spec->name) continue;
+        if (monitor_.should_stop()) return;
         VariantAlias found =
             variant_alias(problem_, fitted, truth, with_measured(study_, poses_[plan]), evaluation->second, settings_);
         found.plan = result_.plans[plan].name;

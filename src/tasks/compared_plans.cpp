@@ -61,9 +61,11 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
         search(search_parts(variant, candidates, settings.planner.threads),
                request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, variant.spec->name));
     ByteWriter bytes;
+    bytes.put(found.stopped || monitor.was_interrupted());
     bytes.put(chosen_by(found.design, candidates).values);
     return bytes.take();
   };
+  std::vector<bool> planned(variants.size(), false);
   // One at a time in each process: the parts of a plan keep its threads busy.
   run_tasks(
       {"variants", variants.size(), 1, [](std::size_t, std::string_view) {}},
@@ -71,12 +73,19 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
       [&](std::size_t v, std::string_view bytes) {
         Configurations poses;
         poses.dimension = candidates.dimension;
-        ByteReader(bytes).get(poses.values);
+        ByteReader from(bytes);
+        // Cut short it would look worse than another variant's, and is not.
+        if (from.get<bool>()) return;
+        from.get(poses.values);
+        planned[v] = true;
         const std::string& name = variants[v]->spec->name;
         result.plans.push_back({"best for " + name, name, int(poses.count())});
         result.poses.push_back(std::move(poses));
       },
       monitor);
+  for (std::size_t v = 0; v < variants.size(); ++v)
+    if (!planned[v]) result.not_planned.push_back(variants[v]->spec->name);
+  if (result.plans.empty() && !variants.empty()) throw CannotDo("the comparison was stopped before a plan was done");
   return result;
 }
 

@@ -15,8 +15,9 @@ struct PlansToCompare {
   std::vector<ComparedPlan> plans;
   std::vector<Configurations> poses;  ///< of each, without those that the problem names as measured
   std::vector<std::string> notes;
+  std::vector<std::string> not_planned{};  ///< variants whose plan was not done when the search was ended
 };
-/// The best plan for each variant that can be identified.
+/// The best plan for each variant that can be identified. CannotDo if the search is ended before one is done.
 PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor);
 /// Lists as they are. Throws InputError if one cannot be read.
 PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists);

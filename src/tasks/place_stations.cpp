@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
 
+#include "posewright/cell/cell.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/bytes.hpp"
@@ -108,6 +110,12 @@ StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
   return rank;
 }
 
+/// The robot alone: the problem's own station, which is none of the places, may stand anywhere.
+Problem without_sight(Problem problem) {
+  problem.workspace.line_of_sight.reset();
+  return problem;
+}
+
 class Ranking {
  public:
   Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
@@ -123,6 +131,7 @@ class Ranking {
       throw CannotDo("criterion " + criterion +
                      " compares plans with others of the same stations; choose one of one variant");
     determinant_ = entry != nullptr && entry->determinant;
+    if (problem.workspace.collision) robot_ = make_cell(without_sight(unconnected_));
   }
 
   std::vector<StationRank> rank() {
@@ -241,6 +250,7 @@ class Ranking {
     quiet.deadline = monitor_.deadline;
     try {
       PlanOptions nominal = plan_options;
+      nominal.same_robot = robot_;
       nominal.robust = no_drawn_robots;  // places are compared by what they are worth to the nominal robot
       const Plan plan = plan_problem(with_stations(problem, stations), nominal, quiet);
       for (const PlannedParameter& p : plan.parameters)
@@ -285,6 +295,7 @@ class Ranking {
   const StationOptions& options_;
   const Monitor& monitor_;
   const std::vector<StationSpec>& places_;
+  std::shared_ptr<const Cell> robot_;  // where the instrument does not matter; null: nothing collides
   bool determinant_ = false;
   std::size_t wanted_ = 0;  // stations of a set
 };

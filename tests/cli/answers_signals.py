@@ -25,6 +25,8 @@ def setUpModule():
     text = re.sub(r"^design:.*$", "design: {poses: 12, candidates: 600, restarts: 1, method: exchange}", text, flags=re.M)
     text = text.replace("../", f"{SOURCE / 'examples'}/")
     (FOLDER / "problem.yaml").write_text(text)
+    two = text.replace("variants:\n", 'variants:\n  fewer: {parameters: auto, nuisance: ["base.*", "target.*"], fixed: ["joint_a3.*"]}\n')
+    (FOLDER / "two.yaml").write_text(two.replace("reachable: true", "reachable: false"))
     done = subprocess.run([PROGRAM, "plan", "problem.yaml", "--quiet", "--poses-csv", "-"], cwd=FOLDER,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -60,6 +62,8 @@ class Answers(unittest.TestCase):
         result = json.loads(out)
         self.assertTrue(result["interrupted"])
         planned = [rank for rank in result["ranking"] if "why_not" not in rank]
+        self.assertEqual([rank["looked_at"] for rank in planned], [True] * len(planned))
+        self.assertTrue(any(not rank["looked_at"] for rank in result["ranking"]))
         self.assertGreaterEqual(len(planned), 1)
         self.assertFalse(any(rank["in_full"] for rank in planned))
         phi = [rank["phi"] for rank in planned if rank["parameters"] == planned[0]["parameters"]]
@@ -107,6 +111,24 @@ class Answers(unittest.TestCase):
             self.assertEqual(score["value"], scores[score["criterion"]]["value"])
             if score["efficiency"] is not None:
                 self.assertLessEqual(score["efficiency"], scores[score["criterion"]]["efficiency"] + 1e-9)
+
+    def test_a_comparison_has_the_variants_that_are_done(self):
+        words = ["compare", "two.yaml", "--variant", "geometric,fewer", "--json"]
+        out, _ = self.ended(words, "fewer: workspace bound", signal.SIGTERM)
+        early = json.loads(out)
+        self.assertTrue(early["interrupted"])
+        self.assertEqual(early["not_planned"], ["fewer"])
+        self.assertEqual([plan["searched_for"] for plan in early["plans"]], ["geometric"])
+        self.assertEqual((early["aliases"], early["worth"]), ([], []))
+        whole = json.loads(subprocess.run([PROGRAM, *words, "--quiet"], cwd=FOLDER, capture_output=True, text=True).stdout)
+        self.assertFalse(whole["interrupted"])
+        figures = ["plan", "variant", "log_det", "mean_sigma_per_tolerance"]
+        self.assertEqual([[score[key] for key in figures] for score in early["scores"]],
+                         [[score[key] for key in figures] for score in whole["scores"][:2]])
+
+    def test_a_comparison_that_has_no_plan_says_nothing(self):
+        out, _ = self.ended(["compare", "two.yaml", "--variant", "geometric"], "geometric: workspace bound", signal.SIGINT)
+        self.assertEqual(out, "")
 
     def test_a_time_limit_that_is_too_short_says_so(self):
         for words in (["route", "plan.json", "-o", "no.json"], ["report", "plan.json", "-o", "no.html"],

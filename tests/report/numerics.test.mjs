@@ -15,6 +15,7 @@ import { Neighbours, wholeNumbers } from '../../report/src/numerics/neighbours.j
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { armAt, composed, nearby } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
+import { counts } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
 import { shell, shellFile } from '../../report/src/sections/reproduce.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
@@ -243,6 +244,12 @@ test('the saved list has the header of poses.csv, quotes names and keeps all dig
     posesCsv([pose(7, 'A'), pose(3, 'B, "left"')], { 'leg.rho': 'm' }),
     'pose,x [m],rz [rad],leg.rho [m],station\n7,0.30000000000000004,-1e-7,0.25,A\n3,0.30000000000000004,-1e-7,0.25,"B, ""left"""\n',
   );
+});
+
+test('a place that was not looked at is none that gives no plan', () => {
+  const ranking = [{ looked_at: true, phi: 3 }, { looked_at: true, why_not: 'stands inside a body' }, { looked_at: false, why_not: 'ended' }];
+  assert.deepEqual(counts(ranking), { looked: 2, all: 3, planned: 1 });
+  assert.deepEqual(counts([{ phi: 3 }, { why_not: 'stands inside a body' }]), { looked: 2, all: 2, planned: 1 });
 });
 
 test('numbers are shown in mm and deg, and proofs are rounded down', () => {

@@ -27,8 +27,9 @@ class StationInside : public InputError {
   using InputError::InputError;
 };
 
+/// @param same_robot  see Collision; null: none
 /// Throws InputError as Collision and LineOfSight, StationInside.
-std::shared_ptr<const Cell> make_cell(const Problem& problem);
+std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_robot = nullptr);
 
 /// Home of the robot: motion.home; where it says nothing, zero or the limit nearest to it; first of every choice.
 /// @param coordinates  with the limits in force

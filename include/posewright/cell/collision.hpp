@@ -34,8 +34,10 @@ struct Separation {
 class Collision {
  public:
   /// @param model  nominal one of the problem (Problem::workspace has a collision block); must outlive this
+  /// @param same_robot  of the same robot, tool and clearances, its obstacles elsewhere: what is known of pairs of the
+  ///                    robot's own bodies is taken over; null: none
   /// Throws InputError for links, packages and meshes that are missing or broken.
-  Collision(const Problem& problem, const IdentificationModel& model);
+  Collision(const Problem& problem, const IdentificationModel& model, const Collision* same_robot = nullptr);
   ~Collision();
 
   /// "self-collision", "collision with table", …

@@ -55,7 +55,10 @@ class EigenvalueRelaxation {
   double least_ = 0.0, most_ = 0.0, mu_ = 1.0;
   Eigen::MatrixXd information_, hessian_;
   Eigen::LLT<Eigen::MatrixXd> low_, high_;  ///< of M − s P and L I − M
+  Eigen::LLT<Eigen::MatrixXd> factor_;      ///< of the curvature
   Eigen::VectorXd gradient_, change_;
+  RowMatrix scaled_, mixed_;  ///< work space, as the next ones: what a step needs is as large as all rows
+  Eigen::MatrixXd shifted_, tile_;
 };
 
 }  // namespace posewright

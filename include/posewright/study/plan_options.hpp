@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "posewright/cell/cell.hpp"
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/planning/workspace_bound.hpp"
 #include "posewright/problem/design_specs.hpp"
@@ -32,6 +34,9 @@ struct PlanOptions {
   std::optional<PoseList> candidates_from{};
   /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
+  /// A cell of the same robot with the same tool, of which only obstacles may stand elsewhere: what is known of the
+  /// robot's own bodies is taken over. Null: none.
+  std::shared_ptr<const Cell> same_robot{};
   ProofLimits proof{};                 ///< of the certificate over the workspace
   std::optional<RobustSpec> robust{};  ///< robots drawn from the tolerances; none: as in the file; 0 draws: no
   std::uint64_t seed = 0;

@@ -33,7 +33,8 @@ struct Settings {
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
-  bool candidates_alone = false;  ///< as PlanOptions
+  bool candidates_alone = false;             ///< as PlanOptions
+  std::shared_ptr<const Cell> same_robot{};  ///< the same
   ProofLimits proof{};
   std::optional<RobustSpec> robust{};  ///< only what plans or judges a whole list asks for drawn robots
 };

@@ -99,11 +99,15 @@ struct Comparison {
   std::vector<VariantAlias> aliases;
   std::vector<ExtraWorth> worths;
   std::vector<std::string> notes;  ///< on how lists were read
+  /// Ended early: there is no plan of the variants that `not_planned` names, no efficiency that was not known, and
+  /// nothing of aliases and worths.
+  bool interrupted = false;
+  std::vector<std::string> not_planned;
 };
 
 /// Variants × plans on common candidates: efficiency, predicted σ and accuracy, what a variant takes up of another
 /// one's effects, whether more parameters pay. Throws InputError for unknown variants and lists that cannot be read,
-/// CannotDo if no pose serves all variants and where the search is interrupted.
+/// CannotDo if no pose serves all variants and where the search is interrupted before one plan is done.
 Comparison compare_problem(const Problem& problem, const CompareOptions& options, const Monitor& monitor);
 
 }  // namespace posewright

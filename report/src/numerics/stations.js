@@ -20,6 +20,16 @@ export function sigmaRatio(ranking, rank) {
 /** Whether the criterion is a log-determinant of information, so that its differences are ratios of σ. @param {any} s */
 export const isDeterminant = (s) => s.criterion === 'o1' || s.criterion === 'ds';
 
+/** Whether a plan was looked for; not where the search was ended before. @param {any} rank */
+export const isLookedAt = (rank) => rank.looked_at !== false;
+
+/** How many choices were looked at, of how many, and how many of them give a plan. @param {any[]} ranking */
+export const counts = (ranking) => ({
+  looked: ranking.filter(isLookedAt).length,
+  all: ranking.length,
+  planned: ranking.filter((r) => !r.why_not).length,
+});
+
 /** Places that can be compared with this one. @param {any[]} ranking @param {any} rank */
 const alike = (ranking, rank) => ranking.filter((r) => !r.why_not && r.in_full === rank.in_full && r.parameters === rank.parameters);
 

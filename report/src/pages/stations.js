@@ -1,7 +1,7 @@
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
-import { isDeterminant, sigmaRatio } from '../numerics/stations.js';
+import { counts, isDeterminant, isLookedAt, sigmaRatio } from '../numerics/stations.js';
 import { stationMap } from '../plots/station_map.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { number, percent, plural, quantity } from '../text/units.js';
@@ -16,16 +16,19 @@ const placeOf = (rank) =>
 function tiles(s) {
   const [best] = s.ranking;
   const planned = s.ranking.filter((r) => !r.why_not);
+  const { looked, all } = counts(s.ranking);
   const ratio = planned.filter((r) => r.sigma_ratio !== null).map((r) => r.sigma_ratio);
   return [
     tile(namesOf(best), Object.keys(best.stations).length > 1 ? 'best places' : 'best place', `at ${placeOf(best)} mm`),
-    tile(
-      String(planned.length),
-      'choices give a plan',
-      planned.length < s.ranking.length
-        ? `${s.ranking.length - planned.length} do not`
-        : `${planned.filter((r) => r.in_full).length} planned in full`,
-    ),
+    looked < all
+      ? tile(`${looked} of ${all}`, 'looked at', `${planned.length} give a plan; the search was ended early`)
+      : tile(
+          String(planned.length),
+          'choices give a plan',
+          planned.length < s.ranking.length
+            ? `${s.ranking.length - planned.length} do not`
+            : `${planned.filter((r) => r.in_full).length} planned in full`,
+        ),
     best.rho0 !== null ? tile(quantity(best.rho0, 'm', 3), 'position error', 'predicted from the best place') : null,
     ratio.length > 1
       ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned in full, against the best`)
@@ -62,7 +65,8 @@ function rankingSection(s) {
     ...(withError ? [quantity(r.rho0, 'm')] : []),
     r.main_rejection,
   ]);
-  const refused = s.ranking.filter((r) => r.why_not);
+  const refused = s.ranking.filter((r) => r.why_not && isLookedAt(r));
+  const open = s.ranking.filter((r) => !isLookedAt(r));
   return section(
     'ranking',
     'Ranking',
@@ -74,6 +78,9 @@ function rankingSection(s) {
           { class: 'sentences' },
           refused.map((r) => h('li', {}, `${namesOf(r)} gives no plan: ${r.why_not}`)),
         )
+      : null,
+    open.length > 0
+      ? h('p', {}, `Not looked at, because the search was ended before: ${open.map(namesOf).join('; ')}.`)
       : null,
   );
 }

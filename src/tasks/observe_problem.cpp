@@ -73,7 +73,9 @@ class Draws {
   std::pair<Variant, const Configurations*> of(const VariantSpec& spec) {
     const std::shared_ptr<const IdentificationModel> model = make_model(problem_, spec);
     for (const Drawn& known : drawn_)
-      if (known.spec->convention == spec.convention && stand_alike(*known.model, *model))
+      // What a variant estimates says how far its robots may be off that must be readable.
+      if (problem_.workspace.readable_for == 0 && known.spec->convention == spec.convention &&
+          stand_alike(*known.model, *model))
         return {place_variant(without_roadmap(problem_), spec, cell_, monitor_), &known.configurations};
     Variant variant = place_variant(problem_, spec, cell_, monitor_);
     Configurations configurations = sample_configurations(*variant.workspace, sampling_, monitor_);

@@ -55,7 +55,9 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
   folder.write("planar.urdf", planar_urdf(n));
   const Problem problem =
       read_problem(folder.write("p.yaml", planar_problem(n, "{poses: 6, candidates: 4000, method: auto}")));
-  const Plan plan = plan_problem(problem, {}, Monitor{});
+  PlanOptions options;
+  options.proof.gap = 5e-5;
+  const Plan plan = plan_problem(problem, options, Monitor{});
   // log det M ≤ 2n ln N + 2 Σ ln l_i.
   const double optimum = 2 * n * std::log(poses) + 2 * ((n - 1) * std::log(1.2) + std::log(0.8));
   EXPECT_NEAR(plan.log_det, optimum, 1e-6);

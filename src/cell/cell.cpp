@@ -55,6 +55,7 @@ std::map<std::string, double> joint_margins(const Problem& problem, const Identi
 
 std::vector<double> home_configuration(const Problem& problem, const std::vector<Coordinate>& coordinates) {
   std::vector<double> home;
+  home.reserve(coordinates.size());
   for (const Coordinate& c : coordinates)
     home.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
   for (const auto& [name, given] : problem.workspace.motion.home) {

@@ -44,6 +44,7 @@ int coordinate_named(const std::vector<Coordinate>& coordinates, const Located<s
   for (int i = 0; i < int(coordinates.size()); ++i)
     if (coordinates[std::size_t(i)].name == name.value) return i;
   std::vector<std::string> words;
+  words.reserve(coordinates.size());
   for (const Coordinate& c : coordinates) words.push_back(c.name);
   throw InputError(
       {place.file, name.line},

@@ -31,6 +31,7 @@ std::optional<Eigen::Isometry3d> base_of(const Problem& problem, const VariantSp
 std::vector<PlacedFrame> placed_frames(const Problem& problem, const VariantSpec& variant,
                                        const std::vector<CalibratedValue>& values) {
   std::vector<Parameter> at;
+  at.reserve(values.size());
   for (const CalibratedValue& v : values) at.push_back({v.name, v.unit, v.value, 0.0, Role::interest});
   std::vector<PlacedFrame> frames;
   if (const auto base = base_of(problem, variant, values, at)) frames.push_back({"base", false, *base});

@@ -324,6 +324,7 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
   Random random(seed, compared_stream);
   PartSquares squares(form, T);
   std::vector<std::vector<double>> places;
+  places.reserve(places_compared);
   for (int i = 0; i < places_compared; ++i) places.push_back(random_values(axes, random));
 
   for (std::size_t d = 0; d < form.distance_degrees().size(); ++d) {
@@ -356,9 +357,10 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
   for (std::size_t k = 0; k < parts; ++k) groups[degrees_of_parts[k]].push_back(k);
   std::vector<std::vector<double>> direct(places.size(), std::vector<double>(parts));
   for (std::size_t i = 0; i < places.size(); ++i) squares(places[i], direct[i]);
-  for (const auto& [degrees, members] : groups) {
+  for (const auto& group : groups) {
+    const std::vector<std::size_t>& members = group.second;
     const std::vector<HarmonicFunction> functions = HarmonicFunction::of_several(
-        axes, degrees, members.size(),
+        axes, group.first, members.size(),
         [&] {
           return [own = std::make_shared<PartSquares>(form, T), all = std::vector<double>(parts), parts, &members,
                   &monitor](std::span<const double> values, std::span<double> out) mutable {

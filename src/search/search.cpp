@@ -192,6 +192,7 @@ std::shared_ptr<const DesignMeasure> measure(const Joined& joined, const Criteri
 template <class Registry>
 std::vector<std::string> names_in(const Registry& registry) {
   std::vector<std::string> names;
+  names.reserve(std::size(registry));
   for (const auto& entry : registry) names.push_back(entry.name);
   return names;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "posewright/study/variant.hpp"
+#include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <stdexcept>
 
 #include "posewright/criterion/sensitivity.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/random.hpp"
 #include "restricted_design.hpp"
 
 namespace posewright {
@@ -28,8 +28,7 @@ std::vector<int> largest(const std::vector<double>& value, std::vector<int> amon
   return among;
 }
 
-/// Longest rows plus a draw from every stretch of the array: the first are strong candidates, the second make M regular
-/// (an even stride would meet the period of a grid).
+/// Longest rows plus a draw from every stretch of the array.
 std::vector<int> first_working_set(const BlockArray& blocks, std::size_t size) {
   const std::size_t n = blocks.count();
   std::vector<int> all(n);
@@ -38,14 +37,7 @@ std::vector<int> first_working_set(const BlockArray& blocks, std::size_t size) {
   std::vector<double> length(n);
   for (std::size_t i = 0; i < n; ++i) length[i] = blocks.block(i).squaredNorm();
   std::vector<int> set = largest(length, all, size / 2);
-  Random random(0, size);
-  const std::size_t drawn = size - size / 2;
-  const double stretch = double(n) / double(drawn);
-  for (std::size_t i = 0; i < drawn; ++i)
-    set.push_back(std::min(int(n) - 1, int(stretch * (double(i) + random.uniform()))));
-  std::sort(set.begin(), set.end());
-  set.erase(std::unique(set.begin(), set.end()), set.end());
-  return set;
+  return with_drawn(std::move(set), n, size);
 }
 
 /// Keeps candidates that carry weight or may still gain some, at least `least`; adds the worst violators of the price.

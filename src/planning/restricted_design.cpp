@@ -6,9 +6,11 @@
 #include <limits>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include "posewright/planning/approximate_design.hpp"
 #include "posewright/support/dense.hpp"
+#include "posewright/support/random.hpp"
 
 namespace posewright {
 namespace {
@@ -38,6 +40,18 @@ double best_mean(std::vector<double> value, double cap) {
   const double sum = std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(whole), 0.0);
   if (!part) return sum / double(whole);
   return cap * sum + (1 - double(whole) * cap) * value[whole];
+}
+
+std::vector<int> with_drawn(std::vector<int> strong, std::size_t n, std::size_t size) {
+  std::vector<int> set = std::move(strong);
+  Random random(0, size);
+  const std::size_t drawn = size - size / 2;
+  const double stretch = double(n) / double(drawn);
+  for (std::size_t i = 0; i < drawn; ++i)
+    set.push_back(std::min(int(n) - 1, int(stretch * (double(i) + random.uniform()))));
+  std::sort(set.begin(), set.end());
+  set.erase(std::unique(set.begin(), set.end()), set.end());
+  return set;
 }
 
 double with_margin(double bound) {

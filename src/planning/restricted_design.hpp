@@ -17,6 +17,9 @@ inline constexpr std::size_t most_settled = 1200;
 inline constexpr double settled_gap = 1e-6;
 /// A bound with the rounding of the pass behind it, generously.
 double with_margin(double bound);
+/// A first working set of `size` of n candidates, half of which are given, the strong ones: the rest is a draw from
+/// every stretch of the array, which makes M regular (an even stride would meet the period of a grid). Ascending.
+std::vector<int> with_drawn(std::vector<int> strong, std::size_t n, std::size_t size);
 
 /// Primal-dual interior-point method for the approximate design problem on a working set of candidates:
 ///   max Φ(M(w)),  Σw = 1,  0 ≤ w ≤ cap,

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "posewright/support/error.hpp"
-#include "posewright/support/random.hpp"
 #include "posewright/support/tasks.hpp"
 #include "restricted_design.hpp"
 
@@ -59,14 +58,7 @@ std::vector<int> first_working_set(SpreadBlocks& candidates, std::size_t size) {
   }
   candidates.pass(Eigen::MatrixXd::Identity(candidates.columns(), candidates.columns()));
   for (const auto& one : candidates.largest(size / 2, -1.0, {})) set.push_back(one.candidate);
-  Random random(0, size);
-  const std::size_t drawn = size - size / 2;
-  const double stretch = double(n) / double(drawn);
-  for (std::size_t i = 0; i < drawn; ++i)
-    set.push_back(std::min(int(n) - 1, int(stretch * (double(i) + random.uniform()))));
-  std::sort(set.begin(), set.end());
-  set.erase(std::unique(set.begin(), set.end()), set.end());
-  return set;
+  return with_drawn(std::move(set), n, size);
 }
 
 /// Mean of the largest d: Σ v_i d_i at most, over 0 ≤ v ≤ cap and Σv = 1.

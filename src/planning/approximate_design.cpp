@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 #include <stdexcept>
+#include <utility>
 
 #include "posewright/criterion/sensitivity.hpp"
 #include "posewright/support/error.hpp"

@@ -43,7 +43,7 @@ Curvature curvature(const IdentificationModel& model, const VariantColumns& colu
       const Eigen::VectorXd shift = covariance * slope / unit;
       const double step = std::max((J * v).norm(), 0.5 * unit);
       missed = bend.norm() / step;
-      normal = std::sqrt(std::max(bend.squaredNorm() - unit * unit * slope.dot(covariance * slope), 0.0)) / step;
+      normal = std::sqrt(std::max(bend.squaredNorm() - slope.dot(covariance * slope), 0.0)) / step;
       bent = bent || shift.cwiseQuotient(sigma).cwiseAbs().array() > curvature_limit;
     }
     if (missed > curvature_limit) bent = bent || along.array().square() > share_of_variance;

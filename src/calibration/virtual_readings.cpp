@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "posewright/calibration/experiment.hpp"
+#include "posewright/model/readable.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -47,7 +48,7 @@ class GrossErrors {
 bool can_read(const VirtualRobot& robot, std::size_t pose, const std::vector<double>& truth) {
   if (pose >= robot.asked.size() || robot.asked[pose] == 0) return true;
   std::vector<double> q(robot.configurations[pose].size());
-  return robot.model->settled(robot.configurations[pose], truth, q) && robot.model->measurable(q, truth);
+  return readable(*robot.model, robot.configurations[pose], truth, q);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "posewright/cell/line_of_sight.hpp"
+#include "posewright/model/readable.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/study/spacing.hpp"
@@ -79,7 +80,7 @@ BlockArray DrawnRobots::blocks(int robot, const Configurations& configurations) 
   Linearisation scratch;
   std::vector<double> q(std::size_t(configurations.dimension));
   for (std::size_t i = 0; i < configurations.count(); ++i) {
-    if (model_->settled(configurations[i], truth, q) && model_->measurable(q, truth) &&
+    if (readable(*model_, configurations[i], truth, q) &&
         whitened_block(*model_, q, truth, columns_.selected, scratch, blocks.row(i, 0), blocks.stride()) &&
         blocks.block(i).allFinite())
       continue;

@@ -113,10 +113,14 @@ class CalibrationRun {
   void estimate_with_profiles(FitOptions& fit_options) {
     const std::vector<int> named = columns_to_profile(options_, columns_);
     const FitOptions plain = fit_options;
+    const std::size_t noted = result_.notes.size();
     for (int round = 0; round == 0 || (profiled_.profiles.better > 0 && round < most_rounds); ++round) {
       if (round > 0) {
         fit_options = plain;
         fit_options.start = profiled_.profiles.better_estimate;
+        // What was said of the estimate that is replaced, and what it counted.
+        result_.notes.resize(noted);
+        result_.counted.reset();
       }
       estimate(fit_options);
       profiled_ = profiles_of({*model_, columns_, fitted_, fit_options}, options_, named, stretch(), result_, monitor_);

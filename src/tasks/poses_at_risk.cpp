@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "posewright/model/readable.hpp"
+
 namespace posewright {
 namespace {
 
@@ -27,8 +29,7 @@ std::vector<Risk> risks(const Variant& variant, const Configurations& poses, int
     Random random(seed ^ risk_stream, std::uint64_t(k));
     const std::vector<double> robot = drawn_correction(variant.columns, variant.model->parameters().size(), random);
     for (std::size_t i = 0; i < poses.count(); ++i)
-      if (!variant.model->settled(poses[i], robot, stands) || !variant.model->measurable(stands, robot))
-        found[i].share += 1.0 / robots;
+      if (!readable(*variant.model, poses[i], robot, stands)) found[i].share += 1.0 / robots;
   }
   std::erase_if(found, [](const Risk& risk) { return risk.share < worth_saying; });
   std::ranges::stable_sort(found, [](const Risk& a, const Risk& b) { return a.share > b.share; });

@@ -120,7 +120,8 @@ class SimulationRun {
     experiment_.truth.model = truth_.model.get();
     experiment_.truth.configurations = same_actuators(*fitted_.model, *truth_.model, configurations);
     for (const std::vector<double>& q : experiment_.truth.configurations)
-      experiment_.truth.asked.push_back(char(truth_.model->measurable(q)));
+      experiment_.truth.asked.push_back(
+          char(!truth_.model->unmeasurable_reason().empty() && truth_.model->measurable(q)));
     if (options_.truth_nominal && !experiment_.one_catalogue)
       throw CannotDo("variants '" + spec_.name + "' and '" + truth_spec_.name +
                      "' do not share one catalogue of parameters: their nominal values cannot be exchanged");

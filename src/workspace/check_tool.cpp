@@ -1,4 +1,5 @@
 #include "checks.hpp"
+#include "posewright/model/readable.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
@@ -21,7 +22,7 @@ class MeasurableCheck : public ValidityCheck {
     static thread_local std::vector<double> stands;
     stands.resize(q.size());
     for (const std::vector<double>& robot : robots_)
-      if (!model_.settled(q, robot, stands) || !model_.measurable(stands, robot)) return 1;
+      if (!readable(model_, q, robot, stands)) return 1;
     return -1;
   }
   std::optional<int> margins() const override { return robots_.empty() ? model_.measurable_margins() : std::nullopt; }

@@ -176,6 +176,23 @@ TEST(Profile, GoesOnWhereTheDataDoNotTellTheSign) {
   EXPECT_NEAR(found.lower, -end, 1e-3);
 }
 
+TEST(Curvature, IntrinsicIsWhatBendsAwayFromTheTangentWhateverTheNoiseIsFoundToBe) {
+  // Readings (p + p² / 2, p² / 2): half of the bend is along the tangent (1, 0), half at right angles to it.
+  const double noise = 0.1, bend = 0.5;
+  const CurveModel model([=](double x, const Eigen::VectorXd& p) { return (x < 1.5 ? p[0] : 0) + bend * p[0] * p[0]; },
+                         {1.0}, noise);
+  const auto poses = read({1, 2}, {0, 0});
+  Fit result = fit(model, model.all(), poses, FitOptions{});
+  for (const double factor : {1.0, 3.0}) {
+    Fit louder = result;
+    louder.noise_factor = factor;
+    louder.covariance.setConstant(1, 1, std::pow(factor * noise, 2));
+    const Curvature found = curvature(model, model.all(), poses, louder);
+    EXPECT_NEAR(found.intrinsic, bend * factor * noise, 1e-6);
+    EXPECT_NEAR(found.largest, std::sqrt(2) * bend * factor * noise, 1e-6);
+  }
+}
+
 TEST(Profile, HasNoEndWhereTheReadingsNeverRefuseTheParameter) {
   const CurveModel model([](double x, const Eigen::VectorXd& p) { return 1 - std::exp(-p[0] * x); }, {1.0}, 0.1);
   FitOptions options;

@@ -1,6 +1,7 @@
 #include "restarts.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -143,12 +144,16 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
     return search(reduced.task(), i, random, monitor);
   };
   if (all_time) {
-    parallel_for(std::size_t(starts), thread_count(options.threads), [&](std::size_t i, int) {
-      if (i > 0 && monitor.should_stop()) return;
-      Outcome outcome = carry_out(i);
-      const std::scoped_lock lock(mutex);
-      tell(outcome);
-      best.add(i, std::move(outcome));
+    // Each thread takes the next start and leaves at the stop: to go through those that are left takes seconds.
+    std::atomic<std::size_t> next{0};
+    const int workers = thread_count(options.threads);
+    parallel_for(std::size_t(workers), workers, [&](std::size_t, int) {
+      for (std::size_t i = next++; i < std::size_t(starts) && (i == 0 || !monitor.should_stop()); i = next++) {
+        Outcome outcome = carry_out(i);
+        const std::scoped_lock lock(mutex);
+        tell(outcome);
+        best.add(i, std::move(outcome));
+      }
     });
   } else {
     TaskGroup group{stage, std::size_t(starts), options.threads};

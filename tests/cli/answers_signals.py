@@ -6,7 +6,9 @@ bench/interrupts.py measures how soon.
 
 import json
 import pathlib
+import random
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -111,6 +113,16 @@ class Answers(unittest.TestCase):
             self.assertEqual(score["value"], scores[score["criterion"]]["value"])
             if score["efficiency"] is not None:
                 self.assertLessEqual(score["efficiency"], scores[score["criterion"]]["efficiency"] + 1e-9)
+
+    def test_a_time_limit_that_starts_use_up_is_followed_by_no_more_work(self):
+        draw = random.Random(1)
+        (FOLDER / "blocks.csv").write_text("\n".join(",".join(str(draw.gauss(0, 1)) for _ in range(8)) for _ in range(300)) + "\n")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = subprocess.run([PROGRAM, "select", "blocks.csv", "--rows", "1", "--poses", "12", "--time-limit", "1", "--threads", "2", "-o", "-", "--quiet"],
+                              cwd=FOLDER, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # Of the processor, which other programs do not lengthen: two threads for the limit, and what comes before and after it.
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, 2 + 2)
 
     def test_a_comparison_has_the_variants_that_are_done(self):
         words = ["compare", "two.yaml", "--variant", "geometric,fewer", "--json"]

@@ -4,99 +4,38 @@
 #include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "made.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/report.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/comparison.hpp"
-#include "posewright/results/compensation.hpp"
-#include "posewright/results/next.hpp"
 #include "posewright/results/simulation.hpp"
 #include "posewright/results/stations.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/support/text_file.hpp"
-#include "posewright/tasks/next_state.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/report_result.hpp"
 
 namespace posewright::python {
-namespace {
-
-using Limit = std::optional<double>;
-using Shared = std::shared_ptr<GivenProblem>;
-
-/// A result with what it was made from: its text and JSON are those of the command line.
-template <class T, class Options>
-struct Made {
-  Shared problem;
-  Options options;
-  T value;
-
-  /// Runs the work under a Watch; what it throws names keys of a problem that was not a file.
-  template <class Work>
-  static Made of(Shared problem, Options options, Limit time_limit, py::object progress, const Work& work) {
-    Made made{std::move(problem), std::move(options), {}};
-    Watch watch(time_limit, std::move(progress));
-    watch.run(
-        [&](const Monitor& monitor) {
-          made.value = with_places(*made.problem, [&] { return work(made.problem->problem, made.options, monitor); });
-        },
-        OnInterrupt::raise);
-    return made;
-  }
-};
 
 using MadeCalibration = Made<Calibration, CalibrateOptions>;
-using MadeCompensation = Made<Compensation, CompensateOptions>;
 using MadeComparison = Made<Comparison, CompareOptions>;
 using MadeSimulation = Made<Simulation, SimulateOptions>;
-/// Next poses with what was said before them.
-struct NextStep {
-  NextPoses next;
-  std::vector<NextPoint> history;
-};
-using MadeNext = Made<NextStep, NextOptions>;
 using MadeStations = Made<std::vector<StationRank>, StationOptions>;
 
-std::string text_of(const MadeCalibration& m) { return calibration_text(m.value); }
-std::string text_of(const MadeComparison& m) { return comparison_text(m.value, !m.options.truth.empty()); }
-std::string text_of(const MadeCompensation& m) { return compensation_text(m.value); }
-std::string text_of(const MadeNext& m) { return next_text(m.value.next); }
-std::string text_of(const MadeSimulation& m) { return simulation_text(m.value, m.options); }
-std::string text_of(const MadeStations& m) { return stations_text(m.value); }
-auto json_of(const MadeCalibration& m) { return calibration_json(m.problem->problem, m.options, m.value); }
-auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
-auto json_of(const MadeCompensation& m) { return compensation_json(m.problem->problem, m.value); }
-auto json_of(const MadeNext& m) { return next_json(m.problem->problem, m.options, m.value.next, m.value.history); }
-auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
-auto json_of(const MadeStations& m) { return stations_json(m.problem->problem, m.options, m.value); }
+static std::string text_of(const MadeCalibration& m) { return calibration_text(m.value); }
+static std::string text_of(const MadeComparison& m) { return comparison_text(m.value, !m.options.truth.empty()); }
+static std::string text_of(const MadeSimulation& m) { return simulation_text(m.value, m.options); }
+static std::string text_of(const MadeStations& m) { return stations_text(m.value); }
+static auto json_of(const MadeCalibration& m) { return calibration_json(m.problem->problem, m.options, m.value); }
+static auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
+static auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
+static auto json_of(const MadeStations& m) { return stations_json(m.problem->problem, m.options, m.value); }
 
-/// What all results have.
-template <class M>
-py::class_<M> bind_made(py::module_& m, const char* name, const char* doc) {
-  return py::class_<M>(m, name, doc)
-      .def(
-          "summary", [](const M& made) { return text_of(made); }, "The table that the command line prints.")
-      .def(
-          "to_json", [](const M& made) { return json_text(json_of(made)); }, "What the command prints with --json.")
-      .def("to_dict", [](const M& made) { return parsed(json_text(json_of(made), JsonLayout::one_line)); });
-}
-
-/// Of results with a page of their own.
-template <class M>
-py::class_<M> bind_page(py::class_<M> made) {
-  return made.def(
-      "to_html",
-      [](const M& m) {
-        return report_html(ResultReport{.title = title_of(m.problem->problem.file),
-                                        .file = {},
-                                        .result_json = json_text(json_of(m), JsonLayout::one_line)});
-      },
-      "The page that posewright report makes of it.");
-}
+namespace {
 
 Weighting weighting_named(const py::object& word) {
   return weighting_of(choice(word, "weights", {"ols", "wls", "robust"}));
@@ -203,198 +142,6 @@ MadeComparison compare(const Shared& problem, const py::dict& plans, const std::
   return MadeComparison::of(problem, options, {}, std::move(progress), compare_problem);
 }
 
-MadeCompensation compensate(const Shared& problem, const py::object& poses, bool base, bool tool, bool position_only,
-                            bool elastic_target, double most, const std::string& format, long long threads,
-                            py::object progress) {
-  if (!problem->problem.parameters)
-    throw InputError({}, "problem has no calibrated parameters", "Problem(..., parameters=FILE)");
-  CompensateOptions options;
-  options.solver.with_base = base;
-  options.solver.with_tool = tool;
-  options.solver.position_only = position_only;
-  options.elastic_target = elastic_target;
-  if (!(most > 0 && most <= 3.15)) throw InputError({}, "most is a largest turn in rad", "above 0, at most 3.15");
-  // A joint that slides may move a millimetre where one that turns may turn by a tenth of a degree.
-  options.solver.most_length = options.solver.most_length * most / options.solver.most_angle;
-  options.solver.most_angle = most;
-  options.threads = checked("threads", threads, 0, most_threads);
-  const PoseList list =
-      pose_list(poses, with_places(*problem, [&] { return compensation_coordinates(problem->problem); }), format);
-  return MadeCompensation::of(problem, options, {}, std::move(progress),
-                              [&](const Problem& p, const CompensateOptions& o, const Monitor& monitor) {
-                                return compensate_problem(p, {list}, o, monitor);
-                              });
-}
-
-/// One row a pose.
-template <class Row>
-py::array_t<double> pose_rows(const Compensation& c, std::size_t columns, Row row) {
-  std::vector<std::vector<double>> rows;
-  for (std::size_t i = 0; i < c.lists.front().solutions.size(); ++i) rows.push_back(row(c.lists.front(), i));
-  return array_of(rows, columns);
-}
-
-py::array_t<double> commanded_configurations(const MadeCompensation& made) {
-  return pose_rows(made.value, made.value.coordinates.size(), [](const CompensatedList& list, std::size_t i) {
-    const auto q = list.configuration(i);
-    return std::vector<double>(q.begin(), q.end());
-  });
-}
-
-py::object commanded_actuators(const MadeCompensation& made) {
-  if (!made.value.parallel) return py::none();
-  const std::size_t width = made.value.axes.size();
-  return pose_rows(made.value, width, [&](const CompensatedList& list, std::size_t i) {
-    const auto first = list.actuators.begin() + std::ptrdiff_t(i * width);
-    return std::vector<double>(first, first + std::ptrdiff_t(width));
-  });
-}
-
-void bind_compensation(py::module_& m) {
-  using C = MadeCompensation;
-  const auto errors = [](TipError CommandSolver::Solution::*which) {
-    return [which](const C& c) {
-      return pose_rows(c.value, 2, [&](const CompensatedList& list, std::size_t i) {
-        const TipError& e = list.solutions[i].*which;
-        return std::vector<double>{e.position, e.rotation};
-      });
-    };
-  };
-  bind_made<C>(m, "Compensation",
-               "What to command so that the calibrated robot is where it was meant to; docs/compensate.md.")
-      .def_property_readonly("configurations", &commanded_configurations,
-                             "N × coordinates, SI; as listed where a pose is not compensated")
-      .def_property_readonly("actuators", &commanded_actuators, "N × actuators of a parallel robot, else None")
-      .def_property_readonly(
-          "compensated",
-          [](const C& c) {
-            std::vector<bool> reached;
-            for (const auto& s : c.value.lists.front().solutions)
-              reached.push_back(s.outcome == CommandSolver::Outcome::reached);
-            return reached;
-          },
-          "of each pose")
-      .def_property_readonly("before", errors(&CommandSolver::Solution::before),
-                             "N × 2: predicted error of the tip (m, rad), commanded as listed")
-      .def_property_readonly("after", errors(&CommandSolver::Solution::after), "N × 2: the same, commanded so")
-      .def_property_readonly(
-          "failures",
-          [](const C& c) {
-            std::vector<std::string> texts;
-            for (const NotCompensated& n : c.value.failures) texts.push_back(n.text());
-            return texts;
-          },
-          "poses that cannot be commanded, and why")
-      .def_property_readonly("notes", [](const C& c) { return c.value.notes; })
-      .def("__repr__", [](const C& c) {
-        return py::str("<Compensation of {} poses, {} not compensated>")
-            .format(c.value.lists.front().solutions.size(), c.value.failures.size());
-      });
-}
-
-constexpr std::uintmax_t largest_data = 1'000'000'000;
-
-/// The file's whole lines; a file that is not there yet has none.
-WholeLines lines_of(const std::filesystem::path& file) {
-  std::error_code code;
-  if (file.empty() || !std::filesystem::exists(file, code)) return {};
-  return whole_lines(read_text(file, largest_data));
-}
-
-NextStep step_of(const Problem& problem, NextOptions& options, const std::filesystem::path& state_file,
-                 const Monitor& monitor) {
-  const WholeLines lines = lines_of(options.data);
-  std::optional<NextState> state;
-  if (!state_file.empty()) state = read_next_state(state_file);
-  if (state) require_continues(*state, state_file, problem, options.data, lines.text);
-  if (lines.has_rows) options.text = lines.text;
-  if (state) reuse(*state, problem, options);
-  NextStep step{next_poses(problem, options, monitor), {}};
-  const NextState now = state_after(problem, options, step.next, state);
-  step.history = now.history;
-  if (!state_file.empty()) write_file_atomically(state_file, next_state_text(now));
-  return step;
-}
-
-MadeNext next_poses_of(const Shared& problem, const py::object& data, long long poses, const py::object& required,
-                       const std::string& variant, const std::string& criterion, bool prior,
-                       const py::object& candidates, const py::object& candidates_from, const py::object& state,
-                       const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
-  NextOptions options;
-  if (!data.is_none()) options.data = data.cast<std::filesystem::path>();
-  options.poses = checked("poses", poses, 1, 1000);
-  options.required = within(required, "required", 1e-12, 1e3);
-  options.variant = variant;
-  options.criterion = criterion;
-  options.prior = prior ? Prior::manufactured : Prior::none;
-  options.candidates = optional_number(candidates, "candidates", 10'000'000);
-  if (!candidates_from.is_none())
-    options.candidates_from = pose_list(candidates_from, without_limits(coordinates_of(*problem, variant)));
-  options.seed = seed_of(seed);
-  options.threads = checked("threads", threads, 0, most_threads);
-  const auto state_file = state.is_none() ? std::filesystem::path() : state.cast<std::filesystem::path>();
-  MadeNext made{problem, std::move(options), {}};
-  Watch watch(time_limit, std::move(progress));
-  watch.run(
-      [&](const Monitor& monitor) {
-        made.value = with_places(*made.problem,
-                                 [&] { return step_of(made.problem->problem, made.options, state_file, monitor); });
-      },
-      OnInterrupt::raise);
-  return made;
-}
-
-py::array_t<double> next_configurations(const MadeNext& made) {
-  std::vector<std::vector<double>> rows;
-  std::size_t width = 0;
-  for (const PlannedPose& pose : made.value.next.poses) {
-    rows.emplace_back();
-    for (const NamedValue& v : pose.configuration) rows.back().push_back(v.value);
-    width = rows.back().size();
-  }
-  return array_of(rows, width);
-}
-
-void bind_next(py::module_& m) {
-  using N = MadeNext;
-  const auto now = [](std::optional<double> NextPoint::*which) {
-    return [which](const N& n) -> std::optional<double> {
-      const std::vector<NextPoint>& curve = n.value.next.curve;
-      return curve.empty() ? std::nullopt : curve.back().*which;
-    };
-  };
-  bind_made<N>(m, "NextPoses", "Which poses to measure next, and whether to go on; docs/next.md.")
-      .def_property_readonly("configurations", &next_configurations, "N × n, SI, without load cases and stations")
-      .def_property_readonly("poses", [](const N& n) { return n.value.next.poses; })
-      .def_property_readonly(
-          "stop",
-          [](const N& n) {
-            return n.value.next.verdict == NextVerdict::reached || n.value.next.verdict == NextVerdict::flat;
-          },
-          "the required accuracy is reached, or the curve is flat")
-      .def_property_readonly(
-          "verdict", [](const N& n) { return verdict_name(n.value.next.verdict); },
-          "not_determined, go_on, reached or flat")
-      .def_property_readonly(
-          "reason", [](const N& n) { return next_reason(n.value.next); }, "the same in words and figures")
-      .def_property_readonly("error", now(&NextPoint::expected),
-                             "predicted at the test poses, m; None: not all parameters are told yet")
-      .def_property_readonly("upper", now(&NextPoint::upper), "what it is below with 95 % confidence, m")
-      .def_property_readonly(
-          "estimates",
-          [](const N& n) {
-            py::dict values;
-            for (const EstimatedValue& e : n.value.next.estimates) values[py::str(e.value.name)] = e.value.value;
-            return values;
-          },
-          "{parameter: value} of the fit so far, SI")
-      .def_property_readonly("notes", [](const N& n) { return n.value.next.notes; })
-      .def("__len__", [](const N& n) { return n.value.next.poses.size(); })
-      .def("__repr__", [](const N& n) {
-        return py::str("<NextPoses after {}: {}>").format(n.value.next.measured, verdict_name(n.value.next.verdict));
-      });
-}
-
 MadeStations stations(const Shared& problem, const py::object& choose, long long full, const py::object& poses,
                       const std::string& variant, const std::string& criterion, const py::object& candidates,
                       const py::object& restarts, const py::int_& seed, long long threads, Limit time_limit,
@@ -484,8 +231,6 @@ void bind_classes(py::module_& m) {
 
 void bind_tasks(py::module_& m) {
   bind_classes(m);
-  bind_compensation(m);
-  bind_next(m);
   const py::none none;
   m.def("calibrate", &calibrate, py::arg("problem"), py::arg("data"), py::arg("variant") = "", py::kw_only(),
         py::arg("weights") = none, py::arg("prior") = true, py::arg("validate") = none, py::arg("hold_back") = 0,
@@ -504,14 +249,6 @@ whose intervals are by profile likelihood: "auto" (those that the curvature name
         py::arg("time_limit") = none, py::arg("progress") = none,
         "Measures the poses on robots with drawn parameters, calibrates, and compares with the truth "
         "(docs/simulate.md).");
-  m.def("compensate", &compensate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("base") = false,
-        py::arg("tool") = true, py::arg("position_only") = false, py::arg("elastic_target") = false,
-        py::arg("most") = CommandSolver::Options{}.most_angle, py::arg("format") = "", py::arg("threads") = 0,
-        py::arg("progress") = none,
-        R"(Commands for the calibrated robot, so that it stands where the nominal one was meant to (docs/compensate.md).
-
-problem: with parameters; base, tool: what was found of them counts; position_only: orientations may be what they will;
-elastic_target: the poses were found with the nominal springs; most: largest turn that is a correction, rad.)");
   m.def("compare", &compare, py::arg("problem"), py::arg("plans") = py::dict(), py::kw_only(),
         py::arg("variants") = std::vector<std::string>(), py::arg("truth") = "", py::arg("poses") = none,
         py::arg("method") = "", py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0,
@@ -521,15 +258,6 @@ elastic_target: the poses were found with the nominal springs; most: largest tur
         py::arg("poses") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("candidates") = none,
         py::arg("restarts") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
         py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
-  m.def("next_poses", &next_poses_of, py::arg("problem"), py::arg("data") = none, py::arg("poses") = 1, py::kw_only(),
-        py::arg("required") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("prior") = true,
-        py::arg("candidates") = none, py::arg("candidates_from") = none, py::arg("state") = none, py::arg("seed") = 0,
-        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        R"(Fits what is measured so far, chooses the next poses, says when to stop (docs/next.md).
-
-data: the file of readings, whole lines count; None or no such file: nothing is measured; required: error at the test
-poses that suffices, m (None: the problem's); prior: tolerances of what was manufactured count; state: a file that is
-read and written anew, so that candidates are drawn once and other data are noticed.)");
   m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
         py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
         "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved "

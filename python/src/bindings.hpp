@@ -85,6 +85,8 @@ void bind_route(py::module_& m);
 void bind_blocks(py::module_& m);
 void bind_criteria(py::module_& m);
 void bind_tasks(py::module_& m);
+void bind_compensation(py::module_& m);
+void bind_next(py::module_& m);
 void bind_export(py::module_& m);
 
 }  // namespace posewright::python

@@ -46,5 +46,7 @@ PYBIND11_MODULE(_core, m) {
   bind_route(m);
   bind_blocks(m);
   bind_tasks(m);
+  bind_compensation(m);
+  bind_next(m);
   bind_export(m);
 }

@@ -1,0 +1,144 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arguments.hpp"
+#include "arrays.hpp"
+#include "made.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/results/next.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/text_file.hpp"
+#include "posewright/tasks/next_state.hpp"
+
+namespace posewright::python {
+
+/// Next poses with what was said before them.
+struct NextStep {
+  NextPoses next;
+  std::vector<NextPoint> history;
+};
+using MadeNext = Made<NextStep, NextOptions>;
+
+static std::string text_of(const MadeNext& m) { return next_text(m.value.next); }
+static auto json_of(const MadeNext& m) {
+  return next_json(m.problem->problem, m.options, m.value.next, m.value.history);
+}
+
+namespace {
+
+constexpr std::uintmax_t largest_data = 1'000'000'000;
+
+/// The file's whole lines; a file that is not there yet has none.
+WholeLines lines_of(const std::filesystem::path& file) {
+  std::error_code code;
+  if (file.empty() || !std::filesystem::exists(file, code)) return {};
+  return whole_lines(read_text(file, largest_data));
+}
+
+NextStep step_of(const Problem& problem, NextOptions& options, const std::filesystem::path& state_file,
+                 const Monitor& monitor) {
+  const WholeLines lines = lines_of(options.data);
+  std::optional<NextState> state;
+  if (!state_file.empty()) state = read_next_state(state_file);
+  if (state) require_continues(*state, state_file, problem, options.data, lines.text);
+  if (lines.has_rows) options.text = lines.text;
+  if (state) reuse(*state, problem, options);
+  NextStep step{next_poses(problem, options, monitor), {}};
+  const NextState now = state_after(problem, options, step.next, state);
+  step.history = now.history;
+  if (!state_file.empty()) write_file_atomically(state_file, next_state_text(now));
+  return step;
+}
+
+MadeNext next_poses_of(const Shared& problem, const py::object& data, long long poses, const py::object& required,
+                       const std::string& variant, const std::string& criterion, bool prior,
+                       const py::object& candidates, const py::object& candidates_from, const py::object& state,
+                       const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+  NextOptions options;
+  if (!data.is_none()) options.data = data.cast<std::filesystem::path>();
+  options.poses = checked("poses", poses, 1, 1000);
+  options.required = within(required, "required", 1e-12, 1e3);
+  options.variant = variant;
+  options.criterion = criterion;
+  options.prior = prior ? Prior::manufactured : Prior::none;
+  options.candidates = optional_number(candidates, "candidates", 10'000'000);
+  if (!candidates_from.is_none())
+    options.candidates_from = pose_list(candidates_from, without_limits(coordinates_of(*problem, variant)));
+  options.seed = seed_of(seed);
+  options.threads = checked("threads", threads, 0, most_threads);
+  const auto state_file = state.is_none() ? std::filesystem::path() : state.cast<std::filesystem::path>();
+  MadeNext made{problem, std::move(options), {}};
+  Watch watch(time_limit, std::move(progress));
+  watch.run(
+      [&](const Monitor& monitor) {
+        made.value = with_places(*made.problem,
+                                 [&] { return step_of(made.problem->problem, made.options, state_file, monitor); });
+      },
+      OnInterrupt::raise);
+  return made;
+}
+
+py::array_t<double> next_configurations(const MadeNext& made) {
+  std::vector<std::vector<double>> rows;
+  std::size_t width = 0;
+  for (const PlannedPose& pose : made.value.next.poses) {
+    rows.emplace_back();
+    for (const NamedValue& v : pose.configuration) rows.back().push_back(v.value);
+    width = rows.back().size();
+  }
+  return array_of(rows, width);
+}
+
+}  // namespace
+
+void bind_next(py::module_& m) {
+  using N = MadeNext;
+  const auto now = [](std::optional<double> NextPoint::*which) {
+    return [which](const N& n) -> std::optional<double> {
+      const std::vector<NextPoint>& curve = n.value.next.curve;
+      return curve.empty() ? std::nullopt : curve.back().*which;
+    };
+  };
+  bind_made<N>(m, "NextPoses", "Which poses to measure next, and whether to go on; docs/next.md.")
+      .def_property_readonly("configurations", &next_configurations, "N × n, SI, without load cases and stations")
+      .def_property_readonly("poses", [](const N& n) { return n.value.next.poses; })
+      .def_property_readonly(
+          "stop",
+          [](const N& n) {
+            return n.value.next.verdict == NextVerdict::reached || n.value.next.verdict == NextVerdict::flat;
+          },
+          "the required accuracy is reached, or the curve is flat")
+      .def_property_readonly(
+          "verdict", [](const N& n) { return verdict_name(n.value.next.verdict); },
+          "not_determined, go_on, reached or flat")
+      .def_property_readonly(
+          "reason", [](const N& n) { return next_reason(n.value.next); }, "the same in words and figures")
+      .def_property_readonly("error", now(&NextPoint::expected),
+                             "predicted at the test poses, m; None: not all parameters are told yet")
+      .def_property_readonly("upper", now(&NextPoint::upper), "what it is below with 95 % confidence, m")
+      .def_property_readonly(
+          "estimates",
+          [](const N& n) {
+            py::dict values;
+            for (const EstimatedValue& e : n.value.next.estimates) values[py::str(e.value.name)] = e.value.value;
+            return values;
+          },
+          "{parameter: value} of the fit so far, SI")
+      .def_property_readonly("notes", [](const N& n) { return n.value.next.notes; })
+      .def("__len__", [](const N& n) { return n.value.next.poses.size(); })
+      .def("__repr__", [](const N& n) {
+        return py::str("<NextPoses after {}: {}>").format(n.value.next.measured, verdict_name(n.value.next.verdict));
+      });
+  const py::none none;
+  m.def("next_poses", &next_poses_of, py::arg("problem"), py::arg("data") = none, py::arg("poses") = 1, py::kw_only(),
+        py::arg("required") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("prior") = true,
+        py::arg("candidates") = none, py::arg("candidates_from") = none, py::arg("state") = none, py::arg("seed") = 0,
+        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        R"(Fits what is measured so far, chooses the next poses, says when to stop (docs/next.md).
+
+data: the file of readings, whole lines count; None or no such file: nothing is measured; required: error at the test
+poses that suffices, m (None: the problem's); prior: tolerances of what was manufactured count; state: a file that is
+read and written anew, so that candidates are drawn once and other data are noticed.)");
+}
+
+}  // namespace posewright::python

@@ -63,6 +63,7 @@ class ExplicitRows : public HarmonicRows {
     take_displacement(repeatability);
     if (noise_.kind == Kind::constant) factorise(repeatability);
     list_parts();
+    if (noise_.kind == Kind::beams) take_spreads();
     if (bends_) take_remainders(columns.remainders);
     K_.setZero(joints_, Eigen::Index(selected_.size()));
   }
@@ -79,6 +80,7 @@ class ExplicitRows : public HarmonicRows {
   void take_displacement(const Repeatability& repeatability);
   void factorise(const Repeatability& repeatability);
   void list_parts();
+  void take_spreads();
   void take_remainders(const std::vector<HarmonicColumns::Remainder>& remainders);
   bool read(std::span<const double> q, std::span<const double> factors, ExplicitWork& w) const;
   bool rows_of_tip(std::span<const double> q, const double* share, ExplicitWork& w) const;
@@ -155,6 +157,20 @@ void ExplicitRows::list_parts() {
     for (int t = 0; t < targets_; ++t) part(1, 1, 2, t, over_square(noise_.along), none);
   }
   if (joints_ > 0) part(joints_, 0, 0, -1, one, none);
+}
+
+/// Targets p_t on a rigid tip, e_t from their mean: r_t = ‖p̄ − s + e_t‖² and r̄ = ‖p̄ − s‖² + mean ‖e‖².
+void ExplicitRows::take_spreads() {
+  const Eigen::Isometry3d anywhere = Eigen::Isometry3d::Identity();
+  Eigen::VectorXd read(instrument_.rows());
+  instrument_.read({anywhere, own_correction(), station_}, read);
+  Eigen::Matrix3Xd e = read.reshaped(3, targets_);
+  e.colwise() -= e.rowwise().mean().eval();
+  const double mean = e.colwise().squaredNorm().mean();
+  for (Eigen::Index t = 0; t < targets_; ++t) {
+    const double lever = e.col(t).norm();
+    spreads_.push_back({2 * lever * (1 + 1e-9), (std::abs(mean - lever * lever) + 2 * lever * lever) * (1 + 1e-9)});
+  }
 }
 
 /// Of whitened columns: points' changes are off by what the tip says, at each point's distance from its origin.

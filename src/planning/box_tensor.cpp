@@ -19,28 +19,51 @@ constexpr double weight_error = 1e-12;
 }  // namespace
 
 BoxTensor::BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees)
-    : axes_(axes), degrees_(std::move(degrees)) {}
+    : axes_(axes), degrees_(std::move(degrees)), of_function_(degrees_) {}
 
-void BoxTensor::put(const SearchBox& box, double most) {
+BoxTensor::BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees, std::vector<int> of_function)
+    : axes_(axes), degrees_(std::move(degrees)), of_function_(std::move(of_function)) {}
+
+void BoxTensor::put_weighted(const SearchBox& box, double most) {
   terms_.clear();
-  for (std::size_t a = 0; a < axes_.size(); ++a) terms_.push_back(harmonic_terms(axes_[a], degrees_[a]));
-  weight_.assign(1, 1.0);
+  matrices_.clear();
+  for (std::size_t a = 0; a < axes_.size(); ++a) terms_.push_back(harmonic_terms(axes_[a], of_function_[a]));
   double growth = 1;
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const Eigen::MatrixXd M = bernstein_on(axes_[a], degrees_[a], lower_of(axes_, box, a), upper_of(axes_, box, a));
+    matrices_.push_back(bernstein_on(axes_[a], degrees_[a], lower_of(axes_, box, a), upper_of(axes_, box, a)));
+    // Coefficients of a lower degree come first.
+    const Eigen::MatrixXd M = matrices_.back().leftCols(terms_[a]);
     apply_along(now_, scratch_, terms_, a, M);
     growth *= M.cwiseAbs().rowwise().sum().maxCoeff();
-    // The weight alone is what the function 1 becomes.
+  }
+  // Every coefficient is a sum of products: its rounding is that of all terms' sizes, a dozen operations an axis.
+  rounding_ = 16.0 * double(axes_.size()) * epsilon * growth * most;
+}
+
+void BoxTensor::put(const SearchBox& box, double most) {
+  put_weighted(box, most);
+  // The weight alone is what the function 1 becomes.
+  weight_.assign(1, 1.0);
+  for (const Eigen::MatrixXd& M : matrices_) {
     next_weight_.clear();
     for (const double before : weight_)
       for (Eigen::Index k = 0; k < M.rows(); ++k) next_weight_.push_back(before * M(k, 0));
     weight_.swap(next_weight_);
   }
-  // Every coefficient is a sum of products: its rounding is that of all terms' sizes, a dozen operations an axis.
-  const double absolute = 16.0 * double(axes_.size()) * epsilon * growth * most;
-  const double lightest = *std::min_element(weight_.begin(), weight_.end());
-  rounding_ = absolute / lightest;
+  rounding_ /= *std::min_element(weight_.begin(), weight_.end());
   for (std::size_t i = 0; i < now_.size(); ++i) now_[i] /= weight_[i];
+}
+
+bool BoxTensor::divide_by(const BoxTensor& other) {
+  const double least = *std::min_element(other.now_.begin(), other.now_.end()) - other.rounding_;
+  if (!(least > 0)) return false;
+  double largest = 0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    now_[i] /= other.now_[i];
+    largest = std::max(largest, std::abs(now_[i]));
+  }
+  rounding_ = (rounding_ + largest * other.rounding_) / least;
+  return true;
 }
 
 double BoxTensor::largest() const {
@@ -66,6 +89,26 @@ std::size_t BoxTensor::highest_corner(double& value) const {
     }
   }
   return best;
+}
+
+int BoxTensor::most_bent() const {
+  const auto top = std::size_t(std::max_element(now_.begin(), now_.end()) - now_.begin());
+  int most = 0;
+  double largest = -1;
+  std::size_t stride = now_.size();
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const auto terms = std::size_t(terms_[a]);
+    stride /= terms;
+    const double* first = now_.data() + top / (stride * terms) * (stride * terms) + top % stride;
+    double bent = 0;
+    for (std::size_t k = 0; k + 2 < terms; ++k)
+      bent += std::abs(first[(k + 2) * stride] - 2 * first[(k + 1) * stride] + first[k * stride]);
+    if (bent > largest) {
+      largest = bent;
+      most = axes_[a].follows < 0 ? int(a) : axes_[a].follows;
+    }
+  }
+  return most;
 }
 
 int BoxTensor::most_varied() const {

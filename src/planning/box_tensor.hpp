@@ -12,25 +12,34 @@ namespace posewright {
 class BoxTensor {
  public:
   BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees);
+  /// @param of_function  degrees of the function whose coefficients put() takes, at most `degrees`
+  BoxTensor(const std::vector<HarmonicAxis>& axes, std::vector<int> degrees, std::vector<int> of_function);
 
   /// Coefficients that put() takes.
   std::vector<double>& coefficients() { return now_; }
   /// Turns coefficients() into quotients.
   /// @param most  sum of the sizes of all that the coefficients are sums of: rounding goes with it
   void put(const SearchBox& box, double most);
+  /// The same without the quotients: coefficients with Π(1 + u²)^D in them.
+  void put_weighted(const SearchBox& box, double most);
+  /// Both weighted: quotients of the two functions. @return false where the other may not be above 0 in the box
+  bool divide_by(const BoxTensor& other);
 
   /// What no value exceeds, and what none is below; rounding is counted in.
   double largest() const;
   double smallest() const;
   /// Axis along which the quotients vary most; of one that follows another, the other.
   int most_varied() const;
+  /// Axis along which they bend most beside the largest one: halved there, a box's bound falls most.
+  int most_bent() const;
   /// Corner of the largest quotient: bit a is set where axis a is at its upper end.
   std::size_t highest_corner(double& value) const;
 
  private:
   const std::vector<HarmonicAxis>& axes_;
-  std::vector<int> degrees_, terms_;
+  std::vector<int> degrees_, of_function_, terms_;
   std::vector<double> now_, scratch_;
+  std::vector<Eigen::MatrixXd> matrices_;
   std::vector<double> weight_, next_weight_;
   double rounding_ = 0.0;
 };

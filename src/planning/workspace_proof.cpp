@@ -68,7 +68,7 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
 /// As many boxes as the work allows.
 long most_boxes(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
   double largest = 0;
-  for (const auto& f : functions) largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms() - 1)));
+  for (const auto& f : functions) largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms())));
   return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
 }
 

@@ -43,6 +43,7 @@ class StudyForm : public HarmonicForm {
     for (FormPart& part : own_)
       for (const ColumnFactor& factor : part.rows->factors()) part.factors.push_back({axis_for(factor)});
     for (const FormPart& part : own_) append(part);
+    if (own_.size() == 1) spreads_ = own_.front().rows->spreads();
   }
 
   std::unique_ptr<Evaluator> evaluator() const override { return std::make_unique<StudyEvaluator>(*this); }

@@ -108,29 +108,69 @@ TEST(HarmonicFunction, OfAnyDegreeIsTheFunctionItselfAndSoAreProducts) {
   }
 }
 
+/// Largest gap over the factor, and none below it, for distances and differences all over their ranges.
+double gap_over(const HarmonicPart& part, const Multiplier& m, const Range& r, const Range& delta, bool affine) {
+  DistanceRanges ranges{r, delta, {1e300, -1e300}};
+  // A quotient of two lines has its limits at corners.
+  for (const double at : {r.lower, r.upper})
+    for (const double off : {delta.lower, delta.upper}) {
+      const double ratio = m.value(at + off) / m.value(at);
+      ranges.ratio = {std::min(ranges.ratio.lower, ratio), std::max(ranges.ratio.upper, ratio)};
+    }
+  const FactorBound bound = factor_bound(part, m, ranges, affine);
+  double gap = 0;
+  for (int i = 0; i <= 50; ++i)
+    for (int k = 0; k <= 10; ++k) {
+      const double at = r.lower + (r.upper - r.lower) * i / 50,
+                   off = delta.lower + (delta.upper - delta.lower) * k / 10;
+      const double value = part.factor(at) * m.value(at + off);
+      EXPECT_GE(bound.value(at, off), value - 1e-9 * std::abs(value));
+      gap = std::max(gap, bound.value(at, off) - value);
+    }
+  return gap;
+}
+
 TEST(FactorBound, IsAboveTheFactorAndConvergesWithTheSquareOfTheRange) {
   Random random(9, 1);
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < 300; ++trial) {
     const double along = random.uniform(0.1, 1), across = along + random.uniform(0, 3);
     HarmonicPart part;
     part.distance = 0;
     part.plus = squared(along, random.uniform(0, 0.2), 1);
     part.minus = squared(across, random.uniform(0.2, 2), 1);
+    if (trial % 5 == 0) part.minus.weight = 0;
+    if (trial % 5 == 1) part.plus = squared(0.0, random.uniform(0.2, 2), 1);
+    if (trial % 5 == 1) part.minus.weight = 0;
     part.plus.over_square = part.minus.over_square = trial % 2 == 0;
+    const Multiplier m = trial % 3 == 0 ? Multiplier{} : Multiplier{random.uniform(0, 3), 1.0};
     const double lower = random.uniform(0.5, 4), width = random.uniform(0.01, 0.5) * lower;
-    double gaps[2] = {0, 0};
-    for (const int half : {0, 1}) {
-      const double upper = lower + width / (half == 0 ? 1 : 2);
-      const FactorBound line = factor_bound(part, lower, upper, true), flat = factor_bound(part, lower, upper, false);
-      for (int i = 0; i <= 50; ++i) {
-        const double r = lower + (upper - lower) * i / 50, value = part.factor(r);
-        EXPECT_GE(line.constant + line.slope * r, value * (1 - 1e-9));
-        EXPECT_GE(flat.constant, value * (1 - 1e-9));
-        gaps[half] = std::max(gaps[half], line.constant + line.slope * r - value);
-      }
-    }
-    EXPECT_LT(gaps[1], 0.5 * gaps[0] + 1e-9);
+    const double delta = random.uniform(-0.1, 0.1), off = random.uniform(0, 0.1);
+    const double whole = gap_over(part, m, {lower, lower + width}, {delta - off, delta + off}, true);
+    const double half = gap_over(part, m, {lower, lower + width / 2}, {delta - off / 2, delta + off / 2}, true);
+    EXPECT_LT(half, 0.5 * whole + 1e-9) << "trial " << trial;
+    gap_over(part, {}, {lower, lower + width}, {0, 0}, false);
+    // Far too wide ranges, as an arm's first boxes have, are bounded all the same.
+    EXPECT_TRUE(std::isfinite(gap_over(part, m, {lower, 40 * lower}, {-0.4 * lower, 3 * lower}, true)));
   }
+}
+
+TEST(FactorBound, OfAnAngleTimesADistanceIsExactUnderTheMultiplier) {
+  // 1/(s r) times r̄ = r is 1/s everywhere.
+  HarmonicPart part;
+  part.distance = 0;
+  part.plus = squared(0.0, 0.5, 1);
+  EXPECT_LT(gap_over(part, {0.0, 1.0}, {1, 2}, {0, 0}, true), 1e-5 * part.factor(1));
+  EXPECT_GT(gap_over(part, {}, {1, 2}, {0, 0}, true), 0.05 * part.factor(1));
+  // So least_bent() chooses it, and none where nothing falls with the distance.
+  std::vector<std::vector<double>> squares, distances;
+  for (double r = 1; r < 20; r *= 1.3) {
+    squares.push_back({1.0});
+    distances.push_back({r});
+  }
+  EXPECT_EQ(least_bent({part}, squares, distances).constant, 0.0);
+  EXPECT_EQ(least_bent({part}, squares, distances).slope, 1.0);
+  part.plus = squared(0.5, 0.0, 1);
+  EXPECT_EQ(least_bent({part}, squares, distances).slope, 0.0);
 }
 
 TEST(LargestValue, IsNeverExceededAndIsReached) {

@@ -27,12 +27,27 @@ struct InverseVariance {
     if (!over_square) return -weight * slope / (variance * variance);
     return -weight * (slope * r + variance) / (variance * variance * r * r);
   }
+  /// d²/dr², r > 0. As value and derivative it falls in size with r.
+  double second_derivative(double r) const {
+    const double root = std::sqrt(r), variance = constant + linear * root + square * r;
+    const double slope = 0.5 * linear / root + square, bend = -0.25 * linear / (root * r);
+    const double first = -slope / (variance * variance);
+    const double second = (2 * slope * slope / variance - bend) / (variance * variance);
+    if (!over_square) return weight * second;
+    return weight * (second - 2 * first / r + 2 / (variance * r * r)) / r;
+  }
 };
 
 /// Variance of a reading with standard deviation constant + slope √r, mean of `repeats`.
 inline InverseVariance squared(double constant, double slope, double repeats) {
   return {1.0, constant * constant / repeats, 2 * constant * slope / repeats, slope * slope / repeats};
 }
+
+/// Of the squared distance r from one place to one of several targets on one tip: the mean of the squares of all of them
+/// differs from it by slope √r + constant at most (m², theory.md eq. (57)).
+struct DistanceSpread {
+  double slope = 0.0, constant = 0.0;
+};
 
 struct HarmonicPart {
   int rows = 0;

@@ -23,6 +23,8 @@ class HarmonicRows {
   const std::vector<int>& degrees() const { return degrees_; }
   /// Distances that factors of parts depend on.
   int distances() const { return distances_; }
+  /// How far each may be from the mean of all; empty: not known.
+  const std::vector<DistanceSpread>& spreads() const { return spreads_; }
   /// Each column of the parts may be off by a vector of at most this length; empty: by none.
   const std::vector<double>& remainders() const { return remainders_; }
 
@@ -46,6 +48,7 @@ class HarmonicRows {
   std::vector<ColumnFactor> factors_;
   std::vector<int> degrees_;
   int distances_ = 0;
+  std::vector<DistanceSpread> spreads_;
   std::vector<double> remainders_;
 };
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "posewright/planning/box_search.hpp"
+#include "posewright/planning/factor_bound.hpp"
 #include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
@@ -21,7 +23,7 @@ using HarmonicDegrees = std::vector<std::vector<int>>;
 /// one is too low.
 HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed);
 
-/// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39)).
+/// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39), (56)).
 class HarmonicSensitivity {
  public:
   /// Interpolates ‖B_k T‖² and the distances.
@@ -41,29 +43,42 @@ class HarmonicSensitivity {
   std::unique_ptr<BoxJudge> judge() const;
   std::size_t size() const { return harmonic_size(form_.axes(), degrees_); }
   std::size_t terms() const { return terms_.size(); }
+  const Multiplier& multiplier() const { return multiplier_; }
 
  private:
   friend class HarmonicJudge;
-  /// Σ (a₀ + a₁ r) f over parts of one factor, each with its own distance: Σ f and Σ r f, or Σ f alone where r f has
-  /// too high a degree.
+  struct Places;
+  /// f = ‖B_k T‖² of a part whose factor depends on a distance r, of low degrees, and r f, δ f with δ the mean distance
+  /// less r; f alone where those have too high a degree.
   struct Term {
     HarmonicPart part{};
-    std::vector<int> distances;
-    std::vector<double> plain, times_distance;
-    double most_plain = 0.0, most_times = 0.0;  ///< largest coefficients
+    std::size_t index = 0;  ///< of the part in the form
+    std::vector<double> plain, times_distance, times_difference;
+    double most_plain = 0.0, most_times_distance = 0.0, most_times_difference = 0.0;  ///< largest coefficients
   };
-  Term& term_of(const HarmonicPart& part, bool affine);
   struct Distance {
-    HarmonicFunction square;
-    double error = 0.0;  ///< of the interpolation, m²
-    double least = 0.0;  ///< nowhere is it smaller, m²
+    HarmonicFunction square, difference;  ///< r and δ, m²
+    HarmonicFunction multiplier;          ///< at r
+    double error = 0.0;                   ///< of the interpolation, m²
+    double least = 0.0;                   ///< nowhere is r smaller, m²
   };
+  void take_distances(const Places& places, int threads);
+  void take_part(std::size_t k, const HarmonicFunction& bound);
+  bool compare(const HarmonicFunction& f, const Places& places, const std::vector<double>& values, double& error) const;
 
   const HarmonicForm& form_;
   const Eigen::MatrixXd& T_;
-  std::vector<int> degrees_;  ///< of all tensors
+  std::vector<int> degrees_;                ///< of all tensors
+  std::vector<int> low_degrees_;            ///< of ‖B_k T‖² of all parts
+  std::vector<int> distance_degrees_;       ///< of r, δ and the multiplier
+  std::vector<std::size_t> places_of_low_;  ///< of coefficients of low_degrees_ among those of degrees_
+  bool affine_ = false;                     ///< tensors have room for products with a distance
   std::vector<Term> terms_;
+  std::vector<double> fixed_;  ///< what has no distance, times the multiplier
+  double most_fixed_ = 0.0;
   std::vector<Distance> distances_;
+  Multiplier multiplier_;
+  std::optional<HarmonicFunction> multiplied_;  ///< the multiplier as a function of the axes
   bool defined_ = true;
 };
 
@@ -75,12 +90,5 @@ BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitiv
 /// none.
 double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
                       std::vector<double>& values);
-
-/// Upper bound a₀ + a₁ r of a part's factor for r in [lower, upper], lower > 0: the chord of what is convex, the
-/// tangent of what is taken away. Constant where `affine` is false.
-struct FactorBound {
-  double constant = 0.0, slope = 0.0;
-};
-FactorBound factor_bound(const HarmonicPart& part, double lower, double upper, bool affine);
 
 }  // namespace posewright

@@ -36,6 +36,8 @@ class HarmonicForm {
   /// Degree of the part's entries along an axis.
   const std::vector<std::vector<int>>& degrees() const { return degrees_; }
   const std::vector<std::vector<int>>& distance_degrees() const { return distance_degrees_; }
+  /// How far each squared distance may be from the mean of all; empty: not known.
+  const std::vector<DistanceSpread>& spreads() const { return spreads_; }
   int columns() const { return columns_; }
   virtual std::unique_ptr<Evaluator> evaluator() const = 0;
   /// The space's configuration at values of the axes.
@@ -47,6 +49,7 @@ class HarmonicForm {
   std::vector<HarmonicAxis> axes_;
   std::vector<HarmonicPart> parts_;
   std::vector<std::vector<int>> degrees_, distance_degrees_;
+  std::vector<DistanceSpread> spreads_;
   int columns_ = 0;
 };
 

@@ -1,0 +1,167 @@
+#include "harmonic_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace posewright {
+namespace {
+
+// A box is halved along an axis that makes the factors' bounds tighter where they are this share of what is to be lost,
+// or where the largest squared distance is so many times the smallest: quotients by the multiplier are poor there.
+constexpr double loose_factors = 0.5, far_and_near = 4.0;
+
+void add(std::vector<double>& sum, double factor, const std::vector<double>& values) {
+  Eigen::Map<Eigen::VectorXd>(sum.data(), Eigen::Index(sum.size())) +=
+      factor * Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+}
+
+void put(BoxTensor& tensor, const HarmonicFunction& function, const SearchBox& box) {
+  tensor.coefficients() = function.coefficients();
+  tensor.put(box, largest_size(function.coefficients()));
+}
+
+void put_weighted(BoxTensor& tensor, const HarmonicFunction& function, const SearchBox& box) {
+  tensor.coefficients() = function.coefficients();
+  tensor.put_weighted(box, largest_size(function.coefficients()));
+}
+
+}  // namespace
+
+HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function)
+    : function_(function),
+      tensor_(function.form_.axes(), function.degrees_),
+      multiplier_(function.form_.axes(), function.degrees_, function.distance_degrees_),
+      mean_(function.form_.axes(), function.distance_degrees_),
+      other_(function.form_.axes(), function.distance_degrees_),
+      ranges_(function.distances_.size()),
+      gaps_(function.terms_.size()),
+      varied_(function.distances_.size()),
+      axes_(function.terms_.size()),
+      parts_(function.form_, function.T_),
+      squares_(function.form_.parts().size()),
+      at_(function.distances_.size()) {}
+
+void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
+  box.bound = std::numeric_limits<double>::infinity();
+  if (!put_distances(box)) return;
+  const double most = combine();
+  tensor_.put_weighted(box, most);
+  put_weighted(multiplier_, *function_.multiplied_, box);
+  if (!tensor_.divide_by(multiplier_)) return;
+  box.bound = tensor_.largest();
+  if (!(box.bound > enough)) return;
+  double top;
+  const std::size_t corner = tensor_.highest_corner(top);
+  const auto& axes = function_.form_.axes();
+  if (top > found.value) {
+    place([&](std::size_t a) { return (corner >> a & 1) != 0 ? upper_of(axes, box, a) : lower_of(axes, box, a); });
+    look(box, found);
+  }
+  place([&](std::size_t a) { return 0.5 * (lower_of(axes, box, a) + upper_of(axes, box, a)); });
+  const double middle = look(box, found);
+  choose_axis(box, middle);
+}
+
+/// Where the distances vary much or factors' bounds are loose, what makes those tighter; else where the tensor bends.
+void HarmonicJudge::choose_axis(SearchBox& box, double middle) const {
+  box.longest = tensor_.most_bent();
+  double widest = far_and_near;
+  std::size_t loosest = 0;
+  for (std::size_t d = 0; d < ranges_.size(); ++d)
+    if (const double ratio = ranges_[d].r.upper / ranges_[d].r.lower; ratio > widest) {
+      widest = ratio;
+      box.longest = varied_[d].distance;
+    }
+  if (!(widest > far_and_near) && loose_bound(loosest) > loose_factors * (box.bound - middle))
+    box.longest = axes_[loosest];
+}
+
+bool HarmonicJudge::put_distances(SearchBox& box) {
+  const bool multiplied = function_.multiplier_.slope > 0;
+  if (multiplied) put_weighted(mean_, *function_.multiplied_, box);
+  for (std::size_t d = 0; d < ranges_.size(); ++d) {
+    const HarmonicSensitivity::Distance& distance = function_.distances_[d];
+    DistanceRanges& ranges = ranges_[d];
+    put(other_, distance.square, box);
+    ranges.r.lower = std::max(other_.smallest() - distance.error, distance.least);
+    ranges.r.upper = std::max(other_.largest() + distance.error, ranges.r.lower);
+    box.longest = varied_[d].distance = varied_[d].difference = other_.most_varied();
+    if (!(ranges.r.lower > 0)) return false;
+    if (!multiplied) continue;
+    put_weighted(other_, distance.multiplier, box);
+    ranges.ratio = {0.0, std::numeric_limits<double>::infinity()};
+    if (other_.divide_by(mean_)) {
+      const double least = other_.smallest(), off = 1 + 2 * function_.multiplier_.slope * distance.error /
+                                                            function_.multiplier_.value(ranges.r.lower);
+      ranges.ratio.lower = 1 / (other_.largest() * off);
+      if (least > 0) ranges.ratio.upper = off / least;
+    }
+    put(other_, distance.difference, box);
+    varied_[d].difference = other_.most_varied();
+    ranges.delta = {other_.smallest() - distance.error, other_.largest() + distance.error};
+    if (const auto& spreads = function_.form_.spreads(); !spreads.empty())
+      cut_by_spread(ranges, function_.multiplier_, spreads[d]);
+  }
+  return true;
+}
+
+double HarmonicJudge::combine() {
+  std::vector<double>& sum = tensor_.coefficients();
+  sum = function_.fixed_;
+  low_.assign(function_.places_of_low_.size(), 0.0);
+  double most = function_.most_fixed_;
+  for (std::size_t k = 0; k < function_.terms_.size(); ++k) {
+    const HarmonicSensitivity::Term& term = function_.terms_[k];
+    const auto d = std::size_t(term.part.distance);
+    FactorBound factor = factor_bound(term.part, function_.multiplier_, ranges_[d], !term.times_distance.empty());
+    // The tensors are of interpolated distances.
+    factor.constant += 2 * (std::abs(factor.distance) + std::abs(factor.difference)) * function_.distances_[d].error;
+    gaps_[k] = factor.gap;
+    axes_[k] = factor.by_delta ? varied_[d].difference : varied_[d].distance;
+    const auto put = [&](double times, const std::vector<double>& values, double largest, std::vector<double>& to) {
+      if (times == 0 || values.empty()) return;
+      add(to, times, values);
+      most += std::abs(times) * largest;
+    };
+    put(factor.constant, term.plain, term.most_plain, low_);
+    put(factor.distance, term.times_distance, term.most_times_distance, sum);
+    put(factor.difference, term.times_difference, term.most_times_difference, sum);
+  }
+  for (std::size_t i = 0; i < low_.size(); ++i) sum[function_.places_of_low_[i]] += low_[i];
+  return most;
+}
+
+template <class Axis>
+void HarmonicJudge::place(const Axis& value_of) {
+  values_.clear();
+  for (std::size_t a = 0; a < function_.form_.axes().size(); ++a) values_.push_back(value_of(a));
+  parts_.evaluator().complete(values_);
+}
+
+double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
+  parts_(values_, squares_);
+  parts_.evaluator().distances(values_, at_);
+  const double value = sum_of_parts(function_.form_, squares_, at_);
+  if (value > found.value) {
+    found.value = value;
+    found.where = values_;
+    found.function = box.function;
+  }
+  return value;
+}
+
+double HarmonicJudge::loose_bound(std::size_t& loosest) const {
+  double sum = 0, most = 0, mean = 0;
+  for (const double r : at_) mean += r / double(at_.size());
+  for (std::size_t k = 0; k < gaps_.size(); ++k) {
+    const double one = gaps_[k] * squares_[function_.terms_[k].index];
+    sum += one;
+    if (one <= most) continue;
+    most = one;
+    loosest = k;
+  }
+  return sum / function_.multiplier_.value(mean);
+}
+
+}  // namespace posewright

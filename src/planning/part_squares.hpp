@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "posewright/planning/harmonic_form.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/random.hpp"
+
+namespace posewright {
+
+/// ‖B_k T‖² of all parts at values of the axes. One thread's.
+class PartSquares {
+ public:
+  /// @param T  columns × any
+  PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T) : form_(form), T_(T), evaluator_(form.evaluator()) {}
+
+  HarmonicForm::Evaluator& evaluator() { return *evaluator_; }
+
+  /// NaN where the form has no rows.
+  /// @param squares  one a part
+  void operator()(std::span<const double> values, std::span<double> squares) {
+    if (!evaluator_->rows(values, B_)) {
+      std::fill(squares.begin(), squares.end(), std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
+    turned_.noalias() = B_ * T_;
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < form_.parts().size(); ++k) {
+      const Eigen::Index rows = form_.parts()[k].rows;
+      squares[k] = turned_.middleRows(first, rows).squaredNorm();
+      first += rows;
+    }
+  }
+
+ private:
+  const HarmonicForm& form_;
+  const Eigen::MatrixXd& T_;
+  std::unique_ptr<HarmonicForm::Evaluator> evaluator_;
+  BlockArray::RowMatrix B_, turned_;
+};
+
+/// Σ_k s_k(r_k) ‖B_k T‖² of what PartSquares and the evaluator's distances give.
+inline double sum_of_parts(const HarmonicForm& form, std::span<const double> squares,
+                           std::span<const double> distances) {
+  double sum = 0;
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    const HarmonicPart& part = form.parts()[k];
+    sum += part.factor(part.distance < 0 ? 0.0 : distances[std::size_t(part.distance)]) * squares[k];
+  }
+  return sum;
+}
+
+inline std::vector<int> sum_of(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> sum(a);
+  for (std::size_t i = 0; i < b.size(); ++i) sum[i] += b[i];
+  return sum;
+}
+
+inline std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, Random& random) {
+  std::vector<double> values;
+  values.reserve(axes.size());
+  for (const HarmonicAxis& axis : axes) values.push_back(random.uniform(axis.lower, axis.upper));
+  return values;
+}
+
+inline double largest_size(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double v : values) largest = std::max(largest, v < 0 ? -v : v);
+  return largest;
+}
+
+}  // namespace posewright

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "box_tensor.hpp"
@@ -40,6 +41,8 @@ class HarmonicJudge : public BoxJudge {
   std::vector<Varied> varied_;  ///< axes along which distances and differences vary most
   std::vector<int> axes_;       ///< along which a term's factor becomes tighter
   PartSquares parts_;
+  using Added = std::vector<std::pair<double, const double*>>;
+  Added added_, added_low_;  ///< tensors, and how many times each is added
   std::vector<double> low_, values_, squares_, at_;
 };
 

@@ -101,7 +101,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
           "noise of the joints or of the visit, beside the instrument's, or deflections are bounded {:.0f} % too high",
           100 * loose);
   if (proof.why_not.empty() && !options.proof.seconds && grows_with_distance(forms))
-    proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 600";
+    proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 300";
   if (!proof.why_not.empty()) return;
 
   Monitor own;

@@ -141,8 +141,9 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
   proof.bound = result.value + result.degree * std::log(proof.max_ratio);
-  if (!most.found.where.empty())
-    proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
+  if (most.found.where.empty()) return;
+  proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
+  proof.largest_forbidden = !space.probe()->feasible(proof.largest_at);
 }
 
 }  // namespace posewright

@@ -272,7 +272,10 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
       false,
       proof.why_not};
   if (loose) {
-    searched.why_not = proof.ended.empty() ? "the bound of the noise is loose" : "the proof was " + proof.ended;
+    searched.why_not = !proof.ended.empty() ? "the proof was " + proof.ended
+                       : proof.largest_forbidden
+                           ? "the proof counts poses that obstacles, sight or the tool's limits forbid"
+                           : "the bound of the noise is loose";
     searched.boxes = proof.boxes;
     searched.loose_bound = proved;
   }

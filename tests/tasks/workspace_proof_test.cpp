@@ -33,15 +33,16 @@ using testing::HasSubstr;
 
 class WorkspaceProofs : public testing::Test {
  protected:
-  Problem arm(const std::string& more = "", const std::string& parameters = "q1.offset, q2.offset, tool.x") {
+  Problem arm(const std::string& more = "", const std::string& parameters = "q1.offset, q2.offset, tool.x",
+              const std::string& workspace = "") {
     folder_.write("arm.urdf", planar_arm_urdf);
     return read_problem(folder_.write(
         "p.yaml",
         "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement: {type: pose, components: [x, y], device: {type: "
         "isotropic, "
         "noise: {position: 0.1 mm, rotation: 1 deg}}" +
-            more + "}\nvariants:\n  only: {parameters: [" + parameters +
-            "]}\nworkspace: {joints: {margin: 0 deg}}\ndesign: {variant: only, poses: 6, candidates: 300}\n"));
+            more + "}\nvariants:\n  only: {parameters: [" + parameters + "]}\nworkspace: {joints: {margin: 0 deg}" +
+            workspace + "}\ndesign: {variant: only, poses: 6, candidates: 300}\n"));
   }
   TemporaryFolder folder_;
 };
@@ -314,6 +315,18 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
   // A turn of each visit moves the tip by what it points at; a camera divides by the distance.
   EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("turns of each visit"));
   EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
+}
+
+TEST_F(WorkspaceProofs, OfPosesThatSomethingForbidsIsLooseAndSaysSo) {
+  const Plan free = plan_problem(arm(), {}, Monitor{});
+  const Plan plan =
+      plan_problem(arm("", "q1.offset, q2.offset, tool.x", ", tool: {x: [0.9, 1.2], y: [-0.2, 0.2]}"), {}, Monitor{});
+  ASSERT_TRUE(plan.certificate.workspace);
+  EXPECT_FALSE(plan.certificate.workspace->proved);
+  EXPECT_THAT(plan.certificate.workspace->why_not, HasSubstr("forbid"));
+  ASSERT_TRUE(plan.certificate.workspace->loose_bound);
+  EXPECT_GE(*plan.certificate.workspace->loose_bound, plan.log_det);
+  EXPECT_LT(plan.log_det, free.log_det);
 }
 
 TEST_F(WorkspaceProofs, PlanIsTheSameOnAnyNumberOfThreads) {

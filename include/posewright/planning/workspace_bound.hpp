@@ -45,6 +45,7 @@ struct WorkspaceProof {
   long boxes = 0;                    ///< that it took
   std::string ended{};               ///< why not more of them; empty: they were enough
   std::vector<double> largest_at{};  ///< configuration of the largest d found on the way, feasible or not
+  bool largest_forbidden = false;    ///< something forbids it: obstacles, sight, limits of the tool
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.

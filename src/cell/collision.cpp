@@ -116,10 +116,15 @@ class SmallestDistance {
     }
   }
 
-  std::optional<Separation> result() const {
+  std::optional<Separation> bodies() const {
     if (nearest_ == nullptr) return std::nullopt;
-    const Body &a = scene_.bodies[std::size_t(nearest_->a)], &b = scene_.bodies[std::size_t(nearest_->b)];
-    return Separation{smallest_, b.name, a.name, nearest_points(*b.solid, X_b_, *a.solid, X_a_)};
+    return Separation{smallest_, second().name, first().name};
+  }
+
+  std::optional<Separation> result() const {
+    std::optional<Separation> found = bodies();
+    if (found) found->points = nearest_points(*second().solid, X_b_, *first().solid, X_a_);
+    return found;
   }
 
  private:
@@ -128,6 +133,9 @@ class SmallestDistance {
     const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
     return pair.asked > 0 || a.obstacle || b.obstacle || a.tool || b.tool;
   }
+
+  const Body& first() const { return scene_.bodies[std::size_t(nearest_->a)]; }
+  const Body& second() const { return scene_.bodies[std::size_t(nearest_->b)]; }
 
   void place(std::span<const double> q, int pose) { scene_.frames->poses(q, pose, frames_); }
 
@@ -193,6 +201,12 @@ std::optional<Separation> Collision::nearest(std::span<const double> q) const {
   SmallestDistance smallest(*scene_);
   for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.look_at(q, pose);
   return smallest.result();
+}
+
+std::optional<Separation> Collision::nearest_bodies(std::span<const double> q) const {
+  SmallestDistance smallest(*scene_);
+  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.look_at(q, pose);
+  return smallest.bodies();
 }
 
 std::optional<Separation> Collision::nearest(std::span<const double> from, std::span<const double> to) const {

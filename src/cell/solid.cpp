@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -58,9 +60,25 @@ std::array<Eigen::Vector3d, 2> fcl_nearest_points(const Geometry& a, const Eigen
   return {result.nearest_points[0], result.nearest_points[1]};
 }
 
+std::shared_ptr<Mesh> surface_of(const std::vector<Eigen::Vector3d>& vertices,
+                                 const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<fcl::Triangle> own;
+  own.reserve(triangles.size());
+  for (const auto& t : triangles) own.emplace_back(std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]));
+  auto model = std::make_shared<Mesh>();
+  model->beginModel(int(own.size()), int(vertices.size()));
+  model->addSubModel(vertices, own);
+  model->endModel();
+  model->computeLocalAABB();
+  return model;
+}
+
 class FclSolid : public Solid {
  public:
   const Geometry& geometry() const { return *geometry_; }
+  /// What stands for the solid beside a mesh: triangles where all its faces are flat. The distance of two triangles is
+  /// known in closed form; that of a triangle and a shape is an iteration that takes some twenty times as long.
+  virtual const Geometry& beside_mesh() const { return *geometry_; }
   /// Convex, with the solid in it: of a mesh its hull, else itself. Null for a mesh whose points lie in one plane.
   virtual const Geometry* hull() const { return geometry_.get(); }
   const Eigen::Vector3d& middle() const { return middle_; }
@@ -90,11 +108,22 @@ class BoxSolid : public FclSolid {
     for (int k = 0; k < 8; ++k)
       corners_.emplace_back((k & 1 ? 1 : -1) * half_.x(), (k & 2 ? 1 : -1) * half_.y(), (k & 4 ? 1 : -1) * half_.z());
     put_box_around();
+    // Corners by the bits of their numbers: two triangles on either side of each axis.
+    std::vector<std::array<int, 3>> faces;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1 << axis}) {
+        const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
+        faces.push_back({side, side + u, side + u + v});
+        faces.push_back({side, side + u + v, side + v});
+      }
+    faces_ = surface_of(corners_, faces);
   }
+  const Geometry& beside_mesh() const override { return *faces_; }
   bool holds(const Eigen::Vector3d& p) const override { return (p.cwiseAbs() - half_).maxCoeff() <= 0; }
 
  private:
   Eigen::Vector3d half_;
+  std::shared_ptr<const Geometry> faces_;
 };
 
 class CylinderSolid : public FclSolid {
@@ -143,15 +172,7 @@ class MeshSolid : public FclSolid {
   explicit MeshSolid(TriangleMesh mesh) : mesh_(std::move(mesh)) {
     std::erase_if(mesh_.triangles, [&](const auto& t) { return normal_of(t).norm() <= 1e-14; });
     if (mesh_.triangles.empty()) throw std::invalid_argument("no triangle has an area");
-    std::vector<fcl::Triangle> triangles;
-    for (const auto& t : mesh_.triangles)
-      triangles.emplace_back(std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]));
-    auto model = std::make_shared<Mesh>();
-    model->beginModel(int(triangles.size()), int(mesh_.vertices.size()));
-    model->addSubModel(mesh_.vertices, triangles);
-    model->endModel();
-    model->computeLocalAABB();
-    geometry_ = model;
+    geometry_ = surface_of(mesh_.vertices, mesh_.triangles);
     put_hull_around();
     put_box_around();
     Eigen::AlignedBox3d box;
@@ -159,9 +180,13 @@ class MeshSolid : public FclSolid {
     centre_ = box.center();
     for (const auto& v : mesh_.vertices) radius_ = std::max(radius_, (v - centre_).norm());
     closed_ = is_closed();
+    find_parts();
   }
 
   const Geometry* hull() const override { return hull_.get(); }
+
+  /// A point of each part whose triangles hang together: where surfaces do not meet, all of the part is where it is.
+  const std::vector<Eigen::Vector3d>& parts() const { return parts_; }
 
   /// By the solid angle that the triangles span (van Oosterom & Strackee 1983): ±4π inside a closed surface, 0 outside.
   bool holds(const Eigen::Vector3d& p) const override {
@@ -201,6 +226,19 @@ class MeshSolid : public FclSolid {
                                            int(hull.triangles.size()), faces);
     hull_->computeLocalAABB();
   }
+  void find_parts() {
+    std::vector<int> parent(mesh_.vertices.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int v) {
+      while (parent[std::size_t(v)] != v) v = parent[std::size_t(v)] = parent[std::size_t(parent[std::size_t(v)])];
+      return v;
+    };
+    for (const auto& t : mesh_.triangles)
+      for (const int other : {t[1], t[2]}) parent[std::size_t(root(other))] = root(t[0]);
+    std::set<int> known;
+    for (const auto& t : mesh_.triangles)
+      if (known.insert(root(t[0])).second) parts_.push_back(vertex(t[0]));
+  }
   const Eigen::Vector3d& vertex(int i) const { return mesh_.vertices[std::size_t(i)]; }
   Eigen::Vector3d normal_of(const std::array<int, 3>& t) const {
     return (vertex(t[1]) - vertex(t[0])).cross(vertex(t[2]) - vertex(t[0]));
@@ -217,6 +255,7 @@ class MeshSolid : public FclSolid {
   }
 
   TriangleMesh mesh_;
+  std::vector<Eigen::Vector3d> parts_;
   std::shared_ptr<Geometry> hull_;
   bool closed_ = false;
 };
@@ -275,12 +314,23 @@ double gap_between_boxes(const Eigen::Vector3d& g, const Eigen::Vector3d& h, con
   return gap;
 }
 
+bool has_mesh(const FclSolid& a, const FclSolid& b) { return a.hull() != &a.geometry() || b.hull() != &b.geometry(); }
+
+/// What stands for two solids when their distance is asked for.
+std::pair<const Geometry*, const Geometry*> geometries(const FclSolid& a, const FclSolid& b) {
+  if (has_mesh(a, b)) return {&a.beside_mesh(), &b.beside_mesh()};
+  return {&a.geometry(), &b.geometry()};
+}
+
 bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
-  const Eigen::Vector3d c = X_a.inverse() * (X_b * b.centre());
+  const Eigen::Isometry3d X_ab = X_a.inverse() * X_b;
+  const auto* mesh = dynamic_cast<const MeshSolid*>(&b);
+  if (mesh != nullptr && dynamic_cast<const MeshSolid*>(&a) == nullptr)
+    return std::any_of(mesh->parts().begin(), mesh->parts().end(), [&](const auto& p) { return a.holds(X_ab * p); });
+  const Eigen::Vector3d c = X_ab * b.centre();
   if ((c - a.centre()).norm() > a.radius()) return false;
   // A point that is certainly of b: the middle of a convex shape, a vertex of a mesh.
-  const bool mesh = dynamic_cast<const MeshSolid*>(&b) != nullptr;
-  return a.holds(mesh ? Eigen::Vector3d(X_a.inverse() * (X_b * b.corners().front())) : c);
+  return a.holds(mesh != nullptr ? Eigen::Vector3d(X_ab * b.corners().front()) : c);
 }
 
 }  // namespace
@@ -326,9 +376,9 @@ double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, co
   if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
   if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
   const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
-  const bool has_mesh = first.hull() != &first.geometry() || second.hull() != &second.geometry();
-  if (has_mesh && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
-  const double found = fcl_distance(first.geometry(), X_a, second.geometry(), X_b, cap);
+  if (has_mesh(first, second) && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
+  const auto [one, other] = geometries(first, second);
+  const double found = fcl_distance(*one, X_a, *other, X_b, cap);
   if (found <= 0) return 0.0;
   // Surfaces that do not meet: one may still be in the other.
   return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
@@ -348,8 +398,8 @@ std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, con
     const Eigen::Vector3d n = X_a.linear() * plane->normal();
     points[0] = points[1] - n.dot(points[1] - X_a.translation()) * n;
   } else {
-    points = fcl_nearest_points(static_cast<const FclSolid&>(a).geometry(), X_a,
-                                static_cast<const FclSolid&>(b).geometry(), X_b);
+    const auto [one, other] = geometries(static_cast<const FclSolid&>(a), static_cast<const FclSolid&>(b));
+    points = fcl_nearest_points(*one, X_a, *other, X_b);
   }
   // Of some pairs of shapes FCL 0.7 states other points than those that its distance is between.
   constexpr double same = 1e-5;  // m

@@ -208,7 +208,7 @@ class Neighbourhood {
       if (monitor.should_stop()) return;
       const std::vector<double> there = moved(q, pose.steps, place);
       pose.verdicts.push_back(reasons_.verdict(there));
-      if (study_.cell->collision != nullptr) nearest.push_back(study_.cell->collision->nearest(there));
+      if (study_.cell->collision != nullptr) nearest.push_back(study_.cell->collision->nearest_bodies(there));
     }
   }
 

@@ -87,6 +87,46 @@ TEST(Distance, OfAMeshOfABoxIsThatOfTheBox) {
   EXPECT_GT(touching, 100);
 }
 
+/// Triangles anywhere: open, not convex, some through each other.
+TriangleMesh scattered_triangles(Random& random, int count) {
+  TriangleMesh scattered;
+  for (int i = 0; i < count; ++i) {
+    const Vector3d middle(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    for (int k = 0; k < 3; ++k)
+      scattered.vertices.push_back(
+          middle + Vector3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)));
+    scattered.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return scattered;
+}
+
+TEST(Distance, OfAMeshFromABoxIsThatOfItsNearestPoint) {
+  constexpr int steps = 40;
+  Random random(6, 0);
+  int apart = 0;
+  for (const Vector3d& size : {Vector3d(0.4, 0.3, 0.2), Vector3d(0.5, 0.3, 1e-4), Vector3d(0.6, 1e-3, 1e-3)})
+    for (int i = 0; i < 60; ++i) {
+      const TriangleMesh triangles = scattered_triangles(random, 6);
+      const Isometry3d X = random_pose(random, 0.4), Y = random_pose(random, 0.4), X_box_mesh = X.inverse() * Y;
+      double sampled = 9, spacing = 0;
+      for (const auto& t : triangles.triangles) {
+        const Vector3d a = triangles.vertices[std::size_t(t[0])], u = triangles.vertices[std::size_t(t[1])] - a,
+                       v = triangles.vertices[std::size_t(t[2])] - a;
+        spacing = std::max(spacing, (u.norm() + v.norm()) / steps);
+        for (int k = 0; k <= steps; ++k)
+          for (int l = 0; k + l <= steps; ++l) {
+            const Vector3d p = X_box_mesh * Vector3d(a + u * k / steps + v * l / steps);
+            sampled = std::min(sampled, (p.cwiseAbs() - size / 2).cwiseMax(0.0).norm());
+          }
+      }
+      const double found = distance(*box(size.x(), size.y(), size.z()), X, *mesh(triangles), Y, 9);
+      EXPECT_LE(found, sampled + 1e-9);
+      EXPECT_GE(found, sampled - spacing);
+      apart += found > 0.02;
+    }
+  EXPECT_GT(apart, 60);
+}
+
 TEST(Distance, IsTheSameFromBothSidesAndCappedAndAboveItsLowerBound) {
   Random random(3, 0);
   for (const SolidPointer& a : one_of_each())

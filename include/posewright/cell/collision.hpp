@@ -59,6 +59,8 @@ class Collision {
   /// The two bodies that are nearest to each other, of those that are checked; none if nothing is. Links that only must
   /// not touch each other count only if there is nothing else.
   std::optional<Separation> nearest(std::span<const double> q) const;
+  /// The same without the points where they are nearest, which take as long again.
+  std::optional<Separation> nearest_bodies(std::span<const double> q) const;
   /// The same on the straight motion, where the smallest distance is at most half a millimetre below the one returned.
   std::optional<Separation> nearest(std::span<const double> from, std::span<const double> to) const;
 

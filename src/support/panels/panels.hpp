@@ -7,7 +7,8 @@ namespace posewright {
 /// C column-major, its columns `ldc` apart. A is packed in panels of four rows (a[4k + i] within one), then one of two
 /// rows and one of one row for those that are left; B in panels of four columns, those that are left one by one. A
 /// panel is `stride` times its width long and begins `offset` times its width within that.
-/// Each entry adds its products in the order of k without contraction: every instruction set computes the same bits.
+/// Each entry adds its products in Eigen's order without contraction: every instruction set computes the same bits, and
+/// they are those of Eigen's own loop for SSE2.
 struct PanelProduct {
   long rows, depth, columns;
   double alpha;

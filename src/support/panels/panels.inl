@@ -46,13 +46,24 @@ inline void wide_tile(double* __restrict c, long ldc, const double* __restrict a
 }
 #endif
 
-/// Rows that do not fill a panel of four: columns of B side by side instead.
+/// Rows that do not fill a panel of four: columns of B side by side instead. Of two rows Eigen adds the products of odd
+/// k apart while there are eight more, and so must whoever wants its bits.
 template <int Rows>
 inline void narrow_tile(double* c, long ldc, const double* __restrict a, const double* __restrict b,
                         const PanelProduct& size) {
-  Lanes sum[Rows] = {};
-  for (long k = 0; k < size.depth; ++k)
-    for (int i = 0; i < Rows; ++i) sum[i] += a[Rows * k + i] * *reinterpret_cast<const Lanes*>(b + 4 * k);
+  Lanes sum[Rows] = {}, odd[Rows] = {};
+  const auto take = [&](long k, Lanes* to) {
+    for (int i = 0; i < Rows; ++i) to[i] += a[Rows * k + i] * *reinterpret_cast<const Lanes*>(b + 4 * k);
+  };
+  long k = 0;
+  if constexpr (Rows == 2) {
+    for (const long eights = size.depth / 8 * 8; k < eights; k += 2) {
+      take(k, sum);
+      take(k + 1, odd);
+    }
+    for (int i = 0; i < Rows; ++i) sum[i] += odd[i];
+  }
+  for (; k < size.depth; ++k) take(k, sum);
   for (int i = 0; i < Rows; ++i)
     for (int j = 0; j < 4; ++j) c[j * ldc + i] += size.alpha * sum[i][j];
 }

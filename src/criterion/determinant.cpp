@@ -6,6 +6,7 @@
 
 #include "determinant_nuisance.hpp"
 #include "kernels/kernels.hpp"
+#include "member_products.hpp"
 #include "posewright/criterion/inverse_information.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
@@ -28,6 +29,9 @@ class DeterminantState : public DesignState {
       : DesignState(view, std::move(members)),
         inverse_(*view.blocks, view.blocks->columns(), view.prior),
         gain_(inverse_, view.blocks->rows()),
+        products_(inverse_),
+        keeps_products_(MemberProducts::pays(*view.blocks, this->members().size())),
+        changes_till_refresh_(std::max(changes_till_refresh, view.blocks->columns())),
         has_prior_(view.prior != nullptr) {
     refresh();
   }
@@ -54,8 +58,11 @@ class DeterminantState : public DesignState {
   double removal(int position) override { return gain_.removal(members()[std::size_t(position)]); }
 
   bool refresh() override {
+    // Nothing has run since: an exchange asks once more after a pass without a swap.
+    if (since_refresh_ == 0) return !singular_;
     since_refresh_ = 0;
     gain_.forget();
+    products_.forget();
     singular_ = !inverse_.refresh(members(), 0.0);
     if (singular_) inverse_.refresh(members(), start_ridge);
     return !singular_;
@@ -64,22 +71,47 @@ class DeterminantState : public DesignState {
  private:
   Swap do_best_swap(int position, double min_gain) override {
     const int k = members()[std::size_t(position)];
-    return blocks().rows() == 1 ? best_row(k, min_gain) : best_block(k, min_gain);
+    return blocks().rows() == 1 ? best_row(position, k, min_gain) : best_block(k, min_gain);
   }
 
   void do_change(int leave, int enter) override {
     gain_.forget();
     // A ridge is for starts; every change may be the one that makes it needless, once there are rows enough.
     const bool enough = has_prior_ || long(members().size()) * blocks().rows() >= blocks().columns();
-    if ((singular_ && enough) || !inverse_.change(leave, enter) || ++since_refresh_ >= changes_till_refresh) refresh();
+    ++since_refresh_;
+    if ((singular_ && enough) || !change(leave, enter) || since_refresh_ >= changes_till_refresh_) refresh();
   }
 
-  Swap best_row(int k, double min_gain) {
+  bool change(int leave, int enter) {
+    if (!keeps_products_) return inverse_.change(leave, enter);
+    if (!inverse_.change(leave, enter, &made_)) return false;
+    products_.change(members(), made_);
+    return true;
+  }
+
+  Swap best_row(int position, int k, double min_gain) {
+    if (keeps_products_) return best_of_products(position, k, min_gain);
     inverse_.project(k, y_);
     double best = std::expm1(min_gain);
     const long j = kernels().scan_rows(blocks().data(), blocks().count(), blocks().stride(), y_.data(),
                                        inverse_.traces().data(), inverse_.trace(k), blocked().data(), &best);
     return j < 0 ? Swap{} : Swap{static_cast<int>(j), std::log1p(best)};
+  }
+
+  /// The same with x_j V x_kᵀ known.
+  Swap best_of_products(int position, int k, double min_gain) {
+    const double* c = products_.row(members(), position);
+    const std::vector<double>& d = inverse_.traces();
+    const double left = 1 - d[std::size_t(k)];
+    double best = std::expm1(min_gain);
+    int enter = -1;
+    for (std::size_t j = 0; j < d.size(); ++j) {
+      const double gain = (1 + d[j]) * left + c[j] * c[j] - 1;
+      if (gain <= best || blocked()[j] != 0) continue;
+      best = gain;
+      enter = int(j);
+    }
+    return enter < 0 ? Swap{} : Swap{enter, std::log1p(best)};
   }
 
   Swap best_block(int k, double min_gain) {
@@ -95,8 +127,13 @@ class DeterminantState : public DesignState {
 
   InverseInformation inverse_;
   SwapGain gain_;
+  MemberProducts products_;
+  RankChange made_;
+  bool keeps_products_ = false;
+  // A fresh factor costs as much as some m changes.
+  int changes_till_refresh_;
   std::vector<double> y_;
-  int since_refresh_ = 0;
+  int since_refresh_ = 1;
   bool has_prior_ = false, singular_ = false;
 };
 

@@ -75,7 +75,7 @@ void InverseInformation::measure(int candidate) {
   d_[std::size_t(candidate)] = d.trace();
 }
 
-bool InverseInformation::change(int leave, int enter) {
+bool InverseInformation::change(int leave, int enter, RankChange* made) {
   // M' = M + Uᵀ S U with U = [J_enter; J_leave], S = diag(I, −I): V' = V − V Uᵀ K⁻¹ U V, K = S + U V Uᵀ.
   int size = 0;
   const int of[2] = {enter, leave};
@@ -103,13 +103,32 @@ bool InverseInformation::change(int leave, int enter) {
   const Eigen::VectorXd sign = lambda.array().sign();
   Eigen::Map<BlockArray::RowMatrix> v(v_.data(), columns_, stride_);
   v.noalias() -= directions.leftCols(columns_).transpose() * sign.asDiagonal() * directions;
+  if (made == nullptr) {
+    take_from_traces(directions, sign);
+  } else {
+    made->signs = sign;
+    made->entering = eigen.eigenvectors().row(0).transpose().cwiseProduct(lambda.cwiseAbs().cwiseSqrt());
+    take_from_traces(directions, *made);
+  }
+  return true;
+}
+
+void InverseInformation::take_from_traces(const BlockArray::RowMatrix& directions, const Eigen::VectorXd& sign) {
   constexpr std::size_t chunk = 8192;
   parallel_for((blocks_.count() + chunk - 1) / chunk, threads_, [&](std::size_t c, int) {
     const std::size_t first = c * chunk, count = std::min(chunk, blocks_.count() - first);
-    kernels().subtract_squares(blocks_.row(first, 0), count, rows_, stride_, directions.data(), sign.data(), size,
-                               d_.data() + first);
+    kernels().subtract_squares(blocks_.row(first, 0), count, rows_, stride_, directions.data(), sign.data(),
+                               int(sign.size()), d_.data() + first);
   });
-  return true;
+}
+
+void InverseInformation::take_from_traces(const BlockArray::RowMatrix& directions, RankChange& made) {
+  const auto n = Eigen::Index(blocks_.count());
+  products_.resize(n, directions.rows());
+  kernels().cross(blocks_.data(), int(n), stride_, directions.data(), int(directions.rows()), products_.data());
+  made.terms = products_;
+  for (Eigen::Index l = 0; l < products_.cols(); ++l)
+    for (Eigen::Index j = 0; j < n; ++j) d_[std::size_t(j)] -= made.signs[l] * made.terms(j, l) * made.terms(j, l);
 }
 
 }  // namespace posewright

@@ -7,6 +7,13 @@
 
 namespace posewright {
 
+/// What a change of M took from X V Xᵀ, all candidates' rows of one row each being X: Σ_l signs[l] terms_l terms_lᵀ.
+struct RankChange {
+  Eigen::MatrixXd terms;     ///< n × number of terms
+  Eigen::VectorXd signs;     ///< 1 or −1
+  Eigen::VectorXd entering;  ///< X V x_enterᵀ before the change as a combination of the terms
+};
+
 /// Running V = M⁻¹ of the leading `columns` columns of a design's blocks, M = Σ J_iᵀJ_i (+ ridge), together with
 /// d_j = tr(J_j V J_jᵀ) of every candidate j. Updated by rank 2r (Sherman–Morrison–Woodbury), refreshed by Cholesky.
 class InverseInformation {
@@ -20,6 +27,10 @@ class InverseInformation {
   double trace(int candidate) const { return d_[std::size_t(candidate)]; }
   const std::vector<double>& traces() const { return d_; }
   int columns() const { return columns_; }
+  /// V, columns × columns.
+  Eigen::Map<const BlockArray::RowMatrix, 0, Eigen::OuterStride<>> inverse() const {
+    return {v_.data(), columns_, columns_, Eigen::OuterStride<>(stride_)};
+  }
   const BlockArray& blocks() const { return blocks_; }
 
   /// Y = V J_candidateᵀ as r rows of `stride` doubles (zero beyond `columns`).
@@ -33,9 +44,13 @@ class InverseInformation {
   void measure(int candidate);
   /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter; −1 for nobody. Returns false if the update would lose all accuracy:
   /// nothing has changed then and the caller refreshes instead.
-  bool change(int leave, int enter);
+  /// @param made  blocks of one row: takes what the change was; null: nobody asks
+  bool change(int leave, int enter, RankChange* made = nullptr);
 
  private:
+  void take_from_traces(const BlockArray::RowMatrix& directions, const Eigen::VectorXd& sign);
+  void take_from_traces(const BlockArray::RowMatrix& directions, RankChange& made);
+
   const BlockArray& blocks_;
   const Eigen::MatrixXd* prior_;  ///< null: none
   int columns_, stride_, rows_, threads_;
@@ -43,6 +58,7 @@ class InverseInformation {
   std::vector<double> d_;
   double log_det_ = 0.0;
   std::vector<double> y_, scratch_;  ///< 2r × stride
+  BlockArray::RowMatrix products_;   ///< n × 2
 };
 
 }  // namespace posewright

@@ -1,0 +1,2 @@
+#define MULTIPLY_PANELS multiply_panels_avx512
+#include "panels.inl"

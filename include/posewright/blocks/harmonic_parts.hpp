@@ -43,8 +43,8 @@ inline InverseVariance squared(double constant, double slope, double repeats) {
   return {1.0, constant * constant / repeats, 2 * constant * slope / repeats, slope * slope / repeats};
 }
 
-/// Of the squared distance r from one place to one of several targets on one tip: the mean of the squares of all of them
-/// differs from it by slope √r + constant at most (m², theory.md eq. (57)).
+/// Of the squared distance r from one place to one of several targets on one tip: the mean of the squares of all of
+/// them differs from it by slope √r + constant at most (m², theory.md eq. (57)).
 struct DistanceSpread {
   double slope = 0.0, constant = 0.0;
 };

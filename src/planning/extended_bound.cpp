@@ -74,8 +74,12 @@ ApproximateDesign extended_bound(const BlockArray& candidates, const Approximate
     const double prior = options.prior.size() > 0 ? (now.factor.transpose() * options.prior * now.factor).trace() : 0.0;
     now.max_sensitivity_ratio = std::max(1.0, (best_mean(std::move(all), options.cap) + prior) / now.degree);
     now.bound = with_margin(now.value + now.degree * std::log(now.max_sensitivity_ratio));
+    // Where weights cannot be found more exactly another round finds others that are as good: it moves the bound by
+    // less than anybody reads.
     const bool first = round == 0;
+    const bool stalled = !first && now.max_sensitivity_ratio - 1 > 0.5 * (best.max_sensitivity_ratio - 1);
     if (first || now.bound < best.bound) best = std::move(now);
+    if (stalled) break;
     if (best.max_sensitivity_ratio <= 1 + std::max(options.tolerance, 1e-9) || watch.should_stop()) break;
     std::vector<int> next = united(kept, largest(d, room));
     if (next == kept) break;

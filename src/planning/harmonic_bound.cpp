@@ -211,21 +211,4 @@ void HarmonicSensitivity::take_part(std::size_t k, const HarmonicFunction& bound
   terms_.push_back(std::move(term));
 }
 
-double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
-                      std::vector<double>& values) {
-  evaluator.complete(values);
-  static thread_local BlockArray::RowMatrix B;
-  if (!evaluator.rows(values, B)) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> distances(form.distance_degrees().size());
-  evaluator.distances(values, distances);
-  double sum = 0;
-  Eigen::Index first = 0;
-  for (const HarmonicPart& part : form.parts()) {
-    const double r = part.distance < 0 ? 0.0 : distances[std::size_t(part.distance)];
-    sum += part.factor(r) * (B.middleRows(first, part.rows) * T).squaredNorm();
-    first += part.rows;
-  }
-  return sum;
-}
-
 }  // namespace posewright

@@ -47,9 +47,7 @@ HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function)
       gaps_(function.terms_.size()),
       varied_(function.distances_.size()),
       axes_(function.terms_.size()),
-      parts_(function.form_, function.T_),
-      squares_(function.form_.parts().size()),
-      at_(function.distances_.size()) {}
+      parts_(function.form_, function.T_) {}
 
 void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
   box.bound = std::numeric_limits<double>::infinity();
@@ -153,9 +151,7 @@ void HarmonicJudge::place(const Axis& value_of) {
 }
 
 double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
-  parts_(values_, squares_);
-  parts_.evaluator().distances(values_, at_);
-  const double value = sum_of_parts(function_.form_, squares_, at_);
+  const double value = parts_.sensitivity(values_);
   if (value > found.value) {
     found.value = value;
     found.where = values_;
@@ -166,9 +162,9 @@ double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
 
 double HarmonicJudge::loose_bound(std::size_t& loosest) const {
   double sum = 0, most = 0, mean = 0;
-  for (const double r : at_) mean += r / double(at_.size());
+  for (const double r : parts_.distances()) mean += r / double(parts_.distances().size());
   for (std::size_t k = 0; k < gaps_.size(); ++k) {
-    const double one = gaps_[k] * squares_[function_.terms_[k].index];
+    const double one = gaps_[k] * parts_.squares()[function_.terms_[k].index];
     sum += one;
     if (one <= most) continue;
     most = one;

@@ -43,7 +43,7 @@ class HarmonicJudge : public BoxJudge {
   PartSquares parts_;
   using Added = std::vector<std::pair<double, const double*>>;
   Added added_, added_low_;  ///< tensors, and how many times each is added
-  std::vector<double> low_, values_, squares_, at_;
+  std::vector<double> low_, values_;
 };
 
 }  // namespace posewright

@@ -19,6 +19,24 @@ class PartSquares {
   PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T) : form_(form), T_(T), evaluator_(form.evaluator()) {}
 
   HarmonicForm::Evaluator& evaluator() { return *evaluator_; }
+  /// Of the place that was asked for last, one a part; and squares of the distances there.
+  const std::vector<double>& squares() const { return squares_; }
+  const std::vector<double>& distances() const { return distances_; }
+
+  /// Σ_k s_k(r_k) ‖B_k T‖², NaN where the form has no rows.
+  /// @param values  of all axes, those that follow others too
+  double sensitivity(std::span<const double> values) {
+    squares_.resize(form_.parts().size());
+    distances_.resize(form_.distance_degrees().size());
+    (*this)(values, squares_);
+    evaluator_->distances(values, distances_);
+    double sum = 0;
+    for (std::size_t k = 0; k < squares_.size(); ++k) {
+      const HarmonicPart& part = form_.parts()[k];
+      sum += part.factor(part.distance < 0 ? 0.0 : distances_[std::size_t(part.distance)]) * squares_[k];
+    }
+    return sum;
+  }
 
   /// NaN where the form has no rows.
   /// @param squares  one a part
@@ -41,18 +59,8 @@ class PartSquares {
   const Eigen::MatrixXd& T_;
   std::unique_ptr<HarmonicForm::Evaluator> evaluator_;
   BlockArray::RowMatrix B_, turned_;
+  std::vector<double> squares_, distances_;
 };
-
-/// Σ_k s_k(r_k) ‖B_k T‖² of what PartSquares and the evaluator's distances give.
-inline double sum_of_parts(const HarmonicForm& form, std::span<const double> squares,
-                           std::span<const double> distances) {
-  double sum = 0;
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    const HarmonicPart& part = form.parts()[k];
-    sum += part.factor(part.distance < 0 ? 0.0 : distances[std::size_t(part.distance)]) * squares[k];
-  }
-  return sum;
-}
 
 inline std::vector<int> sum_of(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> sum(a);

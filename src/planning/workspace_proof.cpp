@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "part_squares.hpp"
 #include "posewright/planning/enclosed_proof.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
@@ -58,8 +59,9 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
                                    [&](const auto& f) { return f->configuration(f->values(q)) == q; });
     if (form == forms.forms.end()) continue;
     std::vector<double> values = (*form)->values(q);
-    const auto evaluator = (*form)->evaluator();
-    bound += where.weights[i] * sensitivity_of(**form, *evaluator, T, values);
+    PartSquares parts(**form, T);
+    parts.evaluator().complete(values);
+    bound += where.weights[i] * parts.sensitivity(values);
     direct += where.weights[i] * (std::as_const(block).block(0) * T).squaredNorm();
   }
   return direct > 0 ? bound / direct - 1 : 0.0;

@@ -86,9 +86,4 @@ class HarmonicSensitivity {
 BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
                               const BoxSearchOptions& options, const Monitor& monitor);
 
-/// A form's function Σ_k s_k(r_k) ‖B_k T‖² at values of its axes, those that follow others put in; NaN where it has
-/// none.
-double sensitivity_of(const HarmonicForm& form, HarmonicForm::Evaluator& evaluator, const Eigen::MatrixXd& T,
-                      std::vector<double>& values);
-
 }  // namespace posewright

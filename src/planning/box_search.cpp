@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 #include "posewright/support/bytes.hpp"
@@ -68,7 +69,11 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
     result.boxes += long(round.size());
     for (LargestFound& one : found)
       if (one.value > result.found.value) result.found = std::move(one);
-    for (SearchBox& box : round) open.push(std::move(box));
+    for (SearchBox& box : round) {
+      // What is no number bounds nothing: neither less than enough nor more.
+      if (std::isnan(box.bound)) box.bound = std::numeric_limits<double>::infinity();
+      open.push(std::move(box));
+    }
     round.clear();
     result.complete = open.top().bound <= enough_now();
     if (result.complete || result.stopped || result.boxes >= options.most_boxes) break;

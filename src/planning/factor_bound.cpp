@@ -94,6 +94,7 @@ FactorBound by_ratio(const FactorOverRange& factor, const Multiplier& m, const D
   const double low = line.value(in.r.lower, 0), high = line.value(in.r.upper, 0);
   if (std::min(low, high) < 0 && std::max(low, high) > 0) line = {std::max(low, high), 0, 0, 0};
   const double ratio = std::max(low, high) > 0 ? in.ratio.upper : in.ratio.lower;
+  if (!std::isfinite(ratio)) return {ratio, 0, 0, 0};
   line.gap = line.value(in.r.middle(), 0) * (ratio - in.ratio.middle());
   line.constant *= ratio;
   line.distance *= ratio;

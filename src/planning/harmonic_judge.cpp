@@ -107,8 +107,9 @@ bool HarmonicJudge::put_distances(SearchBox& box) {
     put(other_, distance.difference, box);
     varied_[d].difference = other_.most_varied();
     ranges.delta = {other_.smallest() - distance.error, other_.largest() + distance.error};
+    // δ here is of interpolated distances.
     if (const auto& spreads = function_.form_.spreads(); !spreads.empty())
-      cut_by_spread(ranges, function_.multiplier_, spreads[d]);
+      cut_by_spread(ranges, function_.multiplier_, {spreads[d].slope, spreads[d].constant + 2 * distance.error});
   }
   return true;
 }

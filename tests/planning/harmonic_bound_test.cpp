@@ -154,6 +154,17 @@ TEST(FactorBound, IsAboveTheFactorAndConvergesWithTheSquareOfTheRange) {
   }
 }
 
+TEST(FactorBound, IsANumberWhereNothingIsKnownOfTheRatio) {
+  HarmonicPart part;
+  part.distance = 0;
+  part.plus = squared(0.0, 0.5, 1);
+  const FactorBound bound =
+      factor_bound(part, {0.0, 1.0}, {{1, 2}, {-0.1, 0.1}, {0, std::numeric_limits<double>::infinity()}}, true);
+  for (const double r : {1.0, 1.5, 2.0})
+    for (const double delta : {-0.1, 0.1}) EXPECT_GE(bound.value(r, delta), part.factor(r) * (r + delta));
+  EXPECT_TRUE(std::isfinite(bound.value(1.5, 0)));
+}
+
 TEST(FactorBound, OfAnAngleTimesADistanceIsExactUnderTheMultiplier) {
   // 1/(s r) times r̄ = r is 1/s everywhere.
   HarmonicPart part;
@@ -243,6 +254,26 @@ TEST(LargestValue, WithoutTheTimeItNeedsIsABoundAllTheSame) {
   EXPECT_TRUE(fine.complete);
   EXPECT_GE(rough.bound, fine.bound);
   EXPECT_GE(fine.bound, fine.largest);
+}
+
+TEST(LargestValue, IsNotBoundedByWhatIsNoNumber) {
+  // 1 everywhere, but for a part of the box about which its judge knows nothing.
+  class Judge : public BoxJudge {
+    void judge(SearchBox& box, double, LargestFound& found) override {
+      box.bound = box.lower[0] <= 0.3 && box.upper[0] >= 0.3 ? std::nan("") : 1.0;
+      found.value = 1.0;
+      found.where = {1.0};
+    }
+  };
+  SearchBox whole;
+  whole.lower = {0.0};
+  whole.upper = {1.0};
+  BoxSearchOptions options;
+  options.most_boxes = 50;
+  const BoxSearchResult most = largest_value(
+      {whole}, [] { return std::make_unique<Judge>(); }, options, Monitor{});
+  EXPECT_FALSE(most.complete);
+  EXPECT_EQ(most.bound, std::numeric_limits<double>::infinity());
 }
 
 TEST(LargestValue, DoesNotDependOnThreads) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "part_squares.hpp"
+
 namespace posewright {
 namespace {
 
@@ -153,8 +155,7 @@ Multiplier least_bent(const std::vector<HarmonicPart>& parts, std::span<const st
   double mean = 0, spread = 0;
   std::vector<double> means, differences(count, 0.0), off(count, 0.0);
   for (const auto& r : distances) {
-    means.push_back(0);
-    for (const double one : r) means.back() += one / double(count);
+    means.push_back(mean_of(r));
     mean += means.back() / double(distances.size());
     for (std::size_t t = 0; t < count; ++t) differences[t] += (means.back() - r[t]) / double(distances.size());
   }

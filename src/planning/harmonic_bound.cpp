@@ -156,16 +156,11 @@ bool HarmonicSensitivity::compare(const HarmonicFunction& f, const Places& place
 
 void HarmonicSensitivity::take_distances(const Places& places, int threads) {
   const std::size_t count = form_.distance_degrees().size();
-  const auto mean_of = [](std::span<const double> r) {
-    double mean = 0;
-    for (const double one : r) mean += one / double(r.size());
-    return mean;
-  };
   // Distances, their differences to the mean, the multiplier at each and at the mean.
   const std::vector<HarmonicFunction> functions = HarmonicFunction::of_several(
       form_.axes(), distance_degrees_, 3 * count + 1,
       [&] {
-        return [evaluator = std::shared_ptr<HarmonicForm::Evaluator>(form_.evaluator()), mean_of, count, this](
+        return [evaluator = std::shared_ptr<HarmonicForm::Evaluator>(form_.evaluator()), count, this](
                    std::span<const double> values, std::span<double> out) {
           const std::span<double> r = out.first(count);
           evaluator->distances(values, r);

@@ -162,8 +162,7 @@ double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
 }
 
 double HarmonicJudge::loose_bound(std::size_t& loosest) const {
-  double sum = 0, most = 0, mean = 0;
-  for (const double r : parts_.distances()) mean += r / double(parts_.distances().size());
+  double sum = 0, most = 0;
   for (std::size_t k = 0; k < gaps_.size(); ++k) {
     const double one = gaps_[k] * parts_.squares()[function_.terms_[k].index];
     sum += one;
@@ -171,7 +170,7 @@ double HarmonicJudge::loose_bound(std::size_t& loosest) const {
     most = one;
     loosest = k;
   }
-  return sum / function_.multiplier_.value(mean);
+  return sum / function_.multiplier_.value(mean_of(parts_.distances()));
 }
 
 }  // namespace posewright

@@ -75,6 +75,12 @@ inline std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, 
   return values;
 }
 
+inline double mean_of(std::span<const double> values) {
+  double mean = 0;
+  for (const double v : values) mean += v / double(values.size());
+  return mean;
+}
+
 inline double largest_size(const std::vector<double>& values) {
   double largest = 0;
   for (const double v : values) largest = std::max(largest, v < 0 ? -v : v);

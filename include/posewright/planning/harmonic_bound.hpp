@@ -43,7 +43,6 @@ class HarmonicSensitivity {
   std::unique_ptr<BoxJudge> judge() const;
   std::size_t size() const { return harmonic_size(form_.axes(), degrees_); }
   std::size_t terms() const { return terms_.size(); }
-  const Multiplier& multiplier() const { return multiplier_; }
 
  private:
   friend class HarmonicJudge;

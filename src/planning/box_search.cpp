@@ -35,6 +35,7 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
   std::priority_queue<SearchBox> open;
   const int threads = thread_count(options.threads);
   std::vector<std::unique_ptr<BoxJudge>> judges;
+  judges.reserve(std::size_t(threads));
   for (int i = 0; i < threads; ++i) judges.push_back(make());
   const auto enough_now = [&] {
     const double best = result.found.value;

@@ -59,3 +59,20 @@ function(posewright_cold target)
   target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release,RelWithDebInfo>>:-O1>)
 endfunction()
 posewright_cold(posewright_parsed_cold)
+
+# posewright_instruction_sets(STAGE PREFIX flags...): inner loops of a stage, compiled once for each instruction set from
+# PREFIX_sse2.cpp and, on x86, PREFIX_avx2.cpp and PREFIX_avx512.cpp. No contraction: every set computes the same bits.
+function(posewright_instruction_sets stage prefix)
+  set(flags -O3 -ffp-contract=off ${ARGN})
+  set(sets sse2)
+  set(flags_avx2 -mavx2)
+  set(flags_avx512 -mavx2 -mavx512f -mavx512vl)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND sets avx2 avx512)
+  endif()
+  foreach(set IN LISTS sets)
+    target_sources(posewright_${stage} PRIVATE ${prefix}_${set}.cpp)
+    set_source_files_properties(${prefix}_${set}.cpp PROPERTIES
+      COMPILE_OPTIONS "${flags};${flags_${set}}" SKIP_PRECOMPILE_HEADERS ON)
+  endforeach()
+endfunction()

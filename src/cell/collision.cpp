@@ -57,6 +57,15 @@ double spare_of(const Scene& scene, const BodyPair& pair, const Poses& X, double
   return distance_of(scene, pair, X, pair.clearance + more / 4) - pair.clearance;
 }
 
+const Body& body_above(const Scene& scene, const BodyPair& pair) { return scene.bodies[std::size_t(pair.b)]; }
+
+/// Whether a pair is a body of the robot and a half space that stands still.
+bool is_above_plane(const Scene& scene, const BodyPair& pair) {
+  const Body& plane = scene.bodies[std::size_t(pair.a)];
+  return scene.frames->poses_per_configuration() == 1 && plane.frame == 0 && plane.solid->plane() && !pair.never_near &&
+         !body_above(scene, pair).solid->plane();
+}
+
 /// First pair that is too near, or null.
 const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
   ApartMemory& memory = ApartMemory::of(scene);
@@ -179,6 +188,28 @@ double Collision::margin() const { return scene_->margin; }
 int Collision::violation(std::span<const double> q) const {
   const BodyPair* pair = first_violation(*scene_, q);
   return pair == nullptr ? -1 : pair->reason;
+}
+
+NecessaryLimits Collision::necessary_limits() const {
+  NecessaryLimits limits;
+  for (const BodyPair& pair : scene_->pairs)
+    if (is_above_plane(*scene_, pair)) {
+      const double room = std::max(0.0, pair.clearance - motion_resolution - certain);
+      limits.names.push_back(scene_->bodies[std::size_t(pair.a)].name);
+      limits.of_points.push_back({limits.values++, 1.0, -room - body_above(*scene_, pair).solid->inner_radius()});
+    }
+  return limits;
+}
+
+void Collision::necessary_values(std::span<const double> q, std::span<double> values) const {
+  const Poses& X = place_bodies(*scene_, q, 0);
+  std::size_t next = 0;
+  for (const BodyPair& pair : scene_->pairs) {
+    if (!is_above_plane(*scene_, pair)) continue;
+    const Eigen::Isometry3d &X_plane = X[std::size_t(pair.a)], &X_body = X[std::size_t(pair.b)];
+    const Eigen::Vector3d centre = X_plane.inverse() * (X_body * body_above(*scene_, pair).solid->inner_centre());
+    values[next++] = scene_->bodies[std::size_t(pair.a)].solid->plane()->dot(centre);
+  }
 }
 
 std::string Collision::colliding(std::span<const double> q) const {

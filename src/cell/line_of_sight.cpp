@@ -93,6 +93,7 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
   for (const TargetSpec& reference : spec_.references)
     references_.push_back({reference.name, reference.position, std::nullopt});
   add_normals(problem);
+  take_necessary_places();
 }
 
 void LineOfSight::add_station(const InstrumentView::Place& place) {

@@ -105,6 +105,7 @@ class BoxSolid : public FclSolid {
   explicit BoxSolid(const BoxShape& box) : half_(box.size / 2) {
     geometry_ = std::make_shared<fcl::Boxd>(box.size);
     radius_ = half_.norm();
+    inner_radius_ = half_.minCoeff();
     for (int k = 0; k < 8; ++k)
       corners_.emplace_back((k & 1 ? 1 : -1) * half_.x(), (k & 2 ? 1 : -1) * half_.y(), (k & 4 ? 1 : -1) * half_.z());
     put_box_around();
@@ -131,6 +132,7 @@ class CylinderSolid : public FclSolid {
   explicit CylinderSolid(const CylinderShape& c) : r_(c.radius), half_(c.length / 2) {
     geometry_ = std::make_shared<fcl::Cylinderd>(c.radius, c.length);
     radius_ = std::hypot(r_, half_);
+    inner_radius_ = std::min(r_, half_);
     for (int k = 0; k < 8; ++k)
       corners_.emplace_back((k & 1 ? 1 : -1) * r_, (k & 2 ? 1 : -1) * r_, (k & 4 ? 1 : -1) * half_);
     put_box_around();
@@ -145,7 +147,7 @@ class SphereSolid : public FclSolid {
  public:
   explicit SphereSolid(const SphereShape& s) {
     geometry_ = std::make_shared<fcl::Sphered>(s.radius);
-    radius_ = s.radius;
+    radius_ = inner_radius_ = s.radius;
     for (int k = 0; k < 8; ++k)
       corners_.push_back(s.radius * Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
     put_box_around();
@@ -161,6 +163,7 @@ class HalfSpaceSolid : public Solid {
   }
   bool holds(const Eigen::Vector3d& p) const override { return normal_.dot(p) <= 0; }
   double at_least(const Eigen::Vector3d& p) const override { return std::max(0.0, normal_.dot(p)); }
+  std::optional<Eigen::Vector3d> plane() const override { return normal_; }
   const Eigen::Vector3d& normal() const { return normal_; }
 
  private:
@@ -208,6 +211,7 @@ class MeshSolid : public FclSolid {
       hull = convex_hull(mesh_);
     } catch (const std::invalid_argument&) {
       corners_ = mesh_.vertices;
+      inner_centre_ = mean_of_corners();
       return;
     }
     std::vector<int> number(hull.vertices.size(), -1);
@@ -225,6 +229,18 @@ class MeshSolid : public FclSolid {
     hull_ = std::make_shared<fcl::Convexd>(std::make_shared<const std::vector<Eigen::Vector3d>>(corners_),
                                            int(hull.triangles.size()), faces);
     hull_->computeLocalAABB();
+    inner_centre_ = mean_of_corners();
+    inner_radius_ = std::numeric_limits<double>::infinity();
+    for (const auto& t : hull.triangles) {
+      const auto corner = [&](std::size_t k) { return hull.vertices[std::size_t(t[k])]; };
+      const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+      inner_radius_ = std::min(inner_radius_, std::max(0.0, normal.dot(corner(0) - inner_centre_)));
+    }
+  }
+  Eigen::Vector3d mean_of_corners() const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& corner : corners_) mean += corner / double(corners_.size());
+    return mean;
   }
   void find_parts() {
     std::vector<int> parent(mesh_.vertices.size());

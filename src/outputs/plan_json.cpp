@@ -40,6 +40,7 @@ Json certificate_json(const Plan& plan) {
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
                  {"method", c.workspace->method},
                  {"proved", c.workspace->proved},
+                 {"limits", c.workspace->limits},
                  {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)},
                  {"boxes", c.workspace->boxes},
                  {"loose_proof", c.workspace->loose_bound ? Json{{"efficiency", c.workspace->loose_efficiency},

@@ -40,10 +40,19 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
+/// ", a, b and c": what comes after something else.
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) text += (i + 1 < names.size() ? ", " : " and ") + names[i];
+  return text;
+}
+
 std::string workspace_text(const Certificate::Workspace& w, bool parallel) {
   if (w.proved)
     return fmt::format("Proved {}, between the candidates too: at least {} of the best.\n",
-                       parallel ? "within the actuators' travel" : "over the joint limits",
+                       parallel           ? "within the actuators' travel"
+                       : w.limits.empty() ? "over the joint limits"
+                                          : "within the limits of joints" + listed(w.limits),
                        proved_percent(w.efficiency));
   const std::string why = w.loose_bound
                               ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)

@@ -15,6 +15,9 @@ namespace {
 constexpr double widest = 2 * std::numbers::pi / 3;
 // The weights are sums of few positive numbers: they are right to this.
 constexpr double weight_error = 1e-12;
+// A multiple that brings the largest coefficient this near to its smallest is good enough; and it takes no more steps.
+constexpr double near_enough = 1e-5;
+constexpr int most_steps = 30;
 
 }  // namespace
 
@@ -64,6 +67,57 @@ bool BoxTensor::divide_by(const BoxTensor& other) {
   }
   rounding_ = (rounding_ + largest * other.rounding_) / least;
   return true;
+}
+
+void BoxTensor::add(double times, const BoxTensor& other) {
+  double sizes = 0;
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    sizes = std::max(sizes, std::abs(now_[i]) + times * std::abs(other.now_[i]));
+    now_[i] += times * other.now_[i];
+  }
+  // Both have quotients of weights in them, and their sum may be small.
+  rounding_ += times * other.rounding_ + weight_error * sizes;
+}
+
+std::size_t BoxTensor::top_with(double times, const BoxTensor& other) const {
+  std::size_t top = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < now_.size(); ++i)
+    if (const double value = now_[i] + times * other.now_[i]; value > most) {
+      most = value;
+      top = i;
+    }
+  return top;
+}
+
+double BoxTensor::best_multiple(const BoxTensor& other) const {
+  // Each coefficient is a line in the multiple; the largest of all is convex.
+  const auto line = [&](std::size_t i) { return std::pair(now_[i], other.now_[i]); };
+  auto falling = line(top_with(0.0, other));
+  if (!(falling.second < 0)) return 0.0;
+  if (*std::max_element(other.now_.begin(), other.now_.end()) < 0) return std::numeric_limits<double>::infinity();
+  double times = std::abs(falling.first / falling.second);
+  auto rising = line(top_with(times, other));
+  for (; rising.second < 0; rising = line(top_with(times *= 4, other))) falling = rising;
+  for (int step = 0; step < most_steps && rising.second > 0; ++step) {
+    times = (falling.first - rising.first) / (rising.second - falling.second);
+    const auto now = line(top_with(times, other));
+    const double value = falling.first + times * falling.second;
+    if (!(now.first + times * now.second > value + near_enough * std::abs(value))) break;
+    (now.second < 0 ? falling : rising) = now;
+  }
+  return std::max(0.0, times);
+}
+
+double BoxTensor::near(std::size_t index, const BoxTensor& of) const {
+  std::size_t stride = of.now_.size(), own = 0;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const auto terms = std::size_t(terms_[a]), others = std::size_t(of.terms_[a]);
+    stride /= others;
+    const std::size_t at = index / stride % others;
+    own = own * terms + (others > 1 ? (at * (terms - 1) + (others - 1) / 2) / (others - 1) : 0);
+  }
+  return now_[own];
 }
 
 double BoxTensor::largest() const {
@@ -140,7 +194,8 @@ std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const HarmonicAxis& axis = axes[a];
     // A turn and more is one turn.
-    const double width = axis.turns ? std::min(axis.upper - axis.lower, 2 * std::numbers::pi) : axis.upper - axis.lower;
+    double width = axis.upper - axis.lower;
+    if (axis.turns && !axis.counts_turns) width = std::min(width, 2 * std::numbers::pi);
     const int parts = axis.turns && degrees[a] > 0 ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
     std::vector<SearchBox> finer;
     for (const SearchBox& box : boxes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "posewright/planning/box_search.hpp"
@@ -25,6 +26,16 @@ class BoxTensor {
   /// Both weighted: quotients of the two functions. @return false where the other may not be above 0 in the box
   bool divide_by(const BoxTensor& other);
 
+  /// Adds so many times (at least 0) another of the same degrees, both quotients.
+  void add(double times, const BoxTensor& other);
+  /// The multiple of the other, at least 0, that makes the largest coefficient small when it is added; infinite if
+  /// every coefficient of the other is below 0. Any multiple bounds.
+  double best_multiple(const BoxTensor& other) const;
+  /// The largest coefficient's place.
+  std::size_t top() const { return std::size_t(std::max_element(now_.begin(), now_.end()) - now_.begin()); }
+  /// Coefficient nearest to the place of another's, whatever its degrees.
+  double near(std::size_t index, const BoxTensor& of) const;
+
   /// What no value exceeds, and what none is below; rounding is counted in.
   double largest() const;
   double smallest() const;
@@ -36,6 +47,9 @@ class BoxTensor {
   std::size_t highest_corner(double& value) const;
 
  private:
+  /// Place of the largest coefficient of this and so many times another.
+  std::size_t top_with(double times, const BoxTensor& other) const;
+
   const std::vector<HarmonicAxis>& axes_;
   std::vector<int> degrees_, of_function_, terms_;
   std::vector<double> now_, scratch_;

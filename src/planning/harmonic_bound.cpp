@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "harmonic_limits.hpp"
+#include "interpolation_error.hpp"
 #include "part_squares.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/random.hpp"
@@ -14,10 +16,6 @@ namespace {
 
 // Tensors of more coefficients leave out the products with a distance: a box would take too long.
 constexpr std::size_t most_with_products = 1'000'000;
-// A function and its polynomial may differ by this share of its size, at so many random places; and as many times the
-// largest difference found is added to it. Values were interpolated as they are computed: what rounding makes of them
-// is far below.
-constexpr double same_function = 1e-7, difference_factor = 100.0, own_rounding = 1e-10;
 constexpr int places_compared = 100;
 // How near an instrument may come is worth so much work.
 constexpr long boxes_for_a_distance = 20'000;
@@ -34,11 +32,13 @@ struct CommonDegrees {
 };
 
 /// Degrees of all tensors: with every product if they are not too large.
-CommonDegrees common_degrees(const HarmonicForm& form, const HarmonicDegrees& squares) {
+CommonDegrees common_degrees(const HarmonicForm& form, const HarmonicDegrees& squares, const std::vector<int>& limits) {
   CommonDegrees result;
   result.all = result.distances = std::vector<int>(form.axes().size(), 0);
   for (const auto& degrees : squares) result.all = larger_of(result.all, degrees);
   for (const auto& degrees : form.distance_degrees()) result.distances = larger_of(result.distances, degrees);
+  // What limits need is there without them, but for axes that turn all readings alike.
+  result.all = larger_of(result.all, limits);
   result.low = result.all;
   const std::vector<int> products = sum_of(result.all, result.distances);
   result.affine = !form.distance_degrees().empty() && harmonic_size(form.axes(), products) <= most_with_products;
@@ -93,16 +93,17 @@ struct HarmonicSensitivity::Places {
 };
 
 double HarmonicSensitivity::cost(const HarmonicForm& form, const HarmonicDegrees& squares) {
-  const CommonDegrees degrees = common_degrees(form, squares);
+  const std::vector<int> none, &limits = form.limits().of_points.empty() ? none : form.limit_degrees();
+  const CommonDegrees degrees = common_degrees(form, squares, limits);
   return double(harmonic_size(form.axes(), degrees.all)) * double((degrees.affine ? 3 : 1) * form.parts().size() + 1);
 }
 
 HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T,
                                          const HarmonicDegrees& degrees_of_parts, std::uint64_t seed, int threads,
                                          const Monitor& monitor)
-    : form_(form), T_(T) {
+    : form_(form), T_(T), limits_(std::make_unique<HarmonicLimits>(form, seed, threads)) {
   const std::size_t parts = form.parts().size();
-  CommonDegrees common = common_degrees(form, degrees_of_parts);
+  CommonDegrees common = common_degrees(form, degrees_of_parts, limits_->degrees());
   degrees_ = std::move(common.all);
   distance_degrees_ = std::move(common.distances);
   low_degrees_ = std::move(common.low);
@@ -132,27 +133,16 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
     for (std::size_t i = 0; i < members.size(); ++i) {
       std::vector<double> direct;
       for (const auto& squares : places.squares) direct.push_back(squares[members[i]]);
-      double error = 0;
-      defined_ = compare(functions[i], places, direct, error) && defined_;
+      const auto error = interpolation_error(functions[i], places.values, direct);
+      defined_ = error && defined_;
       // The constant more makes it a bound of the part.
-      if (defined_) take_part(members[i], functions[i].raised(error));
+      if (defined_) take_part(members[i], functions[i].raised(*error));
     }
   }
   most_fixed_ = largest_size(fixed_);
 }
 
-/// @param error  more than the function is off by
-/// @return whether it is the same function as far as rounding allows
-bool HarmonicSensitivity::compare(const HarmonicFunction& f, const Places& places, const std::vector<double>& values,
-                                  double& error) const {
-  double difference = 0, size = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    difference = std::max(difference, std::abs(f.value(places.values[i]) - values[i]));
-    size = std::max(size, std::abs(values[i]));
-  }
-  error = difference_factor * difference + own_rounding * size;
-  return f.defined() && difference <= same_function * size;
-}
+HarmonicSensitivity::~HarmonicSensitivity() = default;
 
 void HarmonicSensitivity::take_distances(const Places& places, int threads) {
   const std::size_t count = form_.distance_degrees().size();
@@ -176,10 +166,10 @@ void HarmonicSensitivity::take_distances(const Places& places, int threads) {
   for (std::size_t d = 0; d < count; ++d) {
     std::vector<double> direct;
     for (const auto& r : places.distances) direct.push_back(r[d]);
-    double error = 0;
-    defined_ = compare(functions[d], places, direct, error) && defined_;
-    const double least = smallest_value(functions[d], threads) - error;
-    distances_.push_back({functions[d], functions[count + d], functions[2 * count + d], error, least});
+    const auto error = interpolation_error(functions[d], places.values, direct);
+    defined_ = error && defined_;
+    const double off = error.value_or(0.0), least = smallest_value(functions[d], threads) - off;
+    distances_.push_back({functions[d], functions[count + d], functions[2 * count + d], off, least});
   }
   multiplied_ = functions[3 * count];
 }

@@ -47,9 +47,12 @@ HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function)
       gaps_(function.terms_.size()),
       varied_(function.distances_.size()),
       axes_(function.terms_.size()),
-      parts_(function.form_, function.T_) {}
+      parts_(function.form_, function.T_),
+      limits_(*function.limits_, function.degrees_) {}
 
 void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
+  box.bound = -std::numeric_limits<double>::infinity();
+  if (!limits_.cut(box) || !limits_.leave(box)) return;
   box.bound = std::numeric_limits<double>::infinity();
   if (!put_distances(box)) return;
   const double most = combine();
@@ -60,6 +63,12 @@ void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
   if (!(box.bound > enough)) return;
   double top;
   const std::size_t corner = tensor_.highest_corner(top);
+  if (!limits_.lower(box, multiplier_, enough, tensor_)) {
+    box.bound = -std::numeric_limits<double>::infinity();
+    return;
+  }
+  box.bound = tensor_.largest();
+  if (!(box.bound > enough)) return;
   const auto& axes = function_.form_.axes();
   if (top > found.value) {
     place([&](std::size_t a) { return (corner >> a & 1) != 0 ? upper_of(axes, box, a) : lower_of(axes, box, a); });
@@ -71,7 +80,7 @@ void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
 }
 
 /// Where the distances vary much or factors' bounds are loose, what makes those tighter; else where the tensor bends.
-void HarmonicJudge::choose_axis(SearchBox& box, double middle) const {
+void HarmonicJudge::choose_axis(SearchBox& box, double middle) {
   box.longest = tensor_.most_bent();
   double widest = far_and_near;
   std::size_t loosest = 0;
@@ -80,8 +89,18 @@ void HarmonicJudge::choose_axis(SearchBox& box, double middle) const {
       widest = ratio;
       box.longest = varied_[d].distance;
     }
-  if (!(widest > far_and_near) && loose_bound(loosest) > loose_factors * (box.bound - middle))
+  // Where a limit forbids the middle, its value says nothing of what is to be lost.
+  const bool forbidden = !limits_.allow(values_, parts_.evaluator());
+  if (!(widest > far_and_near) && !forbidden && loose_bound(loosest) > loose_factors * (box.bound - middle))
     box.longest = axes_[loosest];
+  // What is forbidden may leave less of the box than the bound knows: halved in turn where the limits vary.
+  if (const int other = forbidden ? limits_.most_varied() : -1; other >= 0) {
+    const auto width = [&](int a) {
+      const HarmonicAxis& axis = function_.form_.axes()[std::size_t(a)];
+      return (box.upper[std::size_t(a)] - box.lower[std::size_t(a)]) / (axis.upper - axis.lower);
+    };
+    if (width(other) > width(box.longest)) box.longest = other;
+  }
 }
 
 bool HarmonicJudge::put_distances(SearchBox& box) {
@@ -153,7 +172,7 @@ void HarmonicJudge::place(const Axis& value_of) {
 
 double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
   const double value = parts_.sensitivity(values_);
-  if (value > found.value) {
+  if (value > found.value && limits_.allow(values_, parts_.evaluator())) {
     found.value = value;
     found.where = values_;
     found.function = box.function;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "box_tensor.hpp"
+#include "harmonic_limits.hpp"
 #include "part_squares.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 
@@ -24,11 +25,11 @@ class HarmonicJudge : public BoxJudge {
   /// Values of all axes, by the axis.
   template <class Axis>
   void place(const Axis& value_of);
-  /// The sensitivity at those values.
+  /// The sensitivity at those values; `found` takes it if no limit forbids them.
   double look(const SearchBox& box, LargestFound& found);
   /// What the bounds of factors add to the sensitivity where it was looked at last. @param loosest  term of the most
   double loose_bound(std::size_t& loosest) const;
-  void choose_axis(SearchBox& box, double middle) const;
+  void choose_axis(SearchBox& box, double middle);
 
   const HarmonicSensitivity& function_;
   BoxTensor tensor_, multiplier_;
@@ -41,6 +42,7 @@ class HarmonicJudge : public BoxJudge {
   std::vector<Varied> varied_;  ///< axes along which distances and differences vary most
   std::vector<int> axes_;       ///< along which a term's factor becomes tighter
   PartSquares parts_;
+  BoxLimits limits_;
   using Added = std::vector<std::pair<double, const double*>>;
   Added added_, added_low_;  ///< tensors, and how many times each is added
   std::vector<double> low_, values_;

@@ -135,17 +135,20 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
     limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
   }
   const BoxSearchResult most = largest_value(functions, limits, own);
+  proof.limits = forms.forms.front()->limits().names;
   proof.boxes = most.boxes;
   if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
-    proof.why_not = most.stopped ? "stopped" : "an instrument that may stand within the arm's reach";
+    proof.why_not = most.stopped     ? "stopped"
+                    : most.bound > 0 ? "an instrument that may stand within the arm's reach"
+                                     : "limits that forbid every configuration";
     return;
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
   proof.bound = result.value + result.degree * std::log(proof.max_ratio);
   if (most.found.where.empty()) return;
   proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
-  proof.largest_forbidden = !space.probe()->feasible(proof.largest_at);
+  proof.largest_forbidden_by = space.probe()->forbidden_by(proof.largest_at);
 }
 
 }  // namespace posewright

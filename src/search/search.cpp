@@ -263,7 +263,8 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
                         proof.ended.empty() ? "" : ", ", proof.ended),
             true,
             "",
-            proof.boxes};
+            proof.boxes,
+            proof.limits};
   Certificate::Workspace searched{
       0.0,
       found.bound_for(poses) + offset,
@@ -272,11 +273,13 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
       false,
       proof.why_not};
   if (loose) {
-    searched.why_not = !proof.ended.empty() ? "the proof was " + proof.ended
-                       : proof.largest_forbidden
-                           ? "the proof counts poses that obstacles, sight or the tool's limits forbid"
-                           : "the bound of the noise is loose";
+    searched.why_not =
+        !proof.ended.empty() ? "the proof was " + proof.ended
+        : !proof.largest_forbidden_by.empty()
+            ? "the proof counts poses that are forbidden by what it does not know: " + proof.largest_forbidden_by
+            : "the bound of the noise is loose";
     searched.boxes = proof.boxes;
+    searched.limits = proof.limits;
     searched.loose_bound = proved;
   }
   return searched;

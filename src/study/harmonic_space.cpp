@@ -44,6 +44,7 @@ class StudyForm : public HarmonicForm {
       for (const ColumnFactor& factor : part.rows->factors()) part.factors.push_back({axis_for(factor)});
     for (const FormPart& part : own_) append(part);
     if (own_.size() == 1) spreads_ = own_.front().rows->spreads();
+    take_limits();
   }
 
   std::unique_ptr<Evaluator> evaluator() const override { return std::make_unique<StudyEvaluator>(*this); }
@@ -86,6 +87,10 @@ class StudyForm : public HarmonicForm {
         std::copy_n(squares_.begin(), part.rows->distances(), squares.begin() + std::ptrdiff_t(distance));
       });
     }
+    void limit_values(std::span<const double> values, std::span<double> out) override {
+      place(values);
+      form_.own_.front().part->workspace->necessary_values(q_, out);
+    }
     void complete(std::span<double> values) const override {
       for (std::size_t a = 0; a < form_.axes().size(); ++a)
         if (const HarmonicAxis& axis = form_.axes()[a]; axis.follows >= 0)
@@ -93,9 +98,12 @@ class StudyForm : public HarmonicForm {
     }
 
    private:
+    void place(std::span<const double> values) {
+      for (std::size_t i = 0; i < form_.moving_.size(); ++i) q_[form_.moving_[i]] = values[i];
+    }
     template <class Use>
     bool each(std::span<const double> values, const Use& use) {
-      for (std::size_t i = 0; i < form_.moving_.size(); ++i) q_[form_.moving_[i]] = values[i];
+      place(values);
       Eigen::Index first = 0;
       std::size_t distance = 0;
       for (std::size_t v = 0; v < form_.own_.size(); ++v) {
@@ -137,10 +145,11 @@ class StudyForm : public HarmonicForm {
     const bool linear = factor.kind == ColumnFactor::Kind::linear;
     for (const auto& [coordinate, constant, free, axis] : made_)
       if (coordinate == factor.coordinate && constant == factor.constant && free != linear) return axis;
-    const HarmonicAxis& from = axes_[std::size_t(leader)];
+    const HarmonicAxis from = axes_[std::size_t(leader)];
     if (linear)
       axes_.push_back({from.lower - factor.constant, from.upper - factor.constant, false, leader, factor.constant});
     else axes_.push_back({0.0, 2 * std::numbers::pi, true});
+    if (linear) axes_[std::size_t(leader)].counts_turns = true;
     made_.push_back({factor.coordinate, factor.constant, !linear, int(axes_.size()) - 1});
     return int(axes_.size()) - 1;
   }
@@ -181,6 +190,26 @@ class StudyForm : public HarmonicForm {
       for (std::size_t a = 0; a < moving_.size(); ++a) degrees[a] = (axes_[a].turns ? 1 : 2) * degree(a);
       distance_degrees_.push_back(std::move(degrees));
     }
+  }
+
+  /// A feasible configuration is so for every part: limits of one are enough.
+  void take_limits() {
+    const SpacePart& part = *own_.front().part;
+    limits_ = part.workspace->necessary_limits();
+    for (NecessaryLimits::OfCoordinates& limit : limits_.of_coordinates) {
+      std::vector<double> moving;
+      for (std::size_t c = 0; c < fixed_.size(); ++c)
+        if (std::find(moving_.begin(), moving_.end(), c) == moving_.end())
+          limit.constant += limit.factors[c] * fixed_[c];
+      for (std::size_t a = 0; a < moving_.size(); ++a) {
+        moving.push_back(limit.factors[moving_[a]]);
+        if (moving.back() != 0) axes_[a].counts_turns = true;
+      }
+      limit.factors = std::move(moving);
+    }
+    limit_degrees_.assign(axes_.size(), 0);
+    for (std::size_t a = 0; a < moving_.size(); ++a)
+      limit_degrees_[a] = (axes_[a].turns ? 1 : 2) * own_.front().rows->degrees()[moving_[a]];
   }
 
   struct Made {

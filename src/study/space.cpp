@@ -34,6 +34,13 @@ class StudyProbe : public ConfigurationSpace::Probe {
                                     [&](const auto& part) { return part.workspace->violation(q) < 0; });
   }
 
+  std::string forbidden_by(std::span<const double> q) override {
+    for (const SpacePart& part : parts_)
+      if (const int reason = part.workspace->violation(q); reason >= 0)
+        return part.workspace->reasons()[std::size_t(reason)];
+    return is_new(q) ? "" : "poses that are measured already";
+  }
+
   bool perhaps_feasible(std::span<const double> q) override {
     return is_new(q) &&
            std::all_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part.workspace->is_free_at(q); });

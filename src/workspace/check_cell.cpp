@@ -8,6 +8,10 @@ class CollisionCheck : public ValidityCheck {
   explicit CollisionCheck(const Collision& collision) : collision_(collision) {}
   std::vector<std::string> reasons() const override { return collision_.reasons(); }
   int violation(std::span<const double> q) const override { return collision_.violation(q); }
+  NecessaryLimits necessary_limits() const override { return collision_.necessary_limits(); }
+  void necessary_values(std::span<const double> q, std::span<double> values) const override {
+    collision_.necessary_values(q, values);
+  }
 
  private:
   const Collision& collision_;
@@ -18,6 +22,13 @@ class SightCheck : public ValidityCheck {
   SightCheck(const LineOfSight& sight, bool past_bodies) : sight_(sight), past_bodies_(past_bodies) {}
   std::vector<std::string> reasons() const override { return sight_.reasons(); }
   int violation(std::span<const double> q) const override { return sight_.violation(q, past_bodies_); }
+  /// Directions and distances alone: what stands between is not asked.
+  NecessaryLimits necessary_limits() const override {
+    return past_bodies_ ? sight_.necessary_limits() : NecessaryLimits{};
+  }
+  void necessary_values(std::span<const double> q, std::span<double> values) const override {
+    sight_.necessary_values(q, values);
+  }
 
  private:
   const LineOfSight& sight_;

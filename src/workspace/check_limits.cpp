@@ -44,6 +44,15 @@ class CoupledCheck : public SingleCheck {
     if (std::isfinite(upper_)) out[next++] = (upper_ - at) / range;
     return true;
   }
+  NecessaryLimits necessary_limits() const override {
+    NecessaryLimits limits;
+    limits.names = {"coupled joints"};
+    std::vector<double> negative;
+    for (const double factor : factors_) negative.push_back(-factor);
+    if (std::isfinite(lower_)) limits.of_coordinates.push_back({factors_, -lower_});
+    if (std::isfinite(upper_)) limits.of_coordinates.push_back({std::move(negative), upper_});
+    return limits;
+  }
 
  private:
   bool holds(std::span<const double> q) const override {

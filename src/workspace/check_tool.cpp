@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "checks.hpp"
 #include "posewright/model/readable.hpp"
 #include "posewright/support/dense.hpp"
@@ -39,6 +41,22 @@ class ToolBoxCheck : public SingleCheck {
  public:
   ToolBoxCheck(const IdentificationModel& model, ToolBoxSpec box)
       : SingleCheck("tool outside its box"), model_(model), box_(std::move(box)) {}
+
+  NecessaryLimits necessary_limits() const override {
+    NecessaryLimits limits;
+    limits.names = {"tool box"};
+    limits.values = 3;
+    const ToolBoxSpec everywhere;
+    for (int i = 0; i < limits.values; ++i) {
+      if (box_.lower[i] > everywhere.lower[i]) limits.of_points.push_back({i, 1.0, -box_.lower[i]});
+      if (box_.upper[i] < everywhere.upper[i]) limits.of_points.push_back({i, -1.0, box_.upper[i]});
+    }
+    return limits;
+  }
+  void necessary_values(std::span<const double> q, std::span<double> values) const override {
+    const Eigen::Vector3d p = model_.tool_pose(q) * box_.point;
+    std::copy_n(p.data(), 3, values.begin());
+  }
 
  private:
   bool holds(std::span<const double> q) const override {

@@ -25,6 +25,20 @@ using Space = ob::RealVectorStateSpace;
 // Beyond this, more room is no better.
 constexpr double most_clearance = 0.3;  // m
 
+/// @return how many values came in
+std::size_t append(const NecessaryLimits& own, NecessaryLimits& all) {
+  for (NecessaryLimits::OfPoints limit : own.of_points) {
+    limit.value += all.values;
+    if (limit.square >= 0) limit.square += all.values;
+    all.of_points.push_back(limit);
+  }
+  for (const std::string& name : own.names)
+    if (std::find(all.names.begin(), all.names.end(), name) == all.names.end()) all.names.push_back(name);
+  all.of_coordinates.insert(all.of_coordinates.end(), own.of_coordinates.begin(), own.of_coordinates.end());
+  all.values += own.values;
+  return std::size_t(own.values);
+}
+
 class FeasibilityChecker : public ob::StateValidityChecker {
  public:
   FeasibilityChecker(const ob::SpaceInformationPtr& space, Checks checks, const Collision* collision)
@@ -37,6 +51,7 @@ class FeasibilityChecker : public ob::StateValidityChecker {
         reasons_of_check_.back().push_back(int(known - reasons_.begin()));
         if (known == reasons_.end()) reasons_.push_back(reason);
       }
+      values_of_check_.push_back(append(check->necessary_limits(), necessary_));
     }
   }
 
@@ -82,10 +97,22 @@ class FeasibilityChecker : public ob::StateValidityChecker {
     return true;
   }
 
+  const NecessaryLimits& necessary_limits() const { return necessary_; }
+
+  void necessary_values(std::span<const double> q, std::span<double> out) const {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < checks_.size(); ++i) {
+      if (values_of_check_[i] > 0) checks_[i]->necessary_values(q, out.subspan(first, values_of_check_[i]));
+      first += values_of_check_[i];
+    }
+  }
+
   const std::vector<std::string>& reasons() const { return reasons_; }
 
  private:
   Checks checks_;
+  NecessaryLimits necessary_;
+  std::vector<std::size_t> values_of_check_;
   const Collision* collision_;
   std::vector<std::vector<int>> reasons_of_check_;  // as indices into all
   std::vector<std::string> reasons_;
@@ -207,6 +234,12 @@ std::optional<int> Workspace::margins() const { return implementation_->checker-
 
 bool Workspace::margins_at(std::span<const double> q, std::span<double> out) const {
   return implementation_->checker->margins_at(q, out);
+}
+
+const NecessaryLimits& Workspace::necessary_limits() const { return implementation_->checker->necessary_limits(); }
+
+void Workspace::necessary_values(std::span<const double> q, std::span<double> values) const {
+  implementation_->checker->necessary_values(q, values);
 }
 
 bool Workspace::on_boundary(std::span<const double> q, double actuator_share) const {

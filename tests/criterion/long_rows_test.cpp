@@ -57,9 +57,10 @@ TEST_P(LongRows, TheChosenSwapIsThatOfTryingAllHoweverManyCameBefore) {
   for (int pass = 0; pass < 3; ++pass)
     for (int position = 0; position < poses; ++position) {
       const Swap swap = state->best_swap(position, 1e-10);
-      if ((position + pass) % 11 == 0)
+      if ((position + pass) % 11 == 0) {
         ASSERT_NEAR(swap.enter < 0 ? 0.0 : swap.gain, best_gain(*state, position), 1e-9)
             << "pass " << pass << ", position " << position << ", swaps " << taken;
+      }
       if (swap.enter < 0) continue;
       const double before = state->value();
       state->apply(position, swap.enter);

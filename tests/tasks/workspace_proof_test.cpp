@@ -73,7 +73,28 @@ struct Kind {
   bool turns = false;    ///< all its joints
   bool follows = false;  ///< the last joint follows the first
   int joints = 0;        ///< 0: any number
+  /// What else of the workspace is limited, about a place of the tip: words of the problem file.
+  std::string (*limits)(const Eigen::Isometry3d&, Random&) = nullptr;
 };
+
+std::string tool_box(const Eigen::Isometry3d& X, Random& random) {
+  std::string text = ", tool: {";
+  for (int i = 0; i < 3; ++i) {
+    const double at = X.translation()[i];
+    text += fmt::format("{}{}: [{}, {}]", i > 0 ? ", " : "", "xyz"[i], at - random.uniform(0.001, 0.2),
+                        at + random.uniform(0.001, 0.2));
+  }
+  return text + "}";
+}
+
+/// Seen from the tracker's station: at that place with room to spare.
+std::string sight(const Eigen::Isometry3d& X, Random& random) {
+  const Eigen::Vector3d way = Eigen::Vector3d(3, 1, 0.5) - X.translation();
+  const Eigen::Vector3d normal = X.linear().transpose() * way.normalized();
+  return fmt::format(", line_of_sight: {{range: [{}, {}], acceptance: {} deg, normals: {{\"*\": [{}, {}, {}]}}}}",
+                     way.norm() - random.uniform(0.5, 0.8), way.norm() + random.uniform(0.5, 0.8),
+                     random.uniform(25, 40), normal.x(), normal.y(), normal.z());
+}
 
 std::vector<Kind> kinds() {
   const std::string isotropic = "device: {type: isotropic, noise: 0.1 mm}";
@@ -90,6 +111,8 @@ std::vector<Kind> kinds() {
       {"two stations", "", tracker + ", B: [-2, -3, 1]}}", "station.B.x, ", true},
       {"noise of the joints", ", encoder_noise: 0.0003", isotropic, "", false},
       {"gear", "", isotropic, "j0.gear, ", false},
+      {"points in a box", "", isotropic, "", true, false, false, 0, tool_box},
+      {"tracker that sees some", "", tracker + "}}", "", true, false, false, 0, sight},
       {"position", "", "type: position\n  target: [0.1, 0.05, -0.02]\n  " + isotropic, "", true},
       {"pose", "", "type: pose\n  device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.01 deg}}", "", true},
       {"distances", "",
@@ -109,6 +132,7 @@ struct RandomArm {
   std::unique_ptr<IdentificationModel> model;
   std::unique_ptr<Workspace> workspace;
   Problem problem;
+  std::vector<double> inside;  // feasible
   std::vector<int> selected;
   Eigen::MatrixXd scale, factor;  // R of the columns, T of d(q) = ‖J(q) R⁻¹ T‖²
 
@@ -118,13 +142,17 @@ struct RandomArm {
                          random.uniform(-size, size));
     };
     std::string text = "<robot name=\"chain\"><link name=\"base\"/>", parent = "base", joints;
+    // What a gear adds is another number a turn further.
+    const bool several_turns = kind.name == "gear" && random.uniform() < 0.5;
     const int count = kind.joints > 0 ? kind.joints : (kind.follows ? 2 : 1) + random.index(kind.turns ? 2 : 4);
     for (int k = 0; k < count; ++k) {
       const std::string child = fmt::format("l{}", k);
       // Effects of joints are of the first, and of one that turns.
       const bool turns = random.uniform() < 0.7 || (k == 0 && !kind.robot.empty()) || kind.turns;
       const bool follows = kind.follows && k == count - 1;
-      const double middle = random.uniform(-2, 2), half = random.uniform(0.05, turns ? 0.5 : 0.2);
+      const double middle = random.uniform(-2, 2), half = several_turns && k == 0 && turns
+                                                              ? random.uniform(3.3, 6.0)
+                                                              : random.uniform(0.05, turns ? 0.5 : 0.2);
       text += fmt::format(
           "<link name=\"{0}\"/><joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/><origin "
           "xyz=\"{4}\" rpy=\"{5}\"/><axis xyz=\"{6}\"/><limit lower=\"{7}\" upper=\"{8}\" effort=\"1\" "
@@ -139,13 +167,21 @@ struct RandomArm {
     const std::string points =
         fmt::format("type: points\n  targets: {{A: [{}, {}, 0.1], B: [{}, 0.05, {}]}}\n  ", random.uniform(-0.3, 0.3),
                     random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
-    problem = read_problem(
-        folder.write("p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot + "}\nmeasurement:\n  " +
-                                   (kind.measurement.starts_with("type") ? "" : points) + kind.measurement +
-                                   "\nvariants: {v: {parameters: [" + joints + kind.columns +
-                                   "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}}\n"));
+    const std::string before = "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot + "}\nmeasurement:\n  " +
+                               (kind.measurement.starts_with("type") ? "" : points) + kind.measurement +
+                               "\nvariants: {v: {parameters: [" + joints + kind.columns +
+                               "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}";
+    problem = read_problem(folder.write("p.yaml", before + "}\n"));
     model = make_model(problem);
-    workspace = std::make_unique<Workspace>(*model, problem, nullptr);
+    for (const Coordinate& c : model->coordinates())
+      inside.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+    std::shared_ptr<const Cell> cell;
+    if (kind.limits != nullptr) {
+      problem = read_problem(folder.write("p.yaml", before + kind.limits(model->tool_pose(inside), random) + "}\n"));
+      model = make_model(problem);
+      if (problem.workspace.line_of_sight) cell = make_cell(problem);
+    }
+    workspace = std::make_unique<Workspace>(*model, problem, cell);
     selected = select_columns(*model, problem, problem.variants.front()).selected;
     const auto m = Eigen::Index(selected.size());
     // Columns of very different size, as units and tolerances make them: rounding has its chance.
@@ -179,8 +215,9 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     const auto probe = space->probe();
     BlockArray block(1, rows, m);
     // Dense sampling, its best taken uphill by ever smaller random steps.
-    double largest = 0;
-    std::vector<double> best, q;
+    ASSERT_TRUE(probe->feasible(arm.inside));
+    double largest = arm.sensitivity(*probe, arm.inside, block);
+    std::vector<double> best = arm.inside, q;
     const auto& axes = arm.workspace->coordinates();
     for (int sample = 0; sample < 1200; ++sample) {
       const double reach = sample < 600 ? 1.0 : std::pow(0.98, sample - 600);
@@ -195,6 +232,7 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
                                        : best[k] + reach * width * random.normal();
         q.push_back(std::clamp(at, axes[k].lower, axes[k].upper));
       }
+      if (!probe->feasible(q)) continue;
       const double d = arm.sensitivity(*probe, q, block);
       if (d > largest) largest = d, best = q;
     }
@@ -317,13 +355,42 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
   EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
 }
 
+TEST_F(WorkspaceProofs, CountsTheToolBoxAndSaysSo) {
+  const Plan free = plan_problem(arm(), {}, Monitor{});
+  const std::string box = ", tool: {x: [0.9, 1.2], y: [-0.2, 0.2]}";
+  const Problem problem = arm("", "q1.offset, q2.offset, tool.x", box);
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the limits of joints and tool box"));
+  // The best on a grid of what the box allows is below the bound and not far.
+  std::vector<std::vector<double>> grid;
+  for (int i = 0; i <= 400; ++i)
+    for (int j = 0; j <= 400; ++j) {
+      const double q1 = -2 + i / 100.0, q2 = -2 + j / 100.0;
+      const double x = std::cos(q1) + 0.8 * std::cos(q1 + q2), y = std::sin(q1) + 0.8 * std::sin(q1 + q2);
+      if (x >= 0.9 && x <= 1.2 && std::abs(y) <= 0.2) grid.push_back({q1, q2});
+    }
+  PlanOptions options;
+  options.candidates_from = given_poses(problem, grid);
+  options.repeats = Repeats{Repeats::any_number};
+  const Plan on_grid = plan_problem(problem, options, Monitor{});
+  EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
+  EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.02 * 3);
+  EXPECT_LT(plan.certificate.workspace->bound, free.certificate.workspace->bound);
+}
+
 TEST_F(WorkspaceProofs, OfPosesThatSomethingForbidsIsLooseAndSaysSo) {
   const Plan free = plan_problem(arm(), {}, Monitor{});
   const Plan plan =
-      plan_problem(arm("", "q1.offset, q2.offset, tool.x", ", tool: {x: [0.9, 1.2], y: [-0.2, 0.2]}"), {}, Monitor{});
+      plan_problem(arm("", "q1.offset, q2.offset, tool.x",
+                       ", collision: {tool: [{name: ball, sphere: 0.05}], obstacles: [{name: west, box: "
+                       "[2, 6, 1], at: [-0.2, 0, 0]}, {name: east, box: [1, 6, 1], at: [1.75, 0, 0]}, "
+                       "{name: north, box: [4, 2, 1], at: [0, 1.3, 0]}, {name: south, box: [4, 2, 1], at: "
+                       "[0, -1.3, 0]}]}"),
+                   {}, Monitor{});
   ASSERT_TRUE(plan.certificate.workspace);
   EXPECT_FALSE(plan.certificate.workspace->proved);
-  EXPECT_THAT(plan.certificate.workspace->why_not, HasSubstr("forbid"));
+  EXPECT_THAT(plan.certificate.workspace->why_not, HasSubstr("forbidden by what it does not know: collision with "));
   ASSERT_TRUE(plan.certificate.workspace->loose_bound);
   EXPECT_GE(*plan.certificate.workspace->loose_bound, plan.log_det);
   EXPECT_LT(plan.log_det, free.log_det);

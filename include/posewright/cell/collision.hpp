@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/necessary_limits.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
 
@@ -51,6 +52,9 @@ class Collision {
 
   /// Index into reasons() of what q collides with, or −1. Bodies keep their clearance, and half a millimetre more.
   int violation(std::span<const double> q) const;
+  /// What is nowhere negative where violation() is −1: balls within bodies are above half spaces.
+  NecessaryLimits necessary_limits() const;
+  void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// "link_3 and table" for the first pair that is too near; empty if q is free.
   std::string colliding(std::span<const double> q) const;
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "posewright/blocks/necessary_limits.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/problem/problem.hpp"
@@ -48,6 +49,10 @@ class LineOfSight : public Visibility {
   const std::vector<std::string>& reasons() const { return reasons_; }
   /// −1 where as many targets are visible as must be; else the reason that hides the first hidden one.
   int violation(std::span<const double> q, bool past_bodies = true) const;
+  /// What is nowhere negative where violation() is −1: ranges, angles and cones of single targets where all must be
+  /// seen, of the targets' mean with room for their distances from it where some are enough (theory.md eq. (59)).
+  NecessaryLimits necessary_limits() const;
+  void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// Every target from one station, also where q belongs to another.
   std::vector<Sight> sights(std::span<const double> q, int station) const;
   /// Whether the problem asks for line of sight; else every target counts as visible.
@@ -73,6 +78,12 @@ class LineOfSight : public Visibility {
  private:
   struct Bundle;
   struct Looked;
+  /// A place whose sight is necessary.
+  struct Place {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  // frame of the targets
+    std::optional<Eigen::Vector3d> normal{};
+    double room = 0.0;  // m, to a target that must be seen
+  };
   struct Target {
     std::string name;
     Eigen::Vector3d position;
@@ -90,6 +101,8 @@ class LineOfSight : public Visibility {
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
               bool on_tip, bool past_bodies) const;
   int hidden_by(const Sight& sight) const;
+  void take_necessary_places();
+  void add_limits_of(const Place& place, NecessaryLimits& limits) const;
   Bundle bundle() const;
   double distance_to(const Bundle& bundle, Random& random) const;
   Eigen::Isometry3d station_before_targets(const Eigen::Isometry3d& X_Station, Random& random) const;
@@ -103,6 +116,8 @@ class LineOfSight : public Visibility {
   std::vector<std::string> station_names_, reasons_;
   std::vector<Eigen::Isometry3d> X_CarrierStation_;
   std::vector<Target> targets_, references_;
+  std::vector<Place> places_;
+  std::vector<Eigen::Vector3d> azimuth_sides_;  // station frame
   Eigen::Isometry3d X_CarrierTarget_ = Eigen::Isometry3d::Identity();
   bool judges_ = false;
   bool station_on_tip_ = false, targets_on_tip_ = true, all_stations_ = false;

@@ -31,11 +31,18 @@ class Solid {
   virtual bool holds(const Eigen::Vector3d& point) const = 0;
   /// Points whose convex hull has the solid in it: corners, or vertices of a mesh. Empty for a half space.
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
+  /// Unit normal of a half space n · p ≤ 0, own frame.
+  virtual std::optional<Eigen::Vector3d> plane() const { return std::nullopt; }
+  /// A ball that is in the solid's convex hull.
+  const Eigen::Vector3d& inner_centre() const { return inner_centre_; }
+  double inner_radius() const { return inner_radius_; }
 
  protected:
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double radius_ = 0.0;
   std::vector<Eigen::Vector3d> corners_;
+  Eigen::Vector3d inner_centre_ = Eigen::Vector3d::Zero();
+  double inner_radius_ = 0.0;
 };
 
 /// Meshes are surfaces; closed ones count as solid. Throws std::invalid_argument if nothing is left of a mesh.

@@ -89,10 +89,11 @@ struct Certificate {
   std::string repeats = "forbid";      ///< what the bound allows: forbid, allow or a number
   struct Workspace {
     double efficiency = 0.0, bound = 0.0, max_sensitivity_ratio = 1.0;
-    std::string method;   ///< how the largest sensitivity was sought
-    bool proved = false;  ///< no plan within the limits exceeds the bound; else a search says so
-    std::string why_not;  ///< why it is not proved
-    long boxes = 0;       ///< that a proof took
+    std::string method;                 ///< how the largest sensitivity was sought
+    bool proved = false;                ///< no plan within the limits exceeds the bound; else a search says so
+    std::string why_not;                ///< why it is not proved
+    long boxes = 0;                     ///< that a proof took
+    std::vector<std::string> limits{};  ///< what a proof counts beside the joints' limits: "tool box"
     /// A proof far below what the search says: it holds all the same.
     std::optional<double> loose_bound{};
     double loose_efficiency = 0.0;

@@ -34,6 +34,8 @@ class ConfigurationSpace {
    public:
     virtual ~Probe() = default;
     virtual bool feasible(std::span<const double> q) = 0;
+    /// What forbids q, for people; empty: it is feasible.
+    virtual std::string forbidden_by(std::span<const double> q) { return feasible(q) ? "" : "something"; }
     /// Whether what is quickly checked allows q: true wherever feasible() is. For searches that end up elsewhere.
     virtual bool perhaps_feasible(std::span<const double> q) { return feasible(q); }
     /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False

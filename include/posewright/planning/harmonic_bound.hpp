@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,8 @@
 #include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
+
+class HarmonicLimits;
 
 /// Largest value of one function over its axes' limits (theory.md eq. (37)). Stops as largest_value() of boxes.
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
@@ -32,6 +35,7 @@ class HarmonicSensitivity {
   /// Throws nothing of its own: defined() says whether all is as the form says, and nothing stopped it.
   HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T, const HarmonicDegrees& squares,
                       std::uint64_t seed, int threads, const Monitor& monitor);
+  ~HarmonicSensitivity();
 
   /// Coefficients of a form's tensors together: what memory and a box's time go with.
   static double cost(const HarmonicForm& form, const HarmonicDegrees& squares);
@@ -63,10 +67,10 @@ class HarmonicSensitivity {
   };
   void take_distances(const Places& places, int threads);
   void take_part(std::size_t k, const HarmonicFunction& bound);
-  bool compare(const HarmonicFunction& f, const Places& places, const std::vector<double>& values, double& error) const;
 
   const HarmonicForm& form_;
   const Eigen::MatrixXd& T_;
+  std::unique_ptr<const HarmonicLimits> limits_;
   std::vector<int> degrees_;                ///< of all tensors
   std::vector<int> low_degrees_;            ///< of ‖B_k T‖² of all parts
   std::vector<int> distance_degrees_;       ///< of r, δ and the multiplier

@@ -7,6 +7,7 @@
 
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/blocks/harmonic_parts.hpp"
+#include "posewright/blocks/necessary_limits.hpp"
 #include "posewright/planning/harmonic_function.hpp"
 
 namespace posewright {
@@ -25,6 +26,8 @@ class HarmonicForm {
     virtual bool rows(std::span<const double> values, BlockArray::RowMatrix& B) = 0;
     /// Squares of the distances that factors depend on, m².
     virtual void distances(std::span<const double> values, std::span<double> squares) = 0;
+    /// What the form's limits are made of: as many as limits().values.
+    virtual void limit_values(std::span<const double>, std::span<double>) {}
     /// All values at the axes that move, followed by those of axes that follow: what a configuration means.
     virtual void complete(std::span<double> values) const = 0;
   };
@@ -38,6 +41,10 @@ class HarmonicForm {
   const std::vector<std::vector<int>>& distance_degrees() const { return distance_degrees_; }
   /// How far each squared distance may be from the mean of all; empty: not known.
   const std::vector<DistanceSpread>& spreads() const { return spreads_; }
+  /// What is nowhere negative where a configuration is feasible; factors of coordinates are of the axes that move.
+  const NecessaryLimits& limits() const { return limits_; }
+  /// Of the values of limits along an axis, if they are as they should be.
+  const std::vector<int>& limit_degrees() const { return limit_degrees_; }
   int columns() const { return columns_; }
   virtual std::unique_ptr<Evaluator> evaluator() const = 0;
   /// The space's configuration at values of the axes.
@@ -50,6 +57,8 @@ class HarmonicForm {
   std::vector<HarmonicPart> parts_;
   std::vector<std::vector<int>> degrees_, distance_degrees_;
   std::vector<DistanceSpread> spreads_;
+  NecessaryLimits limits_;
+  std::vector<int> limit_degrees_;
   int columns_ = 0;
 };
 

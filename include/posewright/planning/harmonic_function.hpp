@@ -14,6 +14,8 @@ struct HarmonicAxis {
   /// A number that follows another axis: whatever it is there, it is between follow(lower, upper) of that axis' part.
   int follows = -1;
   double shift = 0.0;  ///< it is that axis less this
+  /// An angle a turn further is another place: a number follows it, or a limit of coordinates has it.
+  bool counts_turns = false;
 };
 
 /// A function that is a trigonometric polynomial of some degree D in every angle and a polynomial of degree D in every

@@ -39,13 +39,15 @@ struct WorkspaceBoundOptions {
 
 /// Whether the largest d over the limits of the workspace is proved.
 struct WorkspaceProof {
-  std::string why_not;               ///< empty: it is proved
-  double max_ratio = 1.0;            ///< no d within the limits exceeds it times h
-  double bound = 0.0;                ///< Φ(w) + h ln(max_ratio)
-  long boxes = 0;                    ///< that it took
-  std::string ended{};               ///< why not more of them; empty: they were enough
-  std::vector<double> largest_at{};  ///< configuration of the largest d found on the way, feasible or not
-  bool largest_forbidden = false;    ///< something forbids it: obstacles, sight, limits of the tool
+  std::string why_not;                ///< empty: it is proved
+  double max_ratio = 1.0;             ///< no d within the limits exceeds it times h
+  double bound = 0.0;                 ///< Φ(w) + h ln(max_ratio)
+  long boxes = 0;                     ///< that it took
+  std::string ended{};                ///< why not more of them; empty: they were enough
+  std::vector<std::string> limits{};  ///< what is counted beside the joints' limits: "tool box"
+  /// Configuration of the largest d found on the way; limits that the space knows allow it, other checks may not.
+  std::vector<double> largest_at{};
+  std::string largest_forbidden_by{};  ///< what forbids it, as in the table of rejections; empty: it is feasible
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/necessary_limits.hpp"
+
 namespace posewright {
 
 /// One constraint on configurations. Members are const and may run in several threads at once.
@@ -20,6 +22,10 @@ class ValidityCheck {
   virtual std::optional<int> margins() const { return std::nullopt; }
   /// These functions at q, in units of the range that each has; false if they have no value there.
   virtual bool margins_at(std::span<const double>, std::span<double>) const { return true; }
+  /// What is nowhere negative where it holds, as far as it is known.
+  virtual NecessaryLimits necessary_limits() const { return {}; }
+  /// Its values at q.
+  virtual void necessary_values(std::span<const double>, std::span<double>) const {}
   /// Whether it follows motions, and so takes a hundred times as long as checks of one configuration.
   virtual bool follows_motions() const { return false; }
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/necessary_limits.hpp"
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
@@ -49,6 +50,9 @@ class Workspace {
   /// Those of all checks together, none if one has none (ValidityCheck::margins()).
   std::optional<int> margins() const;
   bool margins_at(std::span<const double> q, std::span<double> out) const;
+  /// Those of all checks together (ValidityCheck::necessary_limits()).
+  const NecessaryLimits& necessary_limits() const;
+  void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// Null if there is none.
   const Cell* cell() const;
   /// Whether collisions or sights constrain configurations: checks then cost much more.

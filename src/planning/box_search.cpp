@@ -25,6 +25,9 @@ void each_field(Box& box, Found& found, const Visit& visit) {
   visit(found.value);
   visit(found.where);
   visit(found.function);
+  visit(found.refuting.value);
+  visit(found.refuting.where);
+  visit(found.refuting.function);
 }
 
 }  // namespace
@@ -68,8 +71,10 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
       result.stopped = monitor.should_stop();
     }
     result.boxes += long(round.size());
-    for (LargestFound& one : found)
-      if (one.value > result.found.value) result.found = std::move(one);
+    for (LargestFound& one : found) {
+      if (one.refuting.value > result.found.refuting.value) result.found.refuting = std::move(one.refuting);
+      if (one.value > result.found.value) static_cast<FoundPlace&>(result.found) = std::move(one);
+    }
     for (SearchBox& box : round) {
       // What is no number bounds nothing: neither less than enough nor more.
       if (std::isnan(box.bound)) box.bound = std::numeric_limits<double>::infinity();

@@ -37,7 +37,7 @@ void put_weighted(BoxTensor& tensor, const HarmonicFunction& function, const Sea
 
 }  // namespace
 
-HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function)
+HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function, const Refutation* refutation)
     : function_(function),
       tensor_(function.form_.axes(), function.degrees_),
       multiplier_(function.form_.axes(), function.degrees_, function.distance_degrees_),
@@ -48,7 +48,10 @@ HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function)
       varied_(function.distances_.size()),
       axes_(function.terms_.size()),
       parts_(function.form_, function.T_),
-      limits_(*function.limits_, function.degrees_) {}
+      limits_(*function.limits_, function.degrees_),
+      refutation_(refutation),
+      probe_(refutation != nullptr ? refutation->space.probe() : nullptr),
+      block_(refutation != nullptr ? refutation->rows : 1, int(function.T_.rows())) {}
 
 void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
   box.bound = -std::numeric_limits<double>::infinity();
@@ -170,8 +173,20 @@ void HarmonicJudge::place(const Axis& value_of) {
   parts_.evaluator().complete(values_);
 }
 
+void HarmonicJudge::look_for_refutation(const SearchBox& box, double bound, FoundPlace& refuting) {
+  if (refutation_ == nullptr || !(bound > std::max(refutation_->above, refuting.value))) return;
+  const std::vector<double> q = function_.form_.configuration(values_);
+  if (!block_.at(*probe_, q)) return;
+  const double value = (block_.map() * function_.T_).squaredNorm();
+  if (!(value > std::max(refutation_->above, refuting.value)) || !probe_->feasible(q)) return;
+  refuting.value = value;
+  refuting.where = values_;
+  refuting.function = box.function;
+}
+
 double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
   const double value = parts_.sensitivity(values_);
+  look_for_refutation(box, value, found.refuting);
   if (value > found.value && limits_.allow(values_, parts_.evaluator())) {
     found.value = value;
     found.where = values_;

@@ -38,8 +38,8 @@ class FunctionJudge : public BoxJudge {
 /// Judges each box by its own function.
 class JudgeOfSeveral : public BoxJudge {
  public:
-  explicit JudgeOfSeveral(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
-    for (const auto& f : functions) judges_.push_back(f->judge());
+  JudgeOfSeveral(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions, const Refutation* refutation) {
+    for (const auto& f : functions) judges_.push_back(f->judge(refutation));
   }
   void judge(SearchBox& box, double enough, LargestFound& found) override {
     judges_[std::size_t(box.function)]->judge(box, enough, found);
@@ -53,7 +53,9 @@ class JudgeOfSeveral : public BoxJudge {
 
 std::vector<SearchBox> HarmonicSensitivity::first_boxes() const { return parts_of_everything(form_.axes(), degrees_); }
 
-std::unique_ptr<BoxJudge> HarmonicSensitivity::judge() const { return std::make_unique<HarmonicJudge>(*this); }
+std::unique_ptr<BoxJudge> HarmonicSensitivity::judge(const Refutation* refutation) const {
+  return std::make_unique<HarmonicJudge>(*this, refutation);
+}
 
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
                               const Monitor& monitor) {
@@ -63,7 +65,7 @@ BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchO
 }
 
 BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
-                              const BoxSearchOptions& options, const Monitor& monitor) {
+                              const BoxSearchOptions& options, const Monitor& monitor, const Refutation* refutation) {
   std::vector<SearchBox> first;
   for (std::size_t f = 0; f < functions.size(); ++f)
     for (SearchBox& box : functions[f]->first_boxes()) {
@@ -71,7 +73,7 @@ BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitiv
       first.push_back(std::move(box));
     }
   return largest_value(
-      std::move(first), [&] { return std::make_unique<JudgeOfSeveral>(functions); }, options, monitor);
+      std::move(first), [&] { return std::make_unique<JudgeOfSeveral>(functions, refutation); }, options, monitor);
 }
 
 }  // namespace posewright

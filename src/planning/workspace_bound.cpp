@@ -239,6 +239,10 @@ WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign
   for (const int i : on_candidates.weighted())
     weights.start.push_back(
         int(std::lower_bound(pool.original.begin(), pool.original.end(), i) - pool.original.begin()));
+  if (!options.known.empty()) {
+    for (std::size_t i = 0; i < options.known.size(); ++i) weights.start.push_back(int(pool.blocks.count() + i));
+    append(pool, options.known, *probe);
+  }
   const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
   const bool look_into_boxes = blocks.count() >= few_candidates && options.proof.seconds != 0.0 && !space.is_box() &&
                                space.enclosure(Eigen::MatrixXd::Identity(blocks.columns(), 1)) != nullptr;

@@ -122,6 +122,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
     return;
   }
   if (options.proof.seconds && boxes_alone) own.end_within(*options.proof.seconds);
+  proof.limits = forms.forms.front()->limits().names;
   BoxSearchOptions limits;
   limits.shared =
       std::any_of(functions.begin(), functions.end(), [](const auto& f) { return double(f->size()) > shared_box; });
@@ -134,8 +135,12 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
     limits.enough = result.degree * (1 + *options.proof.gap) - extra;
     limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
   }
-  const BoxSearchResult most = largest_value(functions, limits, own);
-  proof.limits = forms.forms.front()->limits().names;
+  const double searched = (result.max_ratio * result.degree - extra) * (1 + options.tolerance);
+  // What is largest within limits has no box of its own: a bound that is hardly larger than what searches found is as
+  // good as any.
+  if (!proof.limits.empty()) limits.enough = std::max(limits.enough, searched);
+  const Refutation refutation{space, rows, searched};
+  const BoxSearchResult most = largest_value(functions, limits, own, &refutation);
   proof.boxes = most.boxes;
   if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
@@ -146,6 +151,8 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
   proof.bound = result.value + result.degree * std::log(proof.max_ratio);
+  if (const FoundPlace& refuting = most.found.refuting; !refuting.where.empty())
+    proof.refuted_by = forms.forms[std::size_t(refuting.function)]->configuration(refuting.where);
   if (most.found.where.empty()) return;
   proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
   proof.largest_forbidden_by = space.probe()->forbidden_by(proof.largest_at);

@@ -355,7 +355,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.stopped = approximate.stopped || result.design.stopped;
   // Last, so that whoever stops it has his plan.
   if (workspace && request.prove)
-    prove_workspace(*workspace, *space, joined.blocks.count(), joined.blocks.rows(), options, monitor);
+    settle_workspace(*workspace, joined.blocks, approximate, function, *space, options, monitor);
   result.references = joined.references;
   // Only where the certificate counts them (below): a plan that takes others is not judged by it.
   if (workspace && share > 0 && !result.design.added.empty()) result.support = workspace->support;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "posewright/criterion/determinant.hpp"
 #include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant.hpp"
@@ -202,7 +203,7 @@ struct RandomArm {
 TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
   const char* wanted = std::getenv("POSEWRIGHT_RANDOM_ARMS");
   const int arms = wanted != nullptr ? std::atoi(wanted) : 140;
-  int wide = 0, refused = 0, loose = 0;
+  int wide = 0, refused = 0, loose = 0, refuted = 0;
   const std::vector<Kind> all = kinds();
   for (int i = 0; i < arms; ++i) {
     Random random(23, std::uint64_t(i));
@@ -255,6 +256,11 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     }
     ASSERT_EQ(result.proof.why_not, "") << "arm " << i;
     EXPECT_GE(result.proof.max_ratio * result.degree, largest * (1 - 1e-12)) << "arm " << i;
+    if (const auto& refuting = result.proof.refuted_by; !refuting.empty()) {
+      EXPECT_TRUE(probe->feasible(refuting));
+      EXPECT_GT(arm.sensitivity(*probe, refuting, block), result.degree);
+      refuted += 1;
+    }
     wide += int(kind.tight && result.proof.max_ratio * result.degree > 1.005 * largest);
     if (kind.tight) {
       EXPECT_LT(result.proof.max_ratio * result.degree, 20 * largest) << "arm " << i;
@@ -265,6 +271,8 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
   EXPECT_LT(wide, arms / 20);
   EXPECT_LT(refused, arms / 7);
   EXPECT_LT(loose, arms / 100);
+  // The weight on one place is never optimal: a feasible configuration says so.
+  EXPECT_GT(refuted, arms / 2);
 }
 
 TEST_F(WorkspaceProofs, NoColumnOfAnElasticArmIsFartherFromItsExpansionThanStated) {
@@ -353,6 +361,38 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
   // A turn of each visit moves the tip by what it points at; a camera divides by the distance.
   EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("turns of each visit"));
   EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
+}
+
+TEST_F(WorkspaceProofs, TakesWhatRefutesItIntoTheWeights) {
+  const Problem problem = arm();
+  const auto model = make_model(problem);
+  const Workspace workspace(*model, problem);
+  const std::vector<int> selected = select_columns(*model, problem, problem.variants.front()).selected;
+  const int m = int(selected.size()), rows = model->block_rows(selected);
+  Configurations candidates;
+  candidates.dimension = 2;
+  Random random(3, 1);
+  for (int i = 0; i < 80; ++i) candidates.values.push_back(random.uniform(-0.3, 0.3));
+  const auto space = make_configuration_space({{model.get(), &workspace, selected, {}}}, candidates, {}, {},
+                                              Eigen::MatrixXd::Identity(m, m));
+  BlockArray blocks(candidates.count(), rows, m);
+  const auto probe = space->probe();
+  for (std::size_t i = 0; i < candidates.count(); ++i) probe->block(candidates[i], blocks.row(i, 0), blocks.stride());
+  const LogDetFunction log_det(0, m);
+  const ApproximateDesign design = solve_approximate_design(blocks, log_det, {}, Monitor{});
+  WorkspaceBoundOptions options;
+  // Searches that hardly look: all that is good they miss.
+  options.starts = 1;
+  options.evaluations = 4;
+  options.rounds = 1;
+  WorkspaceBound once = workspace_bound(blocks, design, log_det, *space, options, Monitor{}), settled = once;
+  prove_workspace(once, *space, blocks.count(), rows, options, Monitor{});
+  ASSERT_FALSE(once.proof.refuted_by.empty());
+  settle_workspace(settled, blocks, design, log_det, *space, options, Monitor{});
+  ASSERT_EQ(settled.proof.why_not, "");
+  EXPECT_LT(settled.proof.bound, once.proof.bound - 0.1);
+  EXPECT_GT(settled.value, once.value);
+  EXPECT_GE(settled.proof.bound, settled.value);
 }
 
 TEST_F(WorkspaceProofs, CountsTheToolBoxAndSaysSo) {

@@ -18,11 +18,15 @@ struct SearchBox {
   bool operator<(const SearchBox& other) const { return bound < other.bound; }
 };
 
-/// Largest value found so far, and where.
-struct LargestFound {
+struct FoundPlace {
   double value = -std::numeric_limits<double>::infinity();
-  std::vector<double> where;
+  std::vector<double> where{};
   int function = 0;
+};
+
+/// Largest value found so far, and where.
+struct LargestFound : FoundPlace {
+  FoundPlace refuting{};  ///< the largest of those that a judge is told to look for beside it
 };
 
 /// Bounds a function on boxes. One a thread.

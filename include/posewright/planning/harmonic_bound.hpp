@@ -12,7 +12,15 @@
 
 namespace posewright {
 
+class ConfigurationSpace;
 class HarmonicLimits;
+
+/// What refutes a proof: feasible configurations whose own d = ‖J T‖² is above a limit.
+struct Refutation {
+  const ConfigurationSpace& space;
+  int rows = 0;  ///< of a block
+  double above = 0.0;
+};
 
 /// Largest value of one function over its axes' limits (theory.md eq. (37)). Stops as largest_value() of boxes.
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
@@ -44,7 +52,8 @@ class HarmonicSensitivity {
   /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.
   bool defined() const { return defined_; }
   std::vector<SearchBox> first_boxes() const;
-  std::unique_ptr<BoxJudge> judge() const;
+  /// @param refutation  places that it keeps as LargestFound::refuting; null: none
+  std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const;
   std::size_t size() const { return harmonic_size(form_.axes(), degrees_); }
   std::size_t terms() const { return terms_.size(); }
 
@@ -87,6 +96,7 @@ class HarmonicSensitivity {
 
 /// Largest value of several, each over its own axes.
 BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
-                              const BoxSearchOptions& options, const Monitor& monitor);
+                              const BoxSearchOptions& options, const Monitor& monitor,
+                              const Refutation* refutation = nullptr);
 
 }  // namespace posewright

@@ -33,6 +33,7 @@ struct WorkspaceBoundOptions {
   int evaluations = 400;    ///< of one local search
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
   ProofLimits proof{};
+  std::vector<std::vector<double>> known{};  ///< configurations that take part from the beginning
   std::uint64_t seed = 0;
   int threads = 0;
 };
@@ -47,6 +48,7 @@ struct WorkspaceProof {
   std::vector<std::string> limits{};  ///< what is counted beside the joints' limits: "tool box"
   /// Configuration of the largest d found on the way; limits that the space knows allow it, other checks may not.
   std::vector<double> largest_at{};
+  std::vector<double> refuted_by{};    ///< a feasible configuration whose d exceeds h by more than the tolerance
   std::string largest_forbidden_by{};  ///< what forbids it, as in the table of rejections; empty: it is feasible
 };
 

@@ -1,0 +1,29 @@
+#include "posewright/planning/workspace_proof.hpp"
+
+namespace posewright {
+namespace {
+
+// Proofs of one plan; after the first few what they find changes nothing.
+constexpr int most_proofs = 4;
+
+}  // namespace
+
+void settle_workspace(WorkspaceBound& found, const BlockArray& blocks, const ApproximateDesign& on_candidates,
+                      const InformationFunction& function, const ConfigurationSpace& space,
+                      WorkspaceBoundOptions options, const Monitor& monitor) {
+  prove_workspace(found, space, blocks.count(), blocks.rows(), options, monitor);
+  options.known = found.support;
+  // A proof that was ended has used its work up.
+  for (int proofs = 1; proofs < most_proofs && !found.proof.refuted_by.empty() && found.proof.ended.empty(); ++proofs) {
+    options.known.push_back(found.proof.refuted_by);
+    WorkspaceBound better = workspace_bound(blocks, on_candidates, function, space, options, monitor);
+    if (better.stopped) return;
+    prove_workspace(better, space, blocks.count(), blocks.rows(), options, monitor);
+    if (!better.proof.why_not.empty() || !(better.proof.bound < found.proof.bound)) return;
+    better.proof.boxes += found.proof.boxes;
+    better.searches += found.searches;
+    found = std::move(better);
+  }
+}
+
+}  // namespace posewright

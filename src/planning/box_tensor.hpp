@@ -23,6 +23,8 @@ class BoxTensor {
   void put(const SearchBox& box, double most);
   /// The same without the quotients: coefficients with Π(1 + u²)^D in them.
   void put_weighted(const SearchBox& box, double most);
+  /// Quotients that are there already, so many along each axis, each off by `rounding` at most.
+  void take(const std::vector<double>& quotients, const std::vector<int>& terms, double rounding);
   /// Both weighted: quotients of the two functions. @return false where the other may not be above 0 in the box
   bool divide_by(const BoxTensor& other);
 

@@ -109,7 +109,7 @@ HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::
   low_degrees_ = std::move(common.low);
   affine_ = common.affine;
   places_of_low_ = places_in(form.axes(), low_degrees_, degrees_);
-  fixed_.assign(size(), 0.0);
+  fixed_.assign(std::size_t(size()), 0.0);
   const Places places(form, T, seed);
   if (affine_) multiplier_ = least_bent(form.parts(), places.squares, places.distances);
   take_distances(places, threads);

@@ -10,6 +10,7 @@
 #include "part_squares.hpp"
 #include "posewright/planning/enclosed_proof.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
+#include "posewright/planning/reading_noise_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/tasks.hpp"
 
@@ -30,6 +31,8 @@ constexpr double large_box = 1e6;
 constexpr double shared_box = 1e5;
 // A bound that is loose by more is not worth its time.
 constexpr double most_loose = 0.05;
+// One that is loose by less has no need of a matrix of its own for each box.
+constexpr double hardly_loose = 0.002;
 
 WeightedConfigurations support_of(const WorkspaceBound& found, const ConfigurationSpace& space) {
   WeightedConfigurations result{found.support, found.weights};
@@ -67,10 +70,15 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
   return direct > 0 ? bound / direct - 1 : 0.0;
 }
 
+/// What else may be said of joints' noise than one matrix for the whole workspace (theory.md eq. (61)).
+bool bounds_noise_by_boxes(const HarmonicForms& forms, double loose) {
+  return loose > hardly_loose && forms.forms.front()->random_columns() > 0;
+}
+
 /// As many boxes as the work allows.
-long most_boxes(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions) {
+long most_boxes(const std::vector<std::unique_ptr<BoundedSensitivity>>& functions) {
   double largest = 0;
-  for (const auto& f : functions) largest = std::max(largest, double(f->size()) * (1 + 0.25 * double(f->terms())));
+  for (const auto& f : functions) largest = std::max(largest, f->work());
   return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
 }
 
@@ -97,11 +105,19 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   if (forms.forms.empty() || cost > most_coefficients) proof.why_not = "more joints and effects than memory holds";
   else if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
     proof.why_not = "a quick look at fewer than 1,000 candidates";
-  if (proof.why_not.empty())
-    if (const double loose = looseness(forms, support, space, result.factor, rows); loose > most_loose)
-      proof.why_not = fmt::format(
-          "noise of the joints or of the visit, beside the instrument's, or deflections are bounded {:.0f} % too high",
-          100 * loose);
+  const double loose = proof.why_not.empty() ? looseness(forms, support, space, result.factor, rows) : 0.0;
+  const bool by_boxes = proof.why_not.empty() && bounds_noise_by_boxes(forms, loose);
+  if (by_boxes) {
+    cost = 0;
+    for (const auto& form : forms.forms) cost += ReadingNoiseSensitivity::cost(*form);
+    if (cost > most_coefficients) proof.why_not = "noise of more joints than memory holds";
+    else if (!options.proof.seconds && forms.forms.front()->axes().size() > axes_at_once)
+      proof.why_not = "large noise of the joints takes a minute to bound: --proof-time 60";
+  } else if (loose > most_loose) {
+    proof.why_not = fmt::format(
+        "noise of the joints or of the visit, beside the instrument's, or deflections are bounded {:.0f} % too high",
+        100 * loose);
+  }
   if (proof.why_not.empty() && !options.proof.seconds && grows_with_distance(forms))
     proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 300";
   if (!proof.why_not.empty()) return;
@@ -113,10 +129,15 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   // Several processes would not come to the same end of what they all compute: their time ends the boxes.
   const bool boxes_alone = several_processes(monitor);
   if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);
-  std::vector<std::unique_ptr<HarmonicSensitivity>> functions;
+  std::vector<std::unique_ptr<BoundedSensitivity>> functions;
   for (std::size_t f = 0; f < forms.forms.size(); ++f) {
-    functions.push_back(std::make_unique<HarmonicSensitivity>(*forms.forms[f], result.factor, degrees[f], options.seed,
-                                                              options.threads, own));
+    const HarmonicForm& form = *forms.forms[f];
+    if (by_boxes)
+      functions.push_back(
+          std::make_unique<ReadingNoiseSensitivity>(form, result.factor, options.seed, options.threads, own));
+    else
+      functions.push_back(
+          std::make_unique<HarmonicSensitivity>(form, result.factor, degrees[f], options.seed, options.threads, own));
     if (functions.back()->defined()) continue;
     proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
@@ -124,8 +145,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   if (options.proof.seconds && boxes_alone) own.end_within(*options.proof.seconds);
   proof.limits = forms.forms.front()->limits().names;
   BoxSearchOptions limits;
-  limits.shared =
-      std::any_of(functions.begin(), functions.end(), [](const auto& f) { return double(f->size()) > shared_box; });
+  limits.shared = std::any_of(functions.begin(), functions.end(), [](const auto& f) { return f->size() > shared_box; });
   limits.tolerance = options.tolerance;
   limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
   limits.threads = options.threads;

@@ -43,7 +43,10 @@ class StudyForm : public HarmonicForm {
     for (FormPart& part : own_)
       for (const ColumnFactor& factor : part.rows->factors()) part.factors.push_back({axis_for(factor)});
     for (const FormPart& part : own_) append(part);
-    if (own_.size() == 1) spreads_ = own_.front().rows->spreads();
+    if (own_.size() == 1) {
+      spreads_ = own_.front().rows->spreads();
+      random_columns_ = own_.front().rows->random_columns();
+    }
     take_limits();
   }
 
@@ -62,6 +65,12 @@ class StudyForm : public HarmonicForm {
       values[std::size_t(made.axis)] = made.free ? made.constant * x : x - made.constant;
     }
     return values;
+  }
+
+  Eigen::MatrixXd undivided(const Eigen::MatrixXd& T) const override {
+    const FormPart& part = own_.front();
+    const Eigen::MatrixXd own = R_.triangularView<Eigen::Upper>().solve(T).middleRows(part.first_column, part.width);
+    return part.part->mix.size() > 0 ? Eigen::MatrixXd(part.part->mix * own) : own;
   }
 
  private:
@@ -91,6 +100,11 @@ class StudyForm : public HarmonicForm {
       place(values);
       form_.own_.front().part->workspace->necessary_values(q_, out);
     }
+    bool with_random(std::span<const double> values, BlockArray::RowMatrix& B, BlockArray::RowMatrix& Z) override {
+      place(values);
+      put_factors(form_.own_.front(), values);
+      return form_.own_.front().rows->with_random(q_, factors_, *work_.front(), B, Z);
+    }
     void complete(std::span<double> values) const override {
       for (std::size_t a = 0; a < form_.axes().size(); ++a)
         if (const HarmonicAxis& axis = form_.axes()[a]; axis.follows >= 0)
@@ -108,8 +122,7 @@ class StudyForm : public HarmonicForm {
       std::size_t distance = 0;
       for (std::size_t v = 0; v < form_.own_.size(); ++v) {
         const FormPart& part = form_.own_[v];
-        factors_.clear();
-        for (std::size_t f = 0; f < part.factors.size(); ++f) factors_.push_back(form_.factor(part, f, values, q_));
+        put_factors(part, values);
         squares_.resize(std::size_t(part.rows->distances()));
         if (!part.rows->at(q_, factors_, *work_[v], own_, squares_)) return false;
         use(part, first, distance);
@@ -117,6 +130,10 @@ class StudyForm : public HarmonicForm {
         distance += squares_.size();
       }
       return true;
+    }
+    void put_factors(const FormPart& part, std::span<const double> values) {
+      factors_.clear();
+      for (std::size_t f = 0; f < part.factors.size(); ++f) factors_.push_back(form_.factor(part, f, values, q_));
     }
     bool divided(BlockArray::RowMatrix& B) const {
       form_.R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(B);

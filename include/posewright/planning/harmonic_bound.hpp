@@ -6,28 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "posewright/planning/bounded_sensitivity.hpp"
 #include "posewright/planning/box_search.hpp"
 #include "posewright/planning/factor_bound.hpp"
 #include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
 
-class ConfigurationSpace;
 class HarmonicLimits;
-
-/// What refutes a proof: feasible configurations whose own d = ‖J T‖² is above a limit.
-struct Refutation {
-  const ConfigurationSpace& space;
-  int rows = 0;  ///< of a block
-  double above = 0.0;
-};
 
 /// Largest value of one function over its axes' limits (theory.md eq. (37)). Stops as largest_value() of boxes.
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
                               const Monitor& monitor);
-
-/// Of each part k, degrees of ‖B_k T‖² along every axis.
-using HarmonicDegrees = std::vector<std::vector<int>>;
 
 /// Twice those of the part, or less where the square does not turn as high as its entries do (an arm's first joint
 /// turns all readings alike): by the harmonics along random lines. Whoever interpolates with these degrees finds out if
@@ -35,7 +25,7 @@ using HarmonicDegrees = std::vector<std::vector<int>>;
 HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed);
 
 /// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39), (56)).
-class HarmonicSensitivity {
+class HarmonicSensitivity : public BoundedSensitivity {
  public:
   /// Interpolates ‖B_k T‖² and the distances.
   /// @param T  columns × any
@@ -48,14 +38,13 @@ class HarmonicSensitivity {
   /// Coefficients of a form's tensors together: what memory and a box's time go with.
   static double cost(const HarmonicForm& form, const HarmonicDegrees& squares);
 
-  const HarmonicForm& form() const { return form_; }
+  const HarmonicForm& form() const override { return form_; }
   /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.
-  bool defined() const { return defined_; }
-  std::vector<SearchBox> first_boxes() const;
-  /// @param refutation  places that it keeps as LargestFound::refuting; null: none
-  std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const;
-  std::size_t size() const { return harmonic_size(form_.axes(), degrees_); }
-  std::size_t terms() const { return terms_.size(); }
+  bool defined() const override { return defined_; }
+  std::vector<SearchBox> first_boxes() const override;
+  std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const override;
+  double size() const override { return double(harmonic_size(form_.axes(), degrees_)); }
+  double work() const override { return size() * (1 + 0.25 * double(terms_.size())); }
 
  private:
   friend class HarmonicJudge;
@@ -93,10 +82,5 @@ class HarmonicSensitivity {
   std::optional<HarmonicFunction> multiplied_;  ///< the multiplier as a function of the axes
   bool defined_ = true;
 };
-
-/// Largest value of several, each over its own axes.
-BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
-                              const BoxSearchOptions& options, const Monitor& monitor,
-                              const Refutation* refutation = nullptr);
 
 }  // namespace posewright

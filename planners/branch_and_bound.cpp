@@ -80,7 +80,10 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
   first.use_all_time = false;  // the proof is what takes it
   Design design = ExchangePlanner().plan(task, first, monitor);
   if (task.criterion->function().degree() > 0) {
-    design.optimal = DesignTree(task, thread_count(options.threads), monitor, design).run();
+    const bool ended = DesignTree(task, thread_count(options.threads), monitor, design, options.gap).run();
+    design.optimal = ended && *design.bound <= design.value + equal_values;
+    design.stopped = !ended;
+    return design;
   } else {
     const double sets =
         number_of_sets(double(task.candidates.blocks->count()), task.poses, task.candidates.max_repeats > 1);

@@ -16,8 +16,9 @@ namespace posewright {
 class DesignTree {
  public:
   /// @param best  a design to begin with; whatever is better replaces it
-  DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best);
-  /// True if `best` is proved; else best.bound is what no design exceeds.
+  /// @param gap   PlannerOptions::gap
+  DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best, double gap = 0.0);
+  /// True if `best` is proved within the gap; best.bound is what no design exceeds.
   bool run();
 
  private:
@@ -48,6 +49,7 @@ class DesignTree {
   int threads_;
   const Monitor& monitor_;
   Design& best_;
+  double gap_, tolerance_;  // in Φ; parts that may hold what is better by no more are done
   std::vector<std::unique_ptr<NodeRelaxation>> relaxations_;       // one per thread
   std::map<std::pair<double, long>, std::unique_ptr<Node>> open_;  // by −bound, then age
   std::map<long, double> bounds_;                                  // of the open nodes, by age

@@ -15,6 +15,8 @@ namespace {
 constexpr double proof_tolerance = 1e-9;
 // Nodes split between two looks at what the others found.
 constexpr std::size_t round_size = 32;
+// Starts of a search for as many rounds: some tenth of the time where it is needed.
+constexpr long rounds_a_start = 64;
 // Open nodes hold three numbers per candidate; beyond this the newest is looked into first, which keeps them few.
 constexpr std::size_t most_open_bytes = std::size_t(512) << 20;
 
@@ -49,6 +51,7 @@ bool DesignTree::run() {
     best_.bound = std::max(best_.value + gap_, -open_.begin()->first.first);
     if (stopped) return false;
     monitor_.report({"branch and bound", double(nodes_), 0, best_.value, best_.bound, {}});
+    search_on();
     auto round = next_round();
     std::vector<Split> splits(round.size());
     for (Split& each : splits) {
@@ -65,6 +68,16 @@ bool DesignTree::run() {
   }
   best_.bound = best_.value + gap_;
   return true;
+}
+
+/// Whenever the tree has doubled.
+void DesignTree::search_on() {
+  if (search_ == nullptr || rounds_++ < next_search_) return;
+  const Design found = search_(int(next_search_ / rounds_a_start), ++searches_);
+  next_search_ *= 2;
+  if (found.value <= best_.value) return;
+  best_.value = found.value;
+  best_.members = found.members;
 }
 
 /// The open nodes to split now: best bound first, or the newest where there are too many.

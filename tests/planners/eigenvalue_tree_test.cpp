@@ -189,6 +189,29 @@ TEST(EigenvalueTree, FindsTheOptimumFromTheWorstDesignOnAnyNumberOfThreads) {
   }
 }
 
+TEST(EigenvalueTree, ASearchBesideItIsAskedForMoreStartsAsItGrowsAndItsDesignCounts) {
+  // So many nearly equal candidates that the tree is no small one.
+  const BlockArray blocks = random_blocks(100, 1, 9, 6100);
+  const auto criterion = make_criterion("o3", graded_data(9, 0));
+  DesignTask task{{&blocks, 0, 1}, criterion.get(), 14, nullptr};
+  const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+  ASSERT_TRUE(proved.optimal);
+  Design design = proved;
+  design.value = -50.0;
+  int calls = 0, before = 0;
+  DesignTree tree(task, 2, Monitor{}, design);
+  tree.search_beside([&](int starts, int call) {
+    EXPECT_EQ(call, ++calls);
+    EXPECT_GT(starts, before);
+    before = starts;
+    return proved;
+  });
+  EXPECT_TRUE(tree.run());
+  EXPECT_GE(calls, 1);
+  EXPECT_EQ(design.members, proved.members);
+  EXPECT_NEAR(design.value, proved.value, 1e-12);
+}
+
 TEST(EigenvalueTree, AGapEndsTheProofWhereNoDesignIsBetterByMore) {
   int early = 0;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {

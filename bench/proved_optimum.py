@@ -2,7 +2,7 @@
 """Time to the proved D-optimum of random rows, as in the study of Hendrych, Besançon & Pokutta (2023, arXiv:2312.11200).
 
     bench/proved_optimum.py build/release/bin/posewright [--seeds 3] [--time-limit 600]
-    bench/proved_optimum.py build/release/bin/posewright --criterion o3 --sizes 100x10x15,120x10x15 --seeds 10 --gap 1 --time-limit 3600
+    bench/proved_optimum.py build/release/bin/posewright --criterion o3 --sizes 100x10x15,120x10x15 --seeds 5 --gap 1 --time-limit 3600
 
 IND: uniform in [0, 1). CORR: normal, mean normal, covariance BᵀB of a uniform B. Nobody is chosen twice.
 """

@@ -27,7 +27,8 @@ struct RelaxedBox {
 
 /// The optimum of Φ(M0 + Σ n_i J_iᵀJ_i) over least ≤ n ≤ most, Σ n_i = N: sequential quadratic programming with exact
 /// second derivatives, from the numbers of the box around it. Every iterate also bounds the optimum (its sensitivities
-/// d_i, concavity of e^{Φ/h}), and most boxes end at the first such bound. One per thread: it keeps its memory.
+/// d_i, concavity of e^{Φ/h}), and most boxes end at the first such bound. For o3 E and its bound take their place
+/// (EigenvalueProgram), within what single rows must be like (RowInertia). One per thread: it keeps its memory.
 class NodeRelaxation {
  public:
   /// Criteria with a degree only.

@@ -80,7 +80,19 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
   first.use_all_time = false;  // the proof is what takes it
   Design design = ExchangePlanner().plan(task, first, monitor);
   if (task.criterion->function().degree() > 0) {
-    design.optimal = DesignTree(task, thread_count(options.threads), monitor, design).run();
+    DesignTree tree(task, thread_count(options.threads), monitor, design, options.gap);
+    // Where there is a smoother criterion, Φ has kinks and many local optima.
+    if (task.criterion->smoother() != nullptr)
+      tree.search_beside([&](int starts, int call) {
+        PlannerOptions more = first;
+        more.restarts = starts;
+        more.seed += std::uint64_t(call);
+        return ExchangePlanner().plan(task, more, monitor);
+      });
+    const bool ended = tree.run();
+    design.optimal = ended && *design.bound <= design.value + equal_values;
+    design.stopped = !ended;
+    return design;
   } else {
     const double sets =
         number_of_sets(double(task.candidates.blocks->count()), task.poses, task.candidates.max_repeats > 1);

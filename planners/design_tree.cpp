@@ -15,13 +15,20 @@ namespace {
 constexpr double proof_tolerance = 1e-9;
 // Nodes split between two looks at what the others found.
 constexpr std::size_t round_size = 32;
-// Open nodes hold two numbers per candidate; beyond this the newest is looked into first, which keeps them few.
+// Starts of a search for as many rounds: some tenth of the time where it is needed.
+constexpr long rounds_a_start = 64;
+// Open nodes hold three numbers per candidate; beyond this the newest is looked into first, which keeps them few.
 constexpr std::size_t most_open_bytes = std::size_t(512) << 20;
 
 }  // namespace
 
-DesignTree::DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best)
-    : task_(task), threads_(threads), monitor_(monitor), best_(best) {
+DesignTree::DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best, double gap)
+    : task_(task),
+      threads_(threads),
+      monitor_(monitor),
+      best_(best),
+      gap_(task.criterion->function().degree() * std::log1p(gap)),
+      tolerance_(std::max(proof_tolerance, gap_)) {
   for (int t = 0; t < threads; ++t) relaxations_.push_back(std::make_unique<NodeRelaxation>(task));
 }
 
@@ -41,9 +48,10 @@ bool DesignTree::run() {
   if (auto root = look_into(std::move(whole), std::move(start), *relaxations_[0], best_)) push(std::move(root));
   bool stopped = false;
   while (!open_.empty()) {
-    best_.bound = std::max(best_.value, -open_.begin()->first.first);
+    best_.bound = std::max(best_.value + gap_, -open_.begin()->first.first);
     if (stopped) return false;
     monitor_.report({"branch and bound", double(nodes_), 0, best_.value, best_.bound, {}});
+    search_on();
     auto round = next_round();
     std::vector<Split> splits(round.size());
     for (Split& each : splits) {
@@ -58,14 +66,24 @@ bool DesignTree::run() {
         [&](std::size_t k, std::string_view bytes) { splits[k] = split_in(bytes); }, monitor_);
     merge(round, splits);
   }
-  best_.bound = best_.value;
+  best_.bound = best_.value + gap_;
   return true;
+}
+
+/// Whenever the tree has doubled.
+void DesignTree::search_on() {
+  if (search_ == nullptr || rounds_++ < next_search_) return;
+  const Design found = search_(int(next_search_ / rounds_a_start), ++searches_);
+  next_search_ *= 2;
+  if (found.value <= best_.value) return;
+  best_.value = found.value;
+  best_.members = found.members;
 }
 
 /// The open nodes to split now: best bound first, or the newest where there are too many.
 std::vector<std::unique_ptr<DesignTree::Node>> DesignTree::next_round() {
   std::vector<std::unique_ptr<Node>> round;
-  const std::size_t bytes = 4 * task_.candidates.blocks->count() + 512;
+  const std::size_t bytes = 12 * task_.candidates.blocks->count() + 512;
   while (!open_.empty() && round.size() < round_size) {
     auto chosen = open_.begin();
     if (open_.size() * bytes > most_open_bytes) {
@@ -88,7 +106,7 @@ void DesignTree::merge(std::vector<std::unique_ptr<Node>>& round, std::vector<Sp
   for (std::size_t k = 0; k < round.size(); ++k) {
     if (splits[k].left_out) push(std::move(round[k]));
     for (auto& child : splits[k].children)
-      if (child->relaxed.bound > best_.value + proof_tolerance) push(std::move(child));
+      if (child->relaxed.bound > best_.value + tolerance_) push(std::move(child));
   }
 }
 
@@ -101,7 +119,7 @@ void DesignTree::push(std::unique_ptr<Node> node) {
 DesignTree::Split DesignTree::split(const Node& node, NodeRelaxation& relaxation, const Design& best) const {
   Split result;
   result.best = best;
-  if (node.relaxed.bound <= best.value + proof_tolerance) return result;
+  if (node.relaxed.bound <= best.value + tolerance_) return result;
   auto c = std::size_t(std::max(node.relaxed.branch, 0));
   if (node.relaxed.branch < 0)
     while (node.box.most[c] == node.box.least[c]) ++c;
@@ -156,15 +174,15 @@ std::unique_ptr<DesignTree::Node> DesignTree::look_into(ChoiceBox box, std::vect
   while (true) {
     if (!settle_spacing(box) || leaf(box, best)) return nullptr;
     const ChoiceBox before = box;
-    if (!relaxation.solve(box, relaxed, best.value + proof_tolerance)) return nullptr;
-    if (box.least == before.least && box.most == before.most) break;
+    if (!relaxation.solve(box, relaxed, best.value + tolerance_)) return nullptr;
+    if (relaxed.branch >= 0 || (box.least == before.least && box.most == before.most)) break;
   }
   if (relaxed.branch < 0) {  // whole numbers: a design
     std::vector<int> members;
     for (std::size_t i = 0; i < relaxed.numbers.size(); ++i)
       members.insert(members.end(), std::size_t(std::lround(relaxed.numbers[i])), int(i));
     if (int(members.size()) == task_.poses) offer(std::move(members), best);
-    if (relaxed.bound <= best.value + proof_tolerance) return nullptr;
+    if (relaxed.bound <= best.value + tolerance_) return nullptr;
   }
   return std::make_unique<Node>(Node{std::move(box), std::move(relaxed)});
 }

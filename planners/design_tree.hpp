@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,8 +17,12 @@ namespace posewright {
 class DesignTree {
  public:
   /// @param best  a design to begin with; whatever is better replaces it
-  DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best);
-  /// True if `best` is proved; else best.bound is what no design exceeds.
+  /// @param gap   PlannerOptions::gap
+  DesignTree(const DesignTask& task, int threads, const Monitor& monitor, Design& best, double gap = 0.0);
+  /// More starts of a search while the proof goes on, a share of its time: what they find makes the tree smaller.
+  /// @param search  a design from so many starts, other ones for every number of the call
+  void search_beside(std::function<Design(int starts, int call)> search) { search_ = std::move(search); }
+  /// True if `best` is proved within the gap; best.bound is what no design exceeds.
   bool run();
 
  private:
@@ -42,16 +47,21 @@ class DesignTree {
   void offer(std::vector<int> members, Design& best) const;
   void push(std::unique_ptr<Node> node);
   std::vector<std::unique_ptr<Node>> next_round();
+  void search_on();
   void merge(std::vector<std::unique_ptr<Node>>& round, std::vector<Split>& splits);
 
   const DesignTask& task_;
   int threads_;
   const Monitor& monitor_;
   Design& best_;
+  double gap_, tolerance_;  // in Φ; parts that may hold what is better by no more are done
   std::vector<std::unique_ptr<NodeRelaxation>> relaxations_;       // one per thread
   std::map<std::pair<double, long>, std::unique_ptr<Node>> open_;  // by −bound, then age
   std::map<long, double> bounds_;                                  // of the open nodes, by age
   long nodes_ = 0;
+  std::function<Design(int, int)> search_;
+  long rounds_ = 0, next_search_ = 64;
+  int searches_ = 0;
 };
 
 }  // namespace posewright

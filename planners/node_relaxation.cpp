@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "posewright/criterion/determinant.hpp"
-#include "posewright/planning/eigenvalue_relaxation.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
@@ -21,25 +20,11 @@ constexpr double near_enough = 1e-7;
 // Ridge of the bound that knows the rank, in log det.
 constexpr double acceptable_looseness = 1e-6;
 constexpr int most_steps = 40, most_pivots = 15;
-// A step of the interior-point method for o3 costs the cube of the candidates.
-constexpr std::size_t most_for_eigenvalue = 500;
 
 const SpectralFunction* least_eigenvalue(const InformationFunction& function) {
   const auto* spectral = dynamic_cast<const SpectralFunction*>(&function);
   return spectral != nullptr && spectral->index() == SpectralIndex::o3 ? spectral : nullptr;
 }
-
-/// ½ ln tr(E M), E = left leftᵀ: degree ½, linear in M under the logarithm.
-class LinearExpansion : public Expansion {
- public:
-  LinearExpansion(const Eigen::MatrixXd& left, double reference) {
-    value = 0.5 * std::log(reference);
-    factor = upper_factor(left * std::sqrt(0.5 / reference));
-  }
-  void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
-    H.setZero(rows.rows() / r, rows.rows() / r);
-  }
-};
 
 }  // namespace
 
@@ -50,7 +35,8 @@ NodeRelaxation::NodeRelaxation(const DesignTask& task)
       least_eigenvalue_(least_eigenvalue(function_)),
       r_(blocks_.rows()),
       m_(blocks_.columns()),
-      log_det_(dynamic_cast<const LogDetFunction*>(&function_) != nullptr && function_.degree() == m_) {}
+      log_det_(dynamic_cast<const LogDetFunction*>(&function_) != nullptr && function_.degree() == m_),
+      program_(r_, least_eigenvalue_ != nullptr ? least_eigenvalue_->nuisance() : 0) {}
 
 void NodeRelaxation::gather(const ChoiceBox& box) {
   fixed_ = task_.candidates.prior != nullptr ? *task_.candidates.prior : Eigen::MatrixXd::Zero(m_, m_);
@@ -149,7 +135,7 @@ bool NodeRelaxation::start_regular(const ChoiceBox& box, std::vector<double>& nu
   return expansion_ != nullptr;
 }
 
-double NodeRelaxation::bound() {
+void NodeRelaxation::grant() {
   order_.resize(free_.size());
   std::iota(order_.begin(), order_.end(), 0);
   granted_.assign(free_.size(), 0);
@@ -173,11 +159,16 @@ double NodeRelaxation::bound() {
     weakest_ = next_ = d_[Eigen::Index(f)];
     if (left == 0 && taken < room_[f]) break;
   }
+}
+
+double NodeRelaxation::bound() {
+  grant();
   const double h = function_.degree();
   return expansion_->value + (limited_ != nullptr ? most_possible_ - open_share_ : h * std::log(most_possible_ / h));
 }
 
 double NodeRelaxation::needed(double best) const {
+  if (of_least_eigenvalue_) return std::exp(2 * best);
   const double h = function_.degree();
   return limited_ != nullptr ? best - expansion_->value + open_share_ : h * std::exp((best - expansion_->value) / h);
 }
@@ -360,57 +351,12 @@ int NodeRelaxation::branching_candidate(const std::vector<double>& numbers) {
   return chosen;
 }
 
-bool NodeRelaxation::bound_least_eigenvalue(RelaxedBox& relaxed, double best) {
-  if (least_eigenvalue_ == nullptr || free_.size() > most_for_eigenvalue) return false;
-  const Eigen::MatrixXd& C = least_eigenvalue_->to_scaled();
-  Eigen::VectorXd room(Eigen::Index(free_.size())), open(room.size());
-  for (std::size_t f = 0; f < free_.size(); ++f) {
-    room[Eigen::Index(f)] = room_[f];
-    open[Eigen::Index(f)] = relaxed.numbers[std::size_t(free_[f])] - least_[f];
-  }
-  EigenvalueRelaxation relaxation(rows_ * C, r_, least_eigenvalue_->nuisance(), C.transpose() * fixed_ * C,
-                                  std::move(room), open, false);
-  if (!relaxation.regular()) return false;
-  relaxed.bound = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < most_steps && relaxation.step(0.0); ++step) {
-    expansion_ = std::make_unique<LinearExpansion>(C * relaxation.least_factor(), relaxation.least());
-    find_sensitivities(relaxed.numbers);
-    relaxed.bound = std::min(relaxed.bound, bound());
-    if (relaxed.bound <= best) break;
-    // What the numbers themselves reach: no E gives less.
-    const double reached = 0.5 * std::log(relaxation.least()), gap = relaxed.bound - reached;
-    if (gap < 1e-4 || gap < 0.02 * (reached - best)) break;
-  }
-  for (std::size_t f = 0; f < free_.size(); ++f)
-    relaxed.numbers[std::size_t(free_[f])] = least_[f] + relaxation.numbers()[Eigen::Index(f)];
-  return std::isfinite(relaxed.bound);
-}
-
-/// The candidate between whole numbers whose choice weighs most in tr(E M).
-int NodeRelaxation::branching_by_weight(const std::vector<double>& numbers) const {
-  int chosen = -1;
-  double most = 0.0;
-  for (std::size_t f = 0; f < free_.size(); ++f) {
-    const double x = numbers[std::size_t(free_[f])], part = x - std::floor(x);
-    const double score = std::min(part, 1 - part) * d_[Eigen::Index(f)];
-    if (score <= most) continue;
-    most = score;
-    chosen = free_[f];
-  }
-  return chosen;
-}
-
 bool NodeRelaxation::solve(ChoiceBox& box, RelaxedBox& relaxed, double best) {
   gather(box);
   limited_.reset();
   relaxed.branch = -1;
   if (!make_feasible(box, relaxed.numbers)) return false;
-  if (bound_least_eigenvalue(relaxed, best)) {
-    if (relaxed.bound <= best) return false;
-    if (tighten(box, best)) return true;
-    relaxed.branch = branching_by_weight(relaxed.numbers);
-    return true;
-  }
+  if (const auto kept = solve_least_eigenvalue(box, relaxed, best)) return *kept;
   if (!start_regular(box, relaxed.numbers)) return false;
   relaxed.bound = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_steps; ++round) {

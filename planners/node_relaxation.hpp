@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "eigenvalue_program.hpp"
 #include "posewright/criterion/spectral.hpp"
 #include "posewright/planning/design_task.hpp"
 #include "rank_limited.hpp"
+#include "row_inertia.hpp"
 
 namespace posewright {
 
@@ -24,7 +27,8 @@ struct RelaxedBox {
 
 /// The optimum of Φ(M0 + Σ n_i J_iᵀJ_i) over least ≤ n ≤ most, Σ n_i = N: sequential quadratic programming with exact
 /// second derivatives, from the numbers of the box around it. Every iterate also bounds the optimum (its sensitivities
-/// d_i, concavity of e^{Φ/h}), and most boxes end at the first such bound. One per thread: it keeps its memory.
+/// d_i, concavity of e^{Φ/h}), and most boxes end at the first such bound. For o3 E and its bound take their place
+/// (EigenvalueProgram), within what single rows must be like (RowInertia). One per thread: it keeps its memory.
 class NodeRelaxation {
  public:
   /// Criteria with a degree only.
@@ -45,7 +49,9 @@ class NodeRelaxation {
   /// From here on the tighter bound of few remaining rows, where there is one.
   void limit_rank();
   bool start_regular(const ChoiceBox& box, std::vector<double>& numbers);
-  /// Σ of the largest d_i that the box allows and Φ's bound from it.
+  /// Σ of the largest d_i that the box allows.
+  void grant();
+  /// Φ's bound from it.
   double bound();
   /// The sum that anything better than `best` must reach.
   double needed(double best) const;
@@ -53,10 +59,16 @@ class NodeRelaxation {
   bool search_along(std::vector<double>& numbers);
   void choose_working_set(const std::vector<double>& numbers);
   void solve_quadratic(const std::vector<double>& numbers);
-  /// The same for o3 by E ⪰ 0 of trace 1 (theory.md eq. (44)). False if that way is not open: too many candidates, or
-  /// numbers that leave a parameter unknown.
-  bool bound_least_eigenvalue(RelaxedBox& relaxed, double best);
-  int branching_by_weight(const std::vector<double>& numbers) const;
+  /// solve() for o3 (theory.md eq. (44), (62), (63)). Nothing if that way is not open: too many candidates, or numbers
+  /// that leave a parameter unknown.
+  std::optional<bool> solve_least_eigenvalue(ChoiceBox& box, RelaxedBox& relaxed, double best);
+  /// Whether inertia_ speaks of these candidates: one row each, no nuisance columns.
+  bool single_rows() const { return r_ == 1 && least_eigenvalue_->nuisance() == 0; }
+  bool rule_out_rows(ChoiceBox& box) const;
+  void limit_rows(const std::vector<double>& numbers);
+  void grant_within_limits();
+  void lower_bound_of_least(RelaxedBox& relaxed, double best);
+  int branching_by_number(const ChoiceBox& box, const std::vector<double>& numbers) const;
   bool tighten(ChoiceBox& box, double best) const;
   int branching_candidate(const std::vector<double>& numbers);
   void copy_working_rows();
@@ -79,11 +91,20 @@ class NodeRelaxation {
   double fixed_share_ = 0.0;  // tr(S M) of what is fixed; nothing where the rank is limited
   double open_share_ = 0.0;   // Σ n_i d_i of what is not
   std::vector<int> order_, granted_;
+  bool of_least_eigenvalue_ = false;  // d_ and what is below are tr(J E Jᵀ) and sums of them
   double weakest_ = 0.0, next_ = 0.0, most_possible_ = 0.0;
   std::vector<int> working_;  // positions in free_
   RowMatrix working_rows_;
   Eigen::MatrixXd curvature_;
   Eigen::VectorXd change_;  // of the working candidates' numbers
+  // For o3: rows in units of the scale, what single rows must be like, and the problem of numbers.
+  EigenvalueProgram program_;
+  RowInertia inertia_;
+  NumberLimits limits_;
+  RowMatrix scaled_rows_;
+  Eigen::MatrixXd scaled_known_;
+  Eigen::VectorXd scaled_room_, group_room_, open_numbers_, priced_, tightest_;
+  double tightest_share_ = 0.0;
 };
 
 }  // namespace posewright

@@ -495,6 +495,7 @@ def select(
     reserve: bool = False,
     fixed: Optional[ArrayLike] = None,
     augment: Optional[ArrayLike] = None,
+    gap: Optional[float] = None,
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,

@@ -44,8 +44,9 @@ Labelled labelled(const py::object& given, std::optional<int> rows, const std::o
 Plan select(const py::object& blocks, long long poses, const std::string& criterion, const std::string& method,
             std::optional<int> nuisance, std::optional<std::vector<std::string>> names, std::optional<int> rows,
             const py::object& repeats, std::optional<long long> restarts, bool reserve, const py::object& fixed,
-            const py::object& augment, const py::int_& seed, long long threads, std::optional<double> time_limit,
-            py::object progress) {
+            const py::object& augment, std::optional<double> gap, const py::int_& seed, long long threads,
+            std::optional<double> time_limit, py::object progress) {
+  if (gap && !(*gap > 0 && *gap < 100)) throw InputError({}, "gap is no percentage", "above 0 and below 100");
   Labelled given = labelled(blocks, rows, nuisance);
   SelectOptions options;
   options.poses = checked("poses", poses, 1, most_poses);
@@ -56,6 +57,7 @@ Plan select(const py::object& blocks, long long poses, const std::string& criter
   if (!fixed.is_none()) options.fixed = indices_of(fixed, "fixed", given.array.count());
   if (!augment.is_none()) options.measured = indices_of(augment, "augment", given.array.count());
   options.repeats = repeats_of(repeats).value_or(Repeats{});
+  if (gap) options.gap = *gap / 100;
   options.reserve = reserve;
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
@@ -194,13 +196,13 @@ void bind_blocks(py::module_& m) {
       "select", &select, py::arg("blocks"), py::arg("poses"), py::kw_only(), py::arg("criterion") = "o1",
       py::arg("method") = "exchange", py::arg("nuisance") = none, py::arg("names") = none, py::arg("rows") = none,
       py::arg("repeats") = none, py::arg("restarts") = none, py::arg("reserve") = false, py::arg("fixed") = none,
-      py::arg("augment") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-      py::arg("progress") = none,
+      py::arg("augment") = none, py::arg("gap") = none, py::arg("seed") = 0, py::arg("threads") = 0,
+      py::arg("time_limit") = none, py::arg("progress") = none,
       R"(The same search on whitened Jacobian blocks of your own: an array n × r × m, (n·r) × m beside rows=r, or Blocks.
 
 nuisance: how many leading columns are eliminated (Blocks know it); repeats: "forbid", "allow" or how often; restarts: 10
 or what a time limit allows; fixed: indices that are among the poses; augment: indices that are measured already, to
-which so many poses come. Columns are
+which so many poses come; gap: percent, method branch_and_bound ends once no plan is better by more. Columns are
 taken as they are: multiply them by their tolerances for criteria that depend on the scale. plan.candidates are the
 indices of the chosen blocks. Ctrl-C as in plan().)");
   m.def("evaluate_blocks", &evaluate_blocks, py::arg("blocks"), py::arg("chosen") = none, py::kw_only(),

@@ -25,6 +25,8 @@ po::options_description select_command_options() {
       ("fixed", text("ROWS"), "blocks that are among the N: 3,17,25, from 0")                    //
       ("augment", text("ROWS"), "blocks that are measured already: N more come to them")         //
       ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
+          "gap", text("P"),
+          "percent: branch_and_bound ends once no plan is better by more than that (proved to rounding)")(
           "reserve", "maximise what is left when the block that hurts most is lost")(
           "spread", "each process (mpirun, srun) holds a share of the blocks: for more than fit into memory");
   options.add(output_options(false)).add(task_options());
@@ -86,6 +88,8 @@ int run_select(const po::variables_map& values, const Words& positional) {
   select.fixed = row_list(values, "fixed");
   select.measured = row_list(values, "augment");
   select.repeats = repeats_of(values).value_or(Repeats{});
+  if (const auto gap = number_below(values, "gap", 100, "percent, above 0 and below 100, are allowed"))
+    select.gap = *gap / 100;
   select.reserve = values.count("reserve") > 0;
   select.seed = common.seed;
   select.threads = common.threads;

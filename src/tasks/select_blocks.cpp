@@ -194,6 +194,8 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   const std::vector<int> given = given_blocks(file, options);
   if (options.reserve && !options.fixed.empty())
     throw InputError({}, "--reserve stands beside --fixed", "one of both: what is fixed may be lost, too");
+  if (options.gap > 0 && options.method != "branch_and_bound")
+    throw InputError({}, "a gap stands beside method " + options.method, "it is for branch_and_bound");
   require_enough(file.blocks, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
@@ -205,6 +207,7 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   request.reserve = options.reserve;
   request.planner.restarts = options.restarts.value_or(request.planner.restarts);
   request.planner.restarts_stated = options.restarts.has_value();
+  request.planner.gap = options.gap;
   request.planner.seed = options.seed;
   request.planner.threads = options.threads;
   Start start = start_of(file, given, options);

@@ -79,6 +79,21 @@ TEST(Select, FixedBlocksAreAmongTheBestPlanThatHasThem) {
   }
 }
 
+TEST(Select, AGapIsForAProofAndNoPlanIsBetterByMore) {
+  const BlockFile file = random_blocks();
+  SelectOptions options;
+  options.poses = 6;
+  options.gap = 0.05;
+  EXPECT_THROW(select_blocks(random_blocks(), options, Monitor{}), InputError);
+  options.method = "branch_and_bound";
+  const Plan plan = select_blocks(random_blocks(), options, Monitor{});
+  const double best = best_of_all(file, {}, 6), allowed = columns * std::log(1.05);
+  EXPECT_FALSE(plan.interrupted);
+  EXPECT_GE(plan.log_det, best - allowed);
+  EXPECT_GE(plan.certificate.bound, best - 1e-9);
+  EXPECT_LE(plan.certificate.bound, plan.log_det + allowed + 1e-9);
+}
+
 TEST(Select, ToMeasuredBlocksSoManyMoreCome) {
   const BlockFile file = random_blocks();
   SelectOptions options;

@@ -33,6 +33,9 @@ struct PlannerOptions {
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0 = all
   bool use_all_time = true;  ///< a search goes on until the monitor's deadline, if there is one
+  /// ≥ 0: branch_and_bound ends once no design of these candidates is better by more than this share of e^{Φ/h}, h
+  /// being Φ's degree. 0: once it is proved to 1e-9 of Φ.
+  double gap = 0.0;
   /// Somebody wants so many starts and no more; `auto` takes more than one round of them all the same.
   bool restarts_stated = false;
 };

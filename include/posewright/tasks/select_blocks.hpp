@@ -26,6 +26,8 @@ struct SelectOptions {
   /// Blocks that are in the plan whatever the search finds, `poses` counts them; and blocks that are measured already,
   /// to which `poses` more come. Neither is chosen again unless repeats are allowed.
   std::vector<int> fixed, measured;
+  /// For branch_and_bound: it ends once no plan is better by more than this share; 0: proved to rounding.
+  double gap = 0.0;
   bool reserve = false;  ///< maximise what is left when the block that hurts most is lost
   std::uint64_t seed = 0;
   int threads = 0;
@@ -33,8 +35,8 @@ struct SelectOptions {
 
 /// The same search on whitened Jacobian blocks that the user brings. Tolerances are unknown here, so parameters
 /// have tolerance 1 and the indices are those of the blocks as they are.
-/// Throws InputError for options that do not fit the blocks (fixed ones out of range, twice, or as many as poses),
-/// CannotDo for too few poses.
+/// Throws InputError for options that do not fit the blocks (fixed ones out of range, twice, or as many as poses) or
+/// each other (a gap and another method), CannotDo for too few poses.
 /// @param blocks  with the columns' names; `rows` of the options is not looked at
 Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor& monitor);
 /// The same for a file.

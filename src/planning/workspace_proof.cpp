@@ -70,16 +70,115 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
   return direct > 0 ? bound / direct - 1 : 0.0;
 }
 
-/// What else may be said of joints' noise than one matrix for the whole workspace (theory.md eq. (61)).
-bool bounds_noise_by_boxes(const HarmonicForms& forms, double loose) {
-  return loose > hardly_loose && forms.forms.front()->random_columns() > 0;
+/// How the largest d of a space is bounded.
+struct Approach {
+  HarmonicForms forms;
+  std::vector<HarmonicDegrees> degrees{};  ///< of the forms' squares
+  bool noise_by_boxes = false;             ///< a matrix for joints' noise for each box (theory.md eq. (61))
+};
+
+/// Whether joints' noise that one matrix for the whole workspace bounds so loosely is bounded by boxes: that takes a
+/// minute where there are more than a few joints.
+bool bounds_noise_by_boxes(const HarmonicForms& forms, double loose, const ProofLimits& limits) {
+  if (!(loose > hardly_loose) || forms.forms.front()->random_columns() == 0) return false;
+  double cost = 0;
+  for (const auto& form : forms.forms) cost += ReadingNoiseSensitivity::cost(*form);
+  return cost <= most_coefficients && (limits.seconds || forms.forms.front()->axes().size() <= axes_at_once);
+}
+
+/// @return why there is no proof by it; empty: there is one
+std::string choose(Approach& approach, const WorkspaceBound& found, const WeightedConfigurations& support,
+                   const ConfigurationSpace& space, std::size_t candidates, int rows,
+                   const WorkspaceBoundOptions& options) {
+  const HarmonicForms& forms = approach.forms;
+  if (!forms.why_not.empty()) return forms.why_not;
+  double cost = 0;
+  for (const auto& form : forms.forms) {
+    approach.degrees.push_back(degrees_of_squares(*form, found.factor, options.seed));
+    cost += HarmonicSensitivity::cost(*form, approach.degrees.back());
+  }
+  if (forms.forms.empty() || cost > most_coefficients) return "more joints and effects than memory holds";
+  if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
+    return "a quick look at fewer than 1,000 candidates";
+  const double loose = looseness(forms, support, space, found.factor, rows);
+  approach.noise_by_boxes = bounds_noise_by_boxes(forms, loose, options.proof);
+  if (loose > most_loose && !approach.noise_by_boxes)
+    return forms.forms.front()->random_columns() > 0 && !options.proof.seconds
+               ? "large noise of the joints takes a minute to bound: --proof-time 60"
+               : fmt::format(
+                     "noise of the joints or of the visit, beside the instrument's, or deflections are bounded "
+                     "{:.0f} % too high",
+                     100 * loose);
+  if (!options.proof.seconds && grows_with_distance(forms))
+    return "noise that grows with the distance takes minutes to bound: --proof-time 300";
+  return {};
+}
+
+using Functions = std::vector<std::unique_ptr<BoundedSensitivity>>;
+
+/// One a form; the last is not defined where something is not as its form says, or time is over.
+Functions functions_of(const Approach& approach, const Eigen::MatrixXd& T, const WorkspaceBoundOptions& options,
+                       const Monitor& monitor) {
+  Functions functions;
+  for (std::size_t f = 0; f < approach.forms.forms.size(); ++f) {
+    const HarmonicForm& form = *approach.forms.forms[f];
+    if (approach.noise_by_boxes)
+      functions.push_back(std::make_unique<ReadingNoiseSensitivity>(form, T, options.seed, options.threads, monitor));
+    else
+      functions.push_back(
+          std::make_unique<HarmonicSensitivity>(form, T, approach.degrees[f], options.seed, options.threads, monitor));
+    if (!functions.back()->defined()) break;
+  }
+  return functions;
 }
 
 /// As many boxes as the work allows.
-long most_boxes(const std::vector<std::unique_ptr<BoundedSensitivity>>& functions) {
+long most_boxes(const Functions& functions) {
   double largest = 0;
   for (const auto& f : functions) largest = std::max(largest, f->work());
   return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
+}
+
+/// @param extra     what the prior adds to every d
+/// @param searched  no search found a d above this
+BoxSearchOptions limits_of(const Functions& functions, const WorkspaceBound& found,
+                           const WorkspaceBoundOptions& options, double extra, double searched) {
+  BoxSearchOptions limits;
+  limits.shared = std::any_of(functions.begin(), functions.end(), [](const auto& f) { return f->size() > shared_box; });
+  limits.tolerance = options.tolerance;
+  limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
+  limits.threads = options.threads;
+  if (options.proof.gap) {
+    limits.enough = found.degree * (1 + *options.proof.gap) - extra;
+    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
+  }
+  // What is largest within limits has no box of its own: a bound that is hardly larger than what searches found is as
+  // good as any.
+  if (!found.proof.limits.empty()) limits.enough = std::max(limits.enough, searched);
+  return limits;
+}
+
+/// What the boxes tell.
+void take(const BoxSearchResult& most, const HarmonicForms& forms, const ConfigurationSpace& space, double extra,
+          WorkspaceBound& found) {
+  WorkspaceProof& proof = found.proof;
+  proof.boxes = most.boxes;
+  if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
+  if (!std::isfinite(most.bound)) {
+    proof.why_not = most.stopped     ? "stopped"
+                    : most.bound > 0 ? "an instrument that may stand within the arm's reach"
+                                     : "limits that forbid every configuration";
+    return;
+  }
+  proof.max_ratio = std::max(1.0, (most.bound + extra) / found.degree);
+  proof.bound = found.value + found.degree * std::log(proof.max_ratio);
+  const auto configuration = [&](const FoundPlace& place) {
+    return forms.forms[std::size_t(place.function)]->configuration(place.where);
+  };
+  if (!most.found.refuting.where.empty()) proof.refuted_by = configuration(most.found.refuting);
+  if (most.found.where.empty()) return;
+  proof.largest_at = configuration(most.found);
+  proof.largest_forbidden_by = space.probe()->forbidden_by(proof.largest_at);
 }
 
 }  // namespace
@@ -87,39 +186,14 @@ long most_boxes(const std::vector<std::unique_ptr<BoundedSensitivity>>& function
 void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, std::size_t candidates, int rows,
                      const WorkspaceBoundOptions& options, const Monitor& monitor) {
   WorkspaceProof& proof = result.proof;
+  proof = {};
   if (result.stopped || monitor.should_stop()) proof.why_not = "stopped";
   else if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
-  else proof.why_not.clear();
   if (!proof.why_not.empty()) return;
-  const WeightedConfigurations support = support_of(result, space);
   if (prove_by_enclosure(result, space, candidates, rows, options, monitor)) return;
-  const HarmonicForms forms = space.harmonic_forms(support);
-  proof.why_not = forms.why_not;
-  if (!proof.why_not.empty()) return;
-  double cost = 0;
-  std::vector<HarmonicDegrees> degrees;
-  for (const auto& form : forms.forms) {
-    degrees.push_back(degrees_of_squares(*form, result.factor, options.seed));
-    cost += HarmonicSensitivity::cost(*form, degrees.back());
-  }
-  if (forms.forms.empty() || cost > most_coefficients) proof.why_not = "more joints and effects than memory holds";
-  else if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
-    proof.why_not = "a quick look at fewer than 1,000 candidates";
-  const double loose = proof.why_not.empty() ? looseness(forms, support, space, result.factor, rows) : 0.0;
-  const bool by_boxes = proof.why_not.empty() && bounds_noise_by_boxes(forms, loose);
-  if (by_boxes) {
-    cost = 0;
-    for (const auto& form : forms.forms) cost += ReadingNoiseSensitivity::cost(*form);
-    if (cost > most_coefficients) proof.why_not = "noise of more joints than memory holds";
-    else if (!options.proof.seconds && forms.forms.front()->axes().size() > axes_at_once)
-      proof.why_not = "large noise of the joints takes a minute to bound: --proof-time 60";
-  } else if (loose > most_loose) {
-    proof.why_not = fmt::format(
-        "noise of the joints or of the visit, beside the instrument's, or deflections are bounded {:.0f} % too high",
-        100 * loose);
-  }
-  if (proof.why_not.empty() && !options.proof.seconds && grows_with_distance(forms))
-    proof.why_not = "noise that grows with the distance takes minutes to bound: --proof-time 300";
+  const WeightedConfigurations support = support_of(result, space);
+  Approach approach{space.harmonic_forms(support)};
+  proof.why_not = choose(approach, result, support, space, candidates, rows, options);
   if (!proof.why_not.empty()) return;
 
   Monitor own;
@@ -129,53 +203,19 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   // Several processes would not come to the same end of what they all compute: their time ends the boxes.
   const bool boxes_alone = several_processes(monitor);
   if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);
-  std::vector<std::unique_ptr<BoundedSensitivity>> functions;
-  for (std::size_t f = 0; f < forms.forms.size(); ++f) {
-    const HarmonicForm& form = *forms.forms[f];
-    if (by_boxes)
-      functions.push_back(
-          std::make_unique<ReadingNoiseSensitivity>(form, result.factor, options.seed, options.threads, own));
-    else
-      functions.push_back(
-          std::make_unique<HarmonicSensitivity>(form, result.factor, degrees[f], options.seed, options.threads, own));
-    if (functions.back()->defined()) continue;
+  const Functions functions = functions_of(approach, result.factor, options, own);
+  if (!functions.back()->defined()) {
     proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
   }
   if (options.proof.seconds && boxes_alone) own.end_within(*options.proof.seconds);
-  proof.limits = forms.forms.front()->limits().names;
-  BoxSearchOptions limits;
-  limits.shared = std::any_of(functions.begin(), functions.end(), [](const auto& f) { return f->size() > shared_box; });
-  limits.tolerance = options.tolerance;
-  limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
-  limits.threads = options.threads;
+  proof.limits = approach.forms.forms.front()->limits().names;
   const double extra =
       options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
-  if (options.proof.gap) {
-    limits.enough = result.degree * (1 + *options.proof.gap) - extra;
-    limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
-  }
   const double searched = (result.max_ratio * result.degree - extra) * (1 + options.tolerance);
-  // What is largest within limits has no box of its own: a bound that is hardly larger than what searches found is as
-  // good as any.
-  if (!proof.limits.empty()) limits.enough = std::max(limits.enough, searched);
+  const BoxSearchOptions limits = limits_of(functions, result, options, extra, searched);
   const Refutation refutation{space, rows, searched};
-  const BoxSearchResult most = largest_value(functions, limits, own, &refutation);
-  proof.boxes = most.boxes;
-  if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
-  if (!std::isfinite(most.bound)) {
-    proof.why_not = most.stopped     ? "stopped"
-                    : most.bound > 0 ? "an instrument that may stand within the arm's reach"
-                                     : "limits that forbid every configuration";
-    return;
-  }
-  proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);
-  proof.bound = result.value + result.degree * std::log(proof.max_ratio);
-  if (const FoundPlace& refuting = most.found.refuting; !refuting.where.empty())
-    proof.refuted_by = forms.forms[std::size_t(refuting.function)]->configuration(refuting.where);
-  if (most.found.where.empty()) return;
-  proof.largest_at = forms.forms[std::size_t(most.found.function)]->configuration(most.found.where);
-  proof.largest_forbidden_by = space.probe()->forbidden_by(proof.largest_at);
+  take(largest_value(functions, limits, own, &refutation), approach.forms, space, extra, result);
 }
 
 }  // namespace posewright

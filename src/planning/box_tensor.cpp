@@ -53,7 +53,9 @@ void BoxTensor::put(const SearchBox& box, double most) {
       for (Eigen::Index k = 0; k < M.rows(); ++k) next_weight_.push_back(before * M(k, 0));
     weight_.swap(next_weight_);
   }
-  rounding_ /= *std::min_element(weight_.begin(), weight_.end());
+  // Of a box as wide as half a turn weights vanish: then nothing is known.
+  const double least = *std::min_element(weight_.begin(), weight_.end());
+  rounding_ = least > 0 ? rounding_ / least : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < now_.size(); ++i) now_[i] /= weight_[i];
 }
 

@@ -21,11 +21,6 @@ constexpr int places_compared = 100;
 constexpr long boxes_for_a_distance = 20'000;
 constexpr std::uint64_t compared_stream = 0x9f00f;
 
-std::vector<int> larger_of(std::vector<int> a, const std::vector<int>& b) {
-  for (std::size_t i = 0; i < b.size(); ++i) a[i] = std::max(a[i], b[i]);
-  return a;
-}
-
 struct CommonDegrees {
   std::vector<int> all, low, distances;
   bool affine = false;
@@ -53,20 +48,6 @@ double smallest_value(const HarmonicFunction& function, int threads) {
   options.most_boxes = boxes_for_a_distance;
   options.threads = threads;
   return -largest_value(function.negated(), options, Monitor{}).bound;
-}
-
-/// Where coefficients of lower degrees stand among those of higher ones.
-std::vector<std::size_t> places_in(const std::vector<HarmonicAxis>& axes, const std::vector<int>& low,
-                                   const std::vector<int>& high) {
-  std::vector<std::size_t> places{0};
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    std::vector<std::size_t> next;
-    for (const std::size_t before : places)
-      for (int k = 0; k < harmonic_terms(axes[a], low[a]); ++k)
-        next.push_back(before * std::size_t(harmonic_terms(axes[a], high[a])) + std::size_t(k));
-    places.swap(next);
-  }
-  return places;
 }
 
 void add_to(std::vector<double>& sum, const std::vector<double>& values) {

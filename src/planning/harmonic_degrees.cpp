@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "highest_harmonic.hpp"
 #include "part_squares.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/random.hpp"
@@ -14,8 +15,9 @@ constexpr std::uint64_t lines_stream = 0x11e5;
 constexpr double harmonic_of_rounding = 1e-10;
 constexpr int lines_an_axis = 3;
 
-/// Amplitudes of f's harmonics, f at 2D + 1 equispaced angles of one axis: the highest that is not rounding.
-int highest_harmonic_of(const std::vector<double>& values, double size) {
+}  // namespace
+
+int highest_harmonic(std::span<const double> values, double nothing) {
   const int n = int(values.size());
   for (int h = (n - 1) / 2; h > 0; --h) {
     double cosine = 0, sine = 0;
@@ -24,12 +26,10 @@ int highest_harmonic_of(const std::vector<double>& values, double size) {
       cosine += values[std::size_t(i)] * std::cos(angle);
       sine += values[std::size_t(i)] * std::sin(angle);
     }
-    if (2 * std::hypot(cosine, sine) / double(n) > harmonic_of_rounding * size) return h;
+    if (!(2 * std::hypot(cosine, sine) / double(n) <= nothing)) return h;
   }
   return 0;
 }
-
-}  // namespace
 
 HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed) {
   const auto& axes = form.axes();
@@ -59,7 +59,8 @@ HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::Matrix
           values.push_back(at[k]);
           size = std::max(size, std::abs(at[k]));
         }
-        found[k][a] = std::max(found[k][a], std::isfinite(size) ? highest_harmonic_of(values, size) : possible[k][a]);
+        found[k][a] = std::max(
+            found[k][a], std::isfinite(size) ? highest_harmonic(values, harmonic_of_rounding * size) : possible[k][a]);
       }
     }
   return found;

@@ -68,6 +68,25 @@ inline std::vector<int> sum_of(const std::vector<int>& a, const std::vector<int>
   return sum;
 }
 
+inline std::vector<int> larger_of(std::vector<int> a, const std::vector<int>& b) {
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] = std::max(a[i], b[i]);
+  return a;
+}
+
+/// Where coefficients of lower degrees stand among those of higher ones.
+inline std::vector<std::size_t> places_in(const std::vector<HarmonicAxis>& axes, const std::vector<int>& low,
+                                          const std::vector<int>& high) {
+  std::vector<std::size_t> places{0};
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    std::vector<std::size_t> next;
+    for (const std::size_t before : places)
+      for (int k = 0; k < harmonic_terms(axes[a], low[a]); ++k)
+        next.push_back(before * std::size_t(harmonic_terms(axes[a], high[a])) + std::size_t(k));
+    places.swap(next);
+  }
+  return places;
+}
+
 inline std::vector<double> random_values(const std::vector<HarmonicAxis>& axes, Random& random) {
   std::vector<double> values;
   values.reserve(axes.size());

@@ -8,6 +8,7 @@
 
 #include "box_tensor.hpp"
 #include "harmonic_limits.hpp"
+#include "highest_harmonic.hpp"
 #include "part_squares.hpp"
 #include "posewright/support/random.hpp"
 #include "random_products.hpp"
@@ -27,40 +28,6 @@ constexpr std::size_t most_affine = 4;
 constexpr double least_change = 0.02;
 // By which share of its range an axis is moved to see that.
 constexpr double moved_share = 0.05;
-
-std::vector<int> larger_degrees(std::vector<int> a, const std::vector<int>& b) {
-  for (std::size_t i = 0; i < b.size(); ++i) a[i] = std::max(a[i], b[i]);
-  return a;
-}
-
-/// Where coefficients of lower degrees stand among those of higher ones.
-std::vector<std::size_t> places_among(const std::vector<HarmonicAxis>& axes, const std::vector<int>& low,
-                                      const std::vector<int>& high) {
-  std::vector<std::size_t> places{0};
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    std::vector<std::size_t> next;
-    for (const std::size_t before : places)
-      for (int k = 0; k < harmonic_terms(axes[a], low[a]); ++k)
-        next.push_back(before * std::size_t(harmonic_terms(axes[a], high[a])) + std::size_t(k));
-    places.swap(next);
-  }
-  return places;
-}
-
-/// The highest harmonic of 2D + 1 values at equispaced angles that is larger than `nothing`, or `known`.
-int highest_harmonic(std::span<const double> values, double nothing, int known) {
-  const auto n = int(values.size());
-  for (int h = (n - 1) / 2; h > known; --h) {
-    double cosine = 0, sine = 0;
-    for (int i = 0; i < n; ++i) {
-      const double angle = 2 * std::numbers::pi * double(h) * double(i) / double(n);
-      cosine += values[std::size_t(i)] * std::cos(angle);
-      sine += values[std::size_t(i)] * std::sin(angle);
-    }
-    if (!(2 * std::hypot(cosine, sine) / double(n) <= nothing)) return h;
-  }
-  return known;
-}
 
 /// Degrees of all products along every axis, by their harmonics along random lines; numbers keep what is possible.
 HarmonicDegrees degrees_of_products(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed) {
@@ -90,7 +57,8 @@ HarmonicDegrees degrees_of_products(const HarmonicForm& form, const Eigen::Matri
         }
       }
       for (std::size_t p = 0; p < count; ++p)
-        found[p][a] = highest_harmonic({values.col(Eigen::Index(p)).data(), n}, no_harmonic * size[p], found[p][a]);
+        found[p][a] =
+            std::max(found[p][a], highest_harmonic({values.col(Eigen::Index(p)).data(), n}, no_harmonic * size[p]));
     }
   return found;
 }
@@ -123,19 +91,19 @@ ReadingNoiseSensitivity::ReadingNoiseSensitivity(const HarmonicForm& form, const
     : form_(form), divided_T_(T), T_(form.undivided(T)) {
   const HarmonicDegrees degrees = degrees_of_products(form_, T_, seed);
   degrees_ = degrees.front();
-  for (const auto& one : degrees) degrees_ = larger_degrees(degrees_, one);
+  for (const auto& one : degrees) degrees_ = larger_of(degrees_, one);
   errors_.resize(degrees.size());
   most_.resize(degrees.size());
   const Compared compared(form_, T_, seed);
   const std::size_t first_of_squares = RandomProducts(form_, T_).first_of_squares();
   square_.degrees = degrees_;
   square_.products = {0};
-  square_.places = places_among(form_.axes(), degrees_, degrees_);
+  square_.places = places_in(form_.axes(), degrees_, degrees_);
   interpolate(square_, compared, threads, monitor);
   mixed_ = kind(degrees, 1, degrees.size(), compared, threads, monitor);
   squares_ = kind(degrees, first_of_squares, degrees.size(), compared, threads, monitor);
-  mixed_.places = places_among(form_.axes(), mixed_.degrees, degrees_);
-  squares_.places = places_among(form_.axes(), squares_.degrees, mixed_.degrees);
+  mixed_.places = places_in(form_.axes(), mixed_.degrees, degrees_);
+  squares_.places = places_in(form_.axes(), squares_.degrees, mixed_.degrees);
   if (defined_) choose_affine(compared);
   limits_ = std::make_unique<HarmonicLimits>(form, seed, threads);
 }
@@ -148,7 +116,7 @@ ReadingNoiseSensitivity::Kind ReadingNoiseSensitivity::kind(const HarmonicDegree
                                                             const Monitor& monitor) {
   Kind result;
   result.degrees.assign(degrees_.size(), 0);
-  for (std::size_t p = first; p < end; ++p) result.degrees = larger_degrees(result.degrees, degrees[p]);
+  for (std::size_t p = first; p < end; ++p) result.degrees = larger_of(result.degrees, degrees[p]);
   const std::size_t own_end = first == 1 ? RandomProducts(form_, T_).first_of_squares() : end;
   std::map<std::vector<int>, std::vector<std::size_t>> by_degrees;
   for (std::size_t p = first; p < own_end; ++p) by_degrees[degrees[p]].push_back(p);
@@ -156,7 +124,7 @@ ReadingNoiseSensitivity::Kind ReadingNoiseSensitivity::kind(const HarmonicDegree
     Group group;
     group.degrees = own;
     group.products = products;
-    group.places = places_among(form_.axes(), own, result.degrees);
+    group.places = places_in(form_.axes(), own, result.degrees);
     interpolate(group, compared, threads, monitor);
     result.groups.push_back(std::move(group));
   }
@@ -224,7 +192,8 @@ void ReadingNoiseSensitivity::choose_affine(const Compared& compared) {
 }
 
 std::vector<SearchBox> ReadingNoiseSensitivity::first_boxes() const {
-  return parts_of_everything(form_.axes(), degrees_);
+  // Limits may turn with axes that turn all readings alike.
+  return parts_of_everything(form_.axes(), larger_of(degrees_, limits_->degrees()));
 }
 
 std::unique_ptr<BoxJudge> ReadingNoiseSensitivity::judge(const Refutation* refutation) const {

@@ -15,6 +15,7 @@
 #include "posewright/planning/workspace_bound.hpp"
 #include "tests/kit/random_blocks.hpp"
 #include "tests/kit/wave_space.hpp"
+#include "tests/planners/best_in_box.hpp"
 
 namespace posewright {
 namespace {
@@ -43,21 +44,6 @@ TEST(BranchAndBound, ProvesFiftySmallProblemsAndAutoFindsTheOptimumOfNearlyAll) 
     if (searched.value > proved.value - 1e-8) ++found;
   }
   EXPECT_GE(found, 48) << "of 50";
-}
-
-/// Best of all designs in a box, by enumeration.
-double best_in_box(const DesignTask& task, const ChoiceBox& box, std::size_t first, std::vector<int>& members) {
-  double best = -std::numeric_limits<double>::infinity();
-  if (first == box.least.size())
-    return int(members.size()) == task.poses ? task.criterion->start(task.candidates, members)->value() : best;
-  const std::vector<int> before = members;
-  for (int count = box.least[first]; count <= box.most[first]; ++count) {
-    members = before;
-    members.insert(members.end(), std::size_t(count), int(first));
-    if (int(members.size()) <= task.poses) best = std::max(best, best_in_box(task, box, first + 1, members));
-  }
-  members = before;
-  return best;
 }
 
 TEST(BranchAndBound, NoDesignOfABoxIsBetterThanItsBoundAndTighteningLosesNoneThatIs) {

@@ -14,6 +14,7 @@
 #include "planners/row_inertia.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "tests/kit/random_blocks.hpp"
+#include "tests/planners/best_in_box.hpp"
 
 namespace posewright {
 namespace {
@@ -109,21 +110,6 @@ TEST(RowInertia, RulesOutNoRowOfAnyChoiceThatReachesTheThresholdAndItsLimitsHold
   for (const int count : slacks) EXPECT_GT(count, 10);
 }
 
-/// Best of all designs in a box, by enumeration.
-double optimum_of_box(const DesignTask& task, const ChoiceBox& box, std::size_t first, std::vector<int>& members) {
-  double best = -std::numeric_limits<double>::infinity();
-  if (first == box.least.size())
-    return int(members.size()) == task.poses ? task.criterion->start(task.candidates, members)->value() : best;
-  const std::vector<int> before = members;
-  for (int count = box.least[first]; count <= box.most[first]; ++count) {
-    members = before;
-    members.insert(members.end(), std::size_t(count), int(first));
-    if (int(members.size()) <= task.poses) best = std::max(best, optimum_of_box(task, box, first + 1, members));
-  }
-  members = before;
-  return best;
-}
-
 TEST(EigenvalueTree, NoDesignOfABoxIsBetterThanItsBoundAndTighteningLosesNoneThatIs) {
   int tightened = 0, ruled_out = 0;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
@@ -144,7 +130,7 @@ TEST(EigenvalueTree, NoDesignOfABoxIsBetterThanItsBoundAndTighteningLosesNoneTha
       else box.most[c] = box.least[c];
     }
     std::vector<int> members;
-    const double best = optimum_of_box(task, box, 0, members);
+    const double best = best_in_box(task, box, 0, members);
     const double known = best + (random.uniform() < 0.7 ? -1 : 1) * (seed % 2 == 0 ? 0.3 : 0.01) * random.uniform();
     NodeRelaxation relaxation(task);
     RelaxedBox relaxed;
@@ -159,7 +145,7 @@ TEST(EigenvalueTree, NoDesignOfABoxIsBetterThanItsBoundAndTighteningLosesNoneTha
       EXPECT_LT(box.least[std::size_t(relaxed.branch)], box.most[std::size_t(relaxed.branch)]) << seed;
     }
     if (best <= known) continue;
-    EXPECT_NEAR(optimum_of_box(task, box, 0, members), best, 1e-12) << seed;
+    EXPECT_NEAR(best_in_box(task, box, 0, members), best, 1e-12) << seed;
     if (box.most != std::vector<std::uint16_t>(11, std::uint16_t(repeats))) ++tightened;
   }
   EXPECT_GT(tightened, 50);
@@ -175,7 +161,7 @@ TEST(EigenvalueTree, FindsTheOptimumFromTheWorstDesignOnAnyNumberOfThreads) {
     ChoiceBox whole{std::vector<std::uint16_t>(blocks.count(), 0),
                     std::vector<std::uint16_t>(blocks.count(), std::uint16_t(repeats))};
     std::vector<int> members;
-    const double optimum = optimum_of_box(task, whole, 0, members);
+    const double optimum = best_in_box(task, whole, 0, members);
     Design first;
     for (const int threads : {1, 3}) {
       Design design;
@@ -221,7 +207,7 @@ TEST(EigenvalueTree, AGapEndsTheProofWhereNoDesignIsBetterByMore) {
     DesignTask task{{&blocks, 0, 1}, criterion.get(), columns + 2, nullptr};
     ChoiceBox whole{std::vector<std::uint16_t>(15, 0), std::vector<std::uint16_t>(15, 1)};
     std::vector<int> members;
-    const double optimum = optimum_of_box(task, whole, 0, members);
+    const double optimum = best_in_box(task, whole, 0, members);
     Design design;
     design.value = -50.0;
     EXPECT_TRUE(DesignTree(task, 2, Monitor{}, design, 0.2).run());

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/model/harmonic_rows.hpp"
@@ -45,6 +46,22 @@ class WorkspaceProofs : public testing::Test {
                                                     "]}\nworkspace: {joints: {margin: 0 deg}" + workspace +
                                                     "}\ndesign: {variant: only, poses: 6, candidates: 300}\n"));
   }
+  /// The best of the places on a grid of both joints' limits is below what no plan exceeds, and not far.
+  static void expect_best_of_a_grid_below(const Problem& problem, const Plan& plan, int steps,
+                                          const std::function<bool(double, double)>& allowed) {
+    std::vector<std::vector<double>> grid;
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; j <= steps; ++j) {
+        const double q1 = -2 + 4.0 * i / steps, q2 = -2 + 4.0 * j / steps;
+        if (allowed(q1, q2)) grid.push_back({q1, q2});
+      }
+    PlanOptions options;
+    options.candidates_from = given_poses(problem, grid);
+    options.repeats = Repeats{Repeats::any_number};
+    const Plan on_grid = plan_problem(problem, options, Monitor{});
+    EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
+    EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.02 * 3);
+  }
   TemporaryFolder folder_;
 };
 
@@ -52,16 +69,7 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
   const Problem problem = arm();
   const Plan plan = plan_problem(problem, {}, Monitor{});
   ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
-  std::vector<std::vector<double>> grid;
-  for (int i = 0; i <= 60; ++i)
-    for (int j = 0; j <= 60; ++j) grid.push_back({-2 + i / 15.0, -2 + j / 15.0});
-  PlanOptions options;
-  options.candidates_from = given_poses(problem, grid);
-  options.repeats = Repeats{Repeats::any_number};
-  const Plan on_grid = plan_problem(problem, options, Monitor{});
-  // What is the best on the grid is below what no plan exceeds; and the proof wastes no more than it says.
-  EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
-  EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.01 * 3);
+  expect_best_of_a_grid_below(problem, plan, 60, [](double, double) { return true; });
   EXPECT_LE(plan.log_det, plan.certificate.workspace->bound);
   EXPECT_THAT(plan_summary(plan), HasSubstr("Proved over the joint limits"));
 }
@@ -71,15 +79,7 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBoundWhereTheJointsRe
   const Problem problem = arm("", "q1.offset, q2.offset, tool.x", "", ", encoder_noise: 0.0005");
   const Plan plan = plan_problem(problem, {}, Monitor{});
   ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
-  std::vector<std::vector<double>> grid;
-  for (int i = 0; i <= 60; ++i)
-    for (int j = 0; j <= 60; ++j) grid.push_back({-2 + i / 15.0, -2 + j / 15.0});
-  PlanOptions options;
-  options.candidates_from = given_poses(problem, grid);
-  options.repeats = Repeats{Repeats::any_number};
-  const Plan on_grid = plan_problem(problem, options, Monitor{});
-  EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
-  EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.01 * 3);
+  expect_best_of_a_grid_below(problem, plan, 60, [](double, double) { return true; });
 }
 
 /// What is there to be bounded beside an arm seen by points: word of the problem file, and whether the bound is d
@@ -131,6 +131,7 @@ std::vector<Kind> kinds() {
       {"large noise of the joints and a gear", ", encoder_noise: 0.001", isotropic, "j0.gear, ", false},
       {"gear", "", isotropic, "j0.gear, ", false},
       {"points in a box", "", isotropic, "", true, false, false, 0, tool_box},
+      {"noise of the joints in a box", ", encoder_noise: 0.003", isotropic, "", false, false, false, 0, tool_box},
       {"tracker that sees some", "", tracker + "}}", "", true, false, false, 0, sight},
       {"position", "", "type: position\n  target: [0.1, 0.05, -0.02]\n  " + isotropic, "", true},
       {"pose", "", "type: pose\n  device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.01 deg}}", "", true},
@@ -420,27 +421,21 @@ TEST_F(WorkspaceProofs, TakesWhatRefutesItIntoTheWeights) {
 }
 
 TEST_F(WorkspaceProofs, CountsTheToolBoxAndSaysSo) {
-  const Plan free = plan_problem(arm(), {}, Monitor{});
-  const std::string box = ", tool: {x: [0.9, 1.2], y: [-0.2, 0.2]}";
-  const Problem problem = arm("", "q1.offset, q2.offset, tool.x", box);
-  const Plan plan = plan_problem(problem, {}, Monitor{});
-  ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
-  EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the limits of joints and tool box"));
-  // The best on a grid of what the box allows is below the bound and not far.
-  std::vector<std::vector<double>> grid;
-  for (int i = 0; i <= 400; ++i)
-    for (int j = 0; j <= 400; ++j) {
-      const double q1 = -2 + i / 100.0, q2 = -2 + j / 100.0;
+  for (const std::string robot : {"", ", encoder_noise: 0.0005"}) {
+    SCOPED_TRACE(robot);
+    const std::string columns = "q1.offset, q2.offset, tool.x", box = ", tool: {x: [0.9, 1.2], y: [-0.2, 0.2]}";
+    const Plan free = plan_problem(arm("", columns, "", robot), {}, Monitor{});
+    const Problem problem = arm("", columns, box, robot);
+    const Plan plan = plan_problem(problem, {}, Monitor{});
+    ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved)
+        << plan.certificate.workspace->why_not;
+    EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the limits of joints and tool box"));
+    expect_best_of_a_grid_below(problem, plan, 400, [](double q1, double q2) {
       const double x = std::cos(q1) + 0.8 * std::cos(q1 + q2), y = std::sin(q1) + 0.8 * std::sin(q1 + q2);
-      if (x >= 0.9 && x <= 1.2 && std::abs(y) <= 0.2) grid.push_back({q1, q2});
-    }
-  PlanOptions options;
-  options.candidates_from = given_poses(problem, grid);
-  options.repeats = Repeats{Repeats::any_number};
-  const Plan on_grid = plan_problem(problem, options, Monitor{});
-  EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
-  EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.02 * 3);
-  EXPECT_LT(plan.certificate.workspace->bound, free.certificate.workspace->bound);
+      return x >= 0.9 && x <= 1.2 && std::abs(y) <= 0.2;
+    });
+    EXPECT_LT(plan.certificate.workspace->bound, free.certificate.workspace->bound);
+  }
 }
 
 TEST_F(WorkspaceProofs, OfPosesThatSomethingForbidsIsLooseAndSaysSo) {

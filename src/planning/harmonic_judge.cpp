@@ -96,14 +96,7 @@ void HarmonicJudge::choose_axis(SearchBox& box, double middle) {
   const bool forbidden = !limits_.allow(values_, parts_.evaluator());
   if (!(widest > far_and_near) && !forbidden && loose_bound(loosest) > loose_factors * (box.bound - middle))
     box.longest = axes_[loosest];
-  // What is forbidden may leave less of the box than the bound knows: halved in turn where the limits vary.
-  if (const int other = forbidden ? limits_.most_varied() : -1; other >= 0) {
-    const auto width = [&](int a) {
-      const HarmonicAxis& axis = function_.form_.axes()[std::size_t(a)];
-      return (box.upper[std::size_t(a)] - box.lower[std::size_t(a)]) / (axis.upper - axis.lower);
-    };
-    if (width(other) > width(box.longest)) box.longest = other;
-  }
+  if (forbidden) limits_.take_turn(box);
 }
 
 bool HarmonicJudge::put_distances(SearchBox& box) {

@@ -190,6 +190,16 @@ int BoxLimits::most_varied() const {
   return lowest == nullptr ? -1 : lowest->on_box.most_varied();
 }
 
+void BoxLimits::take_turn(SearchBox& box) const {
+  const int other = most_varied();
+  if (other < 0) return;
+  const auto width = [&](int a) {
+    const HarmonicAxis& axis = limits_.form_.axes()[std::size_t(a)];
+    return (box.upper[std::size_t(a)] - box.lower[std::size_t(a)]) / (axis.upper - axis.lower);
+  };
+  if (width(other) > width(box.longest)) box.longest = other;
+}
+
 bool BoxLimits::allow(std::span<const double> values, HarmonicForm::Evaluator& evaluator) {
   const NecessaryLimits& limits = limits_.form_.limits();
   for (const NecessaryLimits::OfCoordinates& limit : limits.of_coordinates) {

@@ -48,8 +48,9 @@ class BoxLimits {
   /// @param divisor  weighted: what the bound was divided by
   /// @return false: nothing in the box is feasible
   bool lower(const SearchBox& box, const BoxTensor& divisor, double enough, BoxTensor& bound);
-  /// Axis along which the kept limit varies most that is lowest in the box, as a share of its range; −1: none is kept.
-  int most_varied() const;
+  /// Of a box whose middle is forbidden: what is feasible may be less than its bound knows, so that it is halved along
+  /// the axis of the most varied limit if it is wider there than along its own.
+  void take_turn(SearchBox& box) const;
   /// Whether all limits hold at values of the axes.
   bool allow(std::span<const double> values, HarmonicForm::Evaluator& evaluator);
 
@@ -63,6 +64,8 @@ class BoxLimits {
   /// A line in s that root √s does not exceed anywhere in the box: constant and slope.
   std::pair<double, double> line_above(const NecessaryLimits::OfPoints& limit, const SearchBox& box);
   void put_together(const NecessaryLimits::OfPoints& limit, const SearchBox& box, Kept& kept);
+  /// Axis along which the kept limit varies most that is lowest in the box, as a share of its range; −1: none is kept.
+  int most_varied() const;
   /// The kept limit that is lowest where the bound is largest, null if none is below 0 there.
   Kept* lowest_at_top(const BoxTensor& bound);
 

@@ -63,7 +63,14 @@ void ReadingNoiseJudge::judge(SearchBox& box, double enough, LargestFound& found
   const double bound = tensor_.largest() + error;
   // What is no number bounds nothing.
   box.bound = std::isnan(bound) ? whole : std::min(whole, bound);
-  if (box.bound > enough) box.longest = tensor_.most_bent();
+  if (!(box.bound > enough)) return;
+  box.longest = tensor_.most_bent();
+  const auto& axes = function_.form_.axes();
+  middle_.clear();
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    middle_.push_back(0.5 * (lower_of(axes, box, a) + upper_of(axes, box, a)));
+  products_.evaluator().complete(middle_);
+  if (!limits_.allow(middle_, products_.evaluator())) limits_.take_turn(box);
 }
 
 void ReadingNoiseJudge::look(const SearchBox& box, const std::vector<double>& values, double d, LargestFound& found) {

@@ -42,6 +42,7 @@ class ReadingNoiseJudge : public BoxJudge {
   BoxTensor tensor_;
   std::vector<std::vector<std::size_t>> term_of_;  ///< of U_i and U_k
   std::vector<Eigen::MatrixXd> W_, W_sizes_;       ///< Σ U_i U_kᵀ of each term, and of sizes
+  std::vector<double> middle_;                     ///< of the box
   std::vector<double> factors_, sizes_;            ///< of each product, and without cancellation
   Eigen::VectorXd own_, low_;
   Eigen::MatrixXd V_, V_sizes_;

@@ -175,8 +175,9 @@ std::vector<std::vector<double>> missed_by_searches(double limit, const Pool& po
   std::sort(reached.begin(), reached.end(),
             [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
   std::vector<std::vector<double>> starts;
-  for (const auto& [value, q] : reached) {
+  for (const auto& of_value : reached) {
     if (int(starts.size()) == options.starts) break;
+    const std::vector<double>& q = of_value.second;
     if (std::none_of(starts.begin(), starts.end(),
                      [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
       starts.push_back(q);

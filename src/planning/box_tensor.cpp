@@ -18,6 +18,7 @@ constexpr double weight_error = 1e-12;
 // A multiple that brings the largest coefficient this near to its smallest is good enough; and it takes no more steps.
 constexpr double near_enough = 1e-5;
 constexpr int most_steps = 30;
+constexpr double most_times = 1e100;
 
 }  // namespace
 
@@ -104,9 +105,15 @@ double BoxTensor::best_multiple(const BoxTensor& other) const {
   auto falling = line(top_with(0.0, other));
   if (!(falling.second < 0)) return 0.0;
   if (*std::max_element(other.now_.begin(), other.now_.end()) < 0) return std::numeric_limits<double>::infinity();
-  double times = std::abs(falling.first / falling.second);
-  auto rising = line(top_with(times, other));
-  for (; rising.second < 0; rising = line(top_with(times *= 4, other))) falling = rising;
+  double times = falling.first == 0 ? 1.0 : std::abs(falling.first / falling.second);
+  auto rising = falling;
+  for (; times < most_times; times *= 4) {
+    rising = line(top_with(times, other));
+    if (!(rising.second < 0)) break;
+    falling = rising;
+  }
+  // Of what is not finite, or falls with every multiple, no multiple is known to be better than none.
+  if (!(rising.second >= 0)) return 0.0;
   for (int step = 0; step < most_steps && rising.second > 0; ++step) {
     times = (falling.first - rising.first) / (rising.second - falling.second);
     const auto now = line(top_with(times, other));
@@ -153,11 +160,15 @@ std::size_t BoxTensor::highest_corner(double& value) const {
   return best;
 }
 
-int BoxTensor::most_bent() const {
+std::size_t BoxTensor::top() const {
   // In this order it takes a tenth of the time of max_element.
   const double value = Eigen::Map<const Eigen::VectorXd>(now_.data(), Eigen::Index(now_.size())).maxCoeff();
   const auto found = std::find(now_.begin(), now_.end(), value);
-  const auto top = found == now_.end() ? std::size_t{0} : std::size_t(found - now_.begin());
+  return found == now_.end() ? std::size_t{0} : std::size_t(found - now_.begin());
+}
+
+int BoxTensor::most_bent() const {
+  const std::size_t top = this->top();
   int most = 0;
   double largest = -1;
   std::size_t stride = now_.size();

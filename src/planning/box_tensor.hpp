@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "posewright/planning/box_search.hpp"
@@ -33,8 +32,8 @@ class BoxTensor {
   /// The multiple of the other, at least 0, that makes the largest coefficient small when it is added; infinite if
   /// every coefficient of the other is below 0. Any multiple bounds.
   double best_multiple(const BoxTensor& other) const;
-  /// The largest coefficient's place.
-  std::size_t top() const { return std::size_t(std::max_element(now_.begin(), now_.end()) - now_.begin()); }
+  /// The largest coefficient's place; 0 if one is no number.
+  std::size_t top() const;
   /// Coefficient nearest to the place of another's, whatever its degrees.
   double near(std::size_t index, const BoxTensor& of) const;
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "posewright/support/random.hpp"
+#include "src/planning/box_tensor.hpp"
 
 namespace posewright {
 namespace {
@@ -182,6 +183,45 @@ TEST(FactorBound, OfAnAngleTimesADistanceIsExactUnderTheMultiplier) {
   EXPECT_EQ(least_bent({part}, squares, distances).slope, 1.0);
   part.plus = squared(0.5, 0.0, 1);
   EXPECT_EQ(least_bent({part}, squares, distances).slope, 0.0);
+}
+
+TEST(BoxTensor, TheBestMultipleIsThatOfTryingMany) {
+  Random random(8, 1);
+  const std::vector<HarmonicAxis> axes{{0, 1, false}, {0, 1, false}};
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<double> d(9), c(9);
+    for (double& x : d) x = random.normal();
+    for (double& x : c) x = random.normal();
+    const auto largest = [&](double times) {
+      double most = -1e300;
+      for (std::size_t i = 0; i < d.size(); ++i) most = std::max(most, d[i] + times * c[i]);
+      return most;
+    };
+    BoxTensor bound(axes, {2, 2}), limit(axes, {2, 2});
+    bound.take(d, {3, 3}, 0.0);
+    limit.take(c, {3, 3}, 0.0);
+    const double times = bound.best_multiple(limit);
+    if (std::isinf(times)) {
+      EXPECT_LT(*std::max_element(c.begin(), c.end()), 0.0);
+      continue;
+    }
+    for (double other = 0; other < 20; other += 0.01) EXPECT_LE(largest(times), largest(other) + 1e-4) << trial;
+    bound.add(times, limit);
+    EXPECT_NEAR(bound.largest(), largest(times), 1e-9);
+  }
+}
+
+TEST(BoxTensor, NoMultipleIsSoughtOfWhatIsNotFinite) {
+  const std::vector<HarmonicAxis> axes{{0, 1, false}};
+  BoxTensor bound(axes, {1}), limit(axes, {1});
+  limit.take({-1.0, 1.0}, {2}, 0.0);
+  for (const double top : {std::numeric_limits<double>::infinity(), std::nan("")}) {
+    bound.take({top, 0.0}, {2}, 0.0);
+    EXPECT_EQ(bound.best_multiple(limit), 0.0);
+  }
+  // Nothing to be lowered: any multiple will do, as long as there is one.
+  bound.take({0.0, -1.0}, {2}, 0.0);
+  EXPECT_GE(bound.best_multiple(limit), 0.0);
 }
 
 TEST(LargestValue, IsNeverExceededAndIsReached) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/planning/step_to_boundary.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
@@ -23,14 +24,6 @@ constexpr double shorter = 0.8;
 constexpr int most_shortenings = 40;
 // Rows of a tile of products.
 constexpr Eigen::Index product_tile = 96;
-
-/// The longest step of at most 1 that keeps x + step·d above what is left of x behind it.
-double longest(const Eigen::VectorXd& x, const Eigen::VectorXd& d) {
-  double step = 1.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    if (d[i] < 0) step = std::min(step, to_end * x[i] / -d[i]);
-  return step;
-}
 
 }  // namespace
 
@@ -197,11 +190,12 @@ void EigenvalueProgram::direction(double target) {
 
 /// As far along the direction as everything stays inside, numbers and multipliers each by themselves.
 void EigenvalueProgram::advance() {
-  double primal = std::min(longest(n_, d_n_), longest(left_, d_left_));
+  double primal = std::min(step_to_boundary(n_, d_n_, to_end), step_to_boundary(left_, d_left_, to_end));
   d_n_ = -d_n_;
-  primal = std::min(primal, longest(room_ - n_, d_n_));
+  primal = std::min(primal, step_to_boundary(room_ - n_, d_n_, to_end));
   d_n_ = -d_n_;
-  double dual = std::min({longest(low_, d_low_), longest(high_, d_high_), longest(limit_price_, d_price_)});
+  double dual = std::min({step_to_boundary(low_, d_low_, to_end), step_to_boundary(high_, d_high_, to_end),
+                          step_to_boundary(limit_price_, d_price_, to_end)});
   for (int k = 0; k < most_shortenings; ++k, primal *= shorter) {
     trial_ = shifted_ + primal / to_end * d_shifted_;
     shifted_factor_.compute(trial_);

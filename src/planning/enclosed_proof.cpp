@@ -77,9 +77,7 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
     limits.tolerance = std::min(limits.tolerance, *options.proof.gap / 4);
   }
   Monitor own;
-  own.interrupted = monitor.interrupted;
-  own.deadline = monitor.deadline;
-  own.engine = monitor.engine;
+  own.follow(monitor);
   limits.shared = moving > std::ptrdiff_t(quick_axes);
   if (options.proof.seconds) {
     own.end_within(*options.proof.seconds);

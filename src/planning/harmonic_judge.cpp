@@ -49,9 +49,7 @@ HarmonicJudge::HarmonicJudge(const HarmonicSensitivity& function, const Refutati
       axes_(function.terms_.size()),
       parts_(function.form_, function.T_),
       limits_(*function.limits_, function.degrees_),
-      refutation_(refutation),
-      probe_(refutation != nullptr ? refutation->space.probe() : nullptr),
-      block_(refutation != nullptr ? refutation->rows : 1, int(function.T_.rows())) {}
+      refuting_(refutation, function.form_, function.T_) {}
 
 void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
   box.bound = -std::numeric_limits<double>::infinity();
@@ -166,25 +164,11 @@ void HarmonicJudge::place(const Axis& value_of) {
   parts_.evaluator().complete(values_);
 }
 
-void HarmonicJudge::look_for_refutation(const SearchBox& box, double bound, FoundPlace& refuting) {
-  if (refutation_ == nullptr || !(bound > std::max(refutation_->above, refuting.value))) return;
-  const std::vector<double> q = function_.form_.configuration(values_);
-  if (!block_.at(*probe_, q)) return;
-  const double value = (block_.map() * function_.T_).squaredNorm();
-  if (!(value > std::max(refutation_->above, refuting.value)) || !probe_->feasible(q)) return;
-  refuting.value = value;
-  refuting.where = values_;
-  refuting.function = box.function;
-}
-
 double HarmonicJudge::look(const SearchBox& box, LargestFound& found) {
   const double value = parts_.sensitivity(values_);
-  look_for_refutation(box, value, found.refuting);
-  if (value > found.value && limits_.allow(values_, parts_.evaluator())) {
-    found.value = value;
-    found.where = values_;
-    found.function = box.function;
-  }
+  refuting_.look(values_, value, box.function, found.refuting);
+  if (value > found.value && limits_.allow(values_, parts_.evaluator()))
+    static_cast<FoundPlace&>(found) = {value, values_, box.function};
   return value;
 }
 

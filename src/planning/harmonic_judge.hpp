@@ -1,15 +1,13 @@
 #pragma once
 
-#include <memory>
 #include <utility>
 #include <vector>
 
 #include "box_tensor.hpp"
 #include "harmonic_limits.hpp"
 #include "part_squares.hpp"
-#include "posewright/planning/ascent.hpp"
-#include "posewright/planning/configuration_space.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
+#include "refuting_places.hpp"
 
 namespace posewright {
 
@@ -30,8 +28,6 @@ class HarmonicJudge : public BoxJudge {
   void place(const Axis& value_of);
   /// The sensitivity at those values; `found` takes it if no limit forbids them.
   double look(const SearchBox& box, LargestFound& found);
-  /// Keeps the place if it is feasible and its own sensitivity refutes.
-  void look_for_refutation(const SearchBox& box, double bound, FoundPlace& refuting);
   /// What the bounds of factors add to the sensitivity where it was looked at last. @param loosest  term of the most
   double loose_bound(std::size_t& loosest) const;
   void choose_axis(SearchBox& box, double middle);
@@ -48,9 +44,7 @@ class HarmonicJudge : public BoxJudge {
   std::vector<int> axes_;       ///< along which a term's factor becomes tighter
   PartSquares parts_;
   BoxLimits limits_;
-  const Refutation* refutation_;
-  std::unique_ptr<ConfigurationSpace::Probe> probe_;
-  ProbedBlock block_;
+  RefutingPlaces refuting_;
   using Added = std::vector<std::pair<double, const double*>>;
   Added added_, added_low_;  ///< tensors, and how many times each is added
   std::vector<double> low_, values_;

@@ -9,6 +9,7 @@
 #include "box_tensor.hpp"
 #include "harmonic_limits.hpp"
 #include "highest_harmonic.hpp"
+#include "interpolation_error.hpp"
 #include "part_squares.hpp"
 #include "posewright/support/random.hpp"
 #include "random_products.hpp"
@@ -18,9 +19,9 @@ namespace posewright {
 namespace {
 
 constexpr std::uint64_t products_stream = 0x9f02f, degrees_stream = 0x12e5;
-// As of squares (harmonic_bound.cpp, harmonic_degrees.cpp), but of what a product would be without cancellation: one
-// that is zero everywhere is nothing but rounding.
-constexpr double no_harmonic = 1e-10, same_product = 1e-7, off_by = 100.0, of_rounding = 1e-10;
+// As of squares (harmonic_degrees.cpp), but of what a product would be without cancellation: one that is zero
+// everywhere is nothing but rounding.
+constexpr double no_harmonic = 1e-10;
 constexpr int places_of_products = 100, lines_of_products = 3;
 // Axes along which U changes make a box's tensor 7/5 as large each: the few that change it most, none of which less
 // than this share of the one that does most.
@@ -145,15 +146,18 @@ void ReadingNoiseSensitivity::interpolate(Group& group, const Compared& compared
       },
       threads);
   group.coefficients.resize(Eigen::Index(group.places.size()), Eigen::Index(functions.size()));
+  std::vector<double> direct;
   for (std::size_t i = 0; i < functions.size(); ++i) {
     const std::size_t p = group.products[i];
-    double difference = 0, size = 0;
+    double size = 0;
+    direct.clear();
     for (std::size_t k = 0; k < compared.values.size(); ++k) {
-      difference = std::max(difference, std::abs(functions[i].value(compared.values[k]) - compared.products[k][p]));
+      direct.push_back(compared.products[k][p]);
       size = std::max(size, compared.sizes[k][p]);
     }
-    defined_ = defined_ && functions[i].defined() && difference <= same_product * size;
-    errors_[p] = off_by * difference + of_rounding * size;
+    const auto error = interpolation_error(functions[i], compared.values, direct, size);
+    defined_ = defined_ && error;
+    errors_[p] = error.value_or(0.0);
     most_[p] = largest_size(functions[i].coefficients());
     const auto& coefficients = functions[i].coefficients();
     group.coefficients.col(Eigen::Index(i)) =

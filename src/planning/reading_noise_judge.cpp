@@ -20,9 +20,7 @@ ReadingNoiseJudge::ReadingNoiseJudge(const ReadingNoiseSensitivity& function, co
       products_(function.form_, function.T_),
       fitted_(function.form_, function.affine_),
       limits_(*function.limits_, function.degrees_),
-      refutation_(refutation),
-      probe_(refutation != nullptr ? refutation->space.probe() : nullptr),
-      block_(refutation != nullptr ? refutation->rows : 1, int(function.divided_T_.rows())),
+      refuting_(refutation, function.form_, function.divided_T_),
       sum_(function.form_.axes(), function.degrees_, most_powers(function.degrees_.size(), function.affine_)),
       tensor_(function.form_.axes(), function.degrees_) {
   const std::size_t count = function.affine_.size() + 1;
@@ -74,19 +72,9 @@ void ReadingNoiseJudge::judge(SearchBox& box, double enough, LargestFound& found
 }
 
 void ReadingNoiseJudge::look(const SearchBox& box, const std::vector<double>& values, double d, LargestFound& found) {
-  const auto keep = [&](double value, FoundPlace& place) {
-    place.value = value;
-    place.where = values;
-    place.function = box.function;
-  };
-  if (d > found.value && limits_.allow(values, products_.evaluator())) keep(d, found);
-  const auto refutes = [&](double value) { return value > std::max(refutation_->above, found.refuting.value); };
-  if (refutation_ == nullptr || !refutes(d)) return;
-  // A target that is hidden there counts here, but not in its block.
-  const std::vector<double> q = function_.form_.configuration(values);
-  if (!block_.at(*probe_, q)) return;
-  const double own = (block_.map() * function_.divided_T_).squaredNorm();
-  if (refutes(own) && probe_->feasible(q)) keep(own, found.refuting);
+  if (d > found.value && limits_.allow(values, products_.evaluator()))
+    static_cast<FoundPlace&>(found) = {d, values, box.function};
+  refuting_.look(values, d, box.function, found.refuting);
 }
 
 double ReadingNoiseJudge::combine() {

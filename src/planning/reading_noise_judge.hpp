@@ -1,16 +1,14 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "box_sum.hpp"
 #include "box_tensor.hpp"
 #include "fitted_readings.hpp"
 #include "harmonic_limits.hpp"
-#include "posewright/planning/ascent.hpp"
-#include "posewright/planning/configuration_space.hpp"
 #include "posewright/planning/reading_noise_bound.hpp"
 #include "random_products.hpp"
+#include "refuting_places.hpp"
 
 namespace posewright {
 
@@ -35,9 +33,7 @@ class ReadingNoiseJudge : public BoxJudge {
   RandomProducts products_;
   FittedReadings fitted_;
   BoxLimits limits_;
-  const Refutation* refutation_;
-  std::unique_ptr<ConfigurationSpace::Probe> probe_;
-  ProbedBlock block_;
+  RefutingPlaces refuting_;
   BoxSum sum_;
   BoxTensor tensor_;
   std::vector<std::vector<std::size_t>> term_of_;  ///< of U_i and U_k

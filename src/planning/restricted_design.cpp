@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "posewright/planning/approximate_design.hpp"
+#include "posewright/planning/step_to_boundary.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/random.hpp"
 
@@ -21,14 +22,6 @@ constexpr int max_halvings = 20;
 constexpr double boundary_fraction = 0.995;
 // Each step aims at this share of the present products weight × multiplier.
 constexpr double centring = 0.1;
-
-/// Largest step ≤ 1 that keeps x + step·dx > 0.
-double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& dx) {
-  double step = 1.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    if (dx[i] < 0) step = std::min(step, -boundary_fraction * x[i] / dx[i]);
-  return step;
-}
 
 }  // namespace
 
@@ -148,12 +141,12 @@ bool RestrictedDesign::newton_step(double mu) {
   const double d_lambda = (a.sum() - (1 - w_.sum())) / b.sum();
   const Eigen::VectorXd dw = a - d_lambda * b;
   const Eigen::VectorXd dz = (mu / w_.array() - z_.array() - z_.array() / w_.array() * dw.array()).matrix();
-  double primal = step_to_boundary(w_, dw), dual = step_to_boundary(z_, dz);
+  double primal = step_to_boundary(w_, dw, boundary_fraction), dual = step_to_boundary(z_, dz, boundary_fraction);
   Eigen::VectorXd dy;
   if (capped()) {
     dy = (mu / room - y_.array() + y_.array() / room * dw.array()).matrix();
-    primal = std::min(primal, step_to_boundary(room.matrix(), -dw));
-    dual = std::min(dual, step_to_boundary(y_, dy));
+    primal = std::min(primal, step_to_boundary(room.matrix(), -dw, boundary_fraction));
+    dual = std::min(dual, step_to_boundary(y_, dy, boundary_fraction));
   }
   // Criteria that need not know all parameters have optima at singular M: go as near as M stays regular.
   const Eigen::VectorXd before = w_;

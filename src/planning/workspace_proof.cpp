@@ -197,9 +197,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   if (!proof.why_not.empty()) return;
 
   Monitor own;
-  own.interrupted = monitor.interrupted;
-  own.deadline = monitor.deadline;
-  own.engine = monitor.engine;
+  own.follow(monitor);
   // Several processes would not come to the same end of what they all compute: their time ends the boxes.
   const bool boxes_alone = several_processes(monitor);
   if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);

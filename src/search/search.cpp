@@ -336,9 +336,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   result.measure = measure(joined, entry, criterion);
   result.degree = share;
   Monitor shifted;
-  shifted.interrupted = monitor.interrupted;
-  shifted.deadline = monitor.deadline;
-  shifted.engine = monitor.engine;
+  shifted.follow(monitor);
   // People see the log det that will be in the plan, not that of whitened coordinates.
   const double offset = offset_of(joined, entry);
   shifted.on_progress = [&](Progress progress) {

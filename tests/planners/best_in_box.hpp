@@ -1,6 +1,9 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -22,6 +25,20 @@ inline double best_in_box(const DesignTask& task, const ChoiceBox& box, std::siz
   }
   members = before;
   return best;
+}
+
+/// A tree that begins with a bad design proves the optimum, the same design on any number of threads.
+inline void expect_found_from_the_worst(const DesignTask& task, double optimum, std::uint64_t seed) {
+  Design first;
+  for (const int threads : {1, 3}) {
+    Design design;
+    design.value = -50.0;
+    EXPECT_TRUE(DesignTree(task, threads, Monitor{}, design).run());
+    EXPECT_NEAR(design.value, optimum, 2e-9) << seed;
+    EXPECT_EQ(design.bound, design.value);
+    if (threads == 1) first = design;
+    else EXPECT_EQ(design.members, first.members);
+  }
 }
 
 }  // namespace posewright

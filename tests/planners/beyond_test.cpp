@@ -90,16 +90,7 @@ TEST(BranchAndBound, FindsTheOptimumFromTheWorstDesignOnAnyNumberOfThreads) {
     ChoiceBox whole{std::vector<std::uint16_t>(16, 0), std::vector<std::uint16_t>(16, 1)};
     std::vector<int> members;
     const double optimum = best_in_box(task, whole, 0, members);
-    Design first;
-    for (const int threads : {1, 3}) {
-      Design design;
-      design.value = -50.0;
-      EXPECT_TRUE(DesignTree(task, threads, Monitor{}, design).run());
-      EXPECT_NEAR(design.value, optimum, 2e-9) << seed;
-      EXPECT_EQ(design.bound, design.value);
-      if (threads == 1) first = design;
-      else EXPECT_EQ(design.members, first.members);
-    }
+    expect_found_from_the_worst(task, optimum, seed);
   }
 }
 

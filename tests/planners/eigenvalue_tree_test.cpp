@@ -162,16 +162,7 @@ TEST(EigenvalueTree, FindsTheOptimumFromTheWorstDesignOnAnyNumberOfThreads) {
                     std::vector<std::uint16_t>(blocks.count(), std::uint16_t(repeats))};
     std::vector<int> members;
     const double optimum = best_in_box(task, whole, 0, members);
-    Design first;
-    for (const int threads : {1, 3}) {
-      Design design;
-      design.value = -50.0;
-      EXPECT_TRUE(DesignTree(task, threads, Monitor{}, design).run());
-      EXPECT_NEAR(design.value, optimum, 2e-9) << seed;
-      EXPECT_EQ(design.bound, design.value);
-      if (threads == 1) first = design;
-      else EXPECT_EQ(design.members, first.members);
-    }
+    expect_found_from_the_worst(task, optimum, seed);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "posewright/support/random.hpp"
 #include "src/planning/box_tensor.hpp"
+#include "tests/kit/basis_product.hpp"
 
 namespace posewright {
 namespace {
@@ -32,16 +33,7 @@ struct RandomSensitivity {
   }
   double operator()(std::span<const double> q) const {
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3, 4);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      double product = 1;
-      std::size_t rest = i;
-      for (std::size_t a = 0; a < axes.size(); ++a) {
-        const std::size_t terms = axes[a].turns ? 3 : 2, k = rest % terms;
-        rest /= terms;
-        product *= k == 0 ? 1 : !axes[a].turns ? q[a] : k == 1 ? std::cos(q[a]) : std::sin(q[a]);
-      }
-      J += product * parts[i];
-    }
+    for (std::size_t i = 0; i < parts.size(); ++i) J += basis_product(axes, i, q) * parts[i];
     return J.squaredNorm();
   }
 };

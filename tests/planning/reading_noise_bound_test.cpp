@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "posewright/support/random.hpp"
+#include "tests/kit/basis_product.hpp"
 
 namespace posewright {
 namespace {
@@ -65,16 +66,7 @@ class RandomForm : public HarmonicForm {
 
   Eigen::MatrixXd at(std::span<const double> q) const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows_of_B, columns_of_B + columns_of_Z);
-    for (std::size_t i = 0; i < tensors_.size(); ++i) {
-      double product = 1;
-      std::size_t rest = i;
-      for (std::size_t a = 0; a < axes_.size(); ++a) {
-        const std::size_t terms = axes_[a].turns ? 3 : 2, k = rest % terms;
-        rest /= terms;
-        product *= k == 0 ? 1 : !axes_[a].turns ? q[a] : k == 1 ? std::cos(q[a]) : std::sin(q[a]);
-      }
-      sum += product * tensors_[i];
-    }
+    for (std::size_t i = 0; i < tensors_.size(); ++i) sum += basis_product(axes_, i, q) * tensors_[i];
     return sum;
   }
   /// tr TᵀBᵀ(1 + ZZᵀ)⁻¹BT.

@@ -34,6 +34,12 @@ class Monitor {
   /// own, without one.
   TaskEngine* engine = nullptr;
 
+  /// Stops where the other does, with the same helping hands; progress is its own.
+  void follow(const Monitor& other) {
+    interrupted = other.interrupted;
+    deadline = other.deadline;
+    engine = other.engine;
+  }
   /// Not after so many seconds from now.
   void end_within(double seconds) {
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

@@ -1,5 +1,5 @@
-"""Every equation that a comment cites as `theory.md eq. (n)` stands in docs/theory.md, numbers are in order, and no
-comment cites a document that is not in the repository: check_equations.py SOURCE."""
+"""Every equation that a comment cites as `theory.md eq. (n)` is in docs/theory.md, each number is there once and none is
+missing, and no comment cites a document that is not in the repository: check_equations.py SOURCE."""
 
 import pathlib
 import re
@@ -7,7 +7,7 @@ import sys
 
 SOURCE = pathlib.Path(sys.argv[1])
 there = [int(n) for n in re.findall(r"^    \((\d+)\)", (SOURCE / "docs/theory.md").read_text(), re.M)]
-bad = [] if there == list(range(1, len(there) + 1)) else [f"docs/theory.md: equations are numbered {there}"]
+bad = [] if sorted(there) == list(range(1, len(there) + 1)) else [f"docs/theory.md: equations are numbered {there}"]
 cited = 0
 for folder in ("include", "src", "planners", "python", "tests"):
     for path in sorted((SOURCE / folder).rglob("*")):

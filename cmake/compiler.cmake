@@ -22,7 +22,10 @@ set_property(GLOBAL PROPERTY JOB_POOLS compilers=${posewright_jobs})
 set(CMAKE_JOB_POOL_COMPILE compilers)
 set(CMAKE_JOB_POOL_LINK compilers)
 
-find_program(CCACHE_PROGRAM ccache)
+# A build folder goes on as it began: a compiler called in another way would compile everything again.
+if(NOT DEFINED CCACHE_PROGRAM)
+  find_program(CCACHE_PROGRAM ccache)
+endif()
 mark_as_advanced(CCACHE_PROGRAM)
 if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   # Paths are made relative, so that another clone finds what this one compiled; what a precompiled header defines and the

@@ -9,26 +9,20 @@ target_include_directories(posewright_headers INTERFACE
 target_compile_features(posewright_headers INTERFACE cxx_std_20)
 target_link_libraries(posewright_headers INTERFACE Eigen3::Eigen)
 
-# What most sources read anyway, parsed once and not in every unit. One set for each level of
-# optimisation, because a compiler takes only what was made with its own options. The tests take the cold set,
-# so it holds their framework too if that is installed: a third set would be as large as all the rest.
-find_package(GTest 1.12 QUIET CONFIG)
-if(GTest_FOUND)
-  add_compile_definitions(GTEST_HAS_PTHREAD=1)   # as its target says: the set is of use to those alone that define the same
-endif()
-foreach(level IN ITEMS hot cold)
-  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/parsed/${level}.cpp CONTENT "")
-  add_library(posewright_parsed_${level} OBJECT ${PROJECT_BINARY_DIR}/parsed/${level}.cpp)
-  target_link_libraries(posewright_parsed_${level} PRIVATE posewright_headers posewright_warnings ${POSEWRIGHT_LIBRARIES})
-  target_precompile_headers(posewright_parsed_${level} PRIVATE
+# posewright_parsed(SET [header...]): the target posewright_parsed_SET, whose precompiled header others reuse: what most sources
+# read anyway, parsed once and not in every unit. A set for each level of optimisation and one for the tests with their
+# framework, because a compiler takes only what was made with its own options.
+function(posewright_parsed set)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/parsed/${set}.cpp CONTENT "")
+  add_library(posewright_parsed_${set} OBJECT ${PROJECT_BINARY_DIR}/parsed/${set}.cpp)
+  target_link_libraries(posewright_parsed_${set} PRIVATE posewright_headers posewright_warnings ${POSEWRIGHT_LIBRARIES})
+  target_precompile_headers(posewright_parsed_${set} PRIVATE
     <Eigen/Dense> <nlohmann/json.hpp> <fmt/format.h>
     <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <numeric> <optional> <set> <span> <sstream>
-    <string> <string_view> <thread> <tuple> <utility> <variant> <vector>)
-endforeach()
-if(GTest_FOUND)
-  target_link_libraries(posewright_parsed_cold PRIVATE GTest::gmock)
-  target_precompile_headers(posewright_parsed_cold PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
-endif()
+    <string> <string_view> <thread> <tuple> <utility> <variant> <vector> ${ARGN})
+endfunction()
+posewright_parsed(hot)
+posewright_parsed(cold)
 
 # posewright_unit_size(TARGET COUNT): so many sources are compiled as one, where CMAKE_UNITY_BUILD asks for it. Large units
 # share headers and templates; small ones keep a change of one line, and the memory of one compiler, small.

@@ -21,8 +21,9 @@ struct PlacedShape {
 /// that the file does not have.
 std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const Problem& problem);
 
-/// Models of an SDF world, or the model of an SDF file, as libsdformat reads them; `model::link` where a model has
-/// several links. Models that are not found and not left out are an error.
+/// Collision shapes of an SDF world (1.4 or later), or of the model of an SDF file, with all it includes;
+/// `model::link` where a model has several links. Throws InputError for models that are neither found nor left out,
+/// frames that are not there, and shapes of a kind that is not read.
 std::vector<PlacedShape> read_sdf_shapes(const ObstacleFileSpec& spec, const Problem& problem);
 
 /// Objects of the text that MoveIt's planning scene writes, with poses of objects (since 2021) or without.

@@ -1,157 +1,154 @@
 #include <algorithm>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <sdf/sdf.hh>
+#include <map>
 
-#include "mesh_file.hpp"
 #include "obstacle_files.hpp"
-#include "own_process.hpp"
-#include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
+#include "sdf_frames.hpp"
+#include "sdf_model_file.hpp"
+#include "sdf_shape.hpp"
 
 namespace posewright {
 namespace {
 
-using Json = nlohmann::json;
+constexpr int deepest_include = 30;
+constexpr long most_elements = 200'000;  // of a world with all that it includes
 
-Eigen::Isometry3d isometry_of(const ignition::math::Pose3d& pose) {
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.translation() << pose.Pos().X(), pose.Pos().Y(), pose.Pos().Z();
-  X.linear() = Eigen::Quaterniond(pose.Rot().W(), pose.Rot().X(), pose.Rot().Y(), pose.Rot().Z()).normalized().matrix();
-  return X;
-}
+/// A model, called and placed as it says itself or as the <include> says that brings it.
+struct SdfModel {
+  SdfElement element;
+  std::string name;
+  SdfPose pose;
+  std::string placement;  ///< name of the frame in it that stands at its pose, "": its own
+  bool merged = false;    ///< its links become those of the model that includes it
+};
 
-Eigen::Isometry3d resolved(const sdf::SemanticPose& pose, const std::string& name) {
-  ignition::math::Pose3d result;
-  if (const sdf::Errors errors = pose.Resolve(result); !errors.empty())
-    throw OwnProcessFailed("the pose of " + name + " cannot be found: " + errors.front().Message());
-  return isometry_of(result);
-}
-
-Json numbers(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
-
-/// What the child sends: one entry a shape, in plain numbers.
-class Flattener {
+class SdfReader {
  public:
-  Json list = Json::array();
+  SdfReader(const ObstacleFileSpec& spec, const Problem& problem) : spec_(spec), problem_(problem) {}
 
-  void add(const sdf::Model& model, const Eigen::Isometry3d& X_WorldParent, const std::string& prefix) {
-    const std::string name = prefix + model.Name();
-    const Eigen::Isometry3d X = X_WorldParent * resolved(model.SemanticPose(), name);
-    const bool alone = model.LinkCount() == 1 && model.ModelCount() == 0;
-    for (std::uint64_t l = 0; l < model.LinkCount(); ++l) {
-      const sdf::Link& link = *model.LinkByIndex(l);
-      const std::string body = alone ? name : name + "::" + link.Name();
-      const Eigen::Isometry3d X_WorldLink = X * resolved(link.SemanticPose(), body);
-      for (std::uint64_t c = 0; c < link.CollisionCount(); ++c) add(*link.CollisionByIndex(c), X_WorldLink, body);
+  std::vector<PlacedShape> read() {
+    const SdfElement root = SdfElement::open(spec_.file);
+    const SdfScope top{"", "world", ""};
+    for (const SdfElement& child : root.children())
+      if (child.tag() == "world") read_children(child, top);
+    read_children(root, top);
+    std::vector<PlacedShape> shapes;
+    for (Found& found : found_) {
+      const Parts& parts = parts_[found.model];
+      const bool alone = parts.links == 1 && parts.models == 0;
+      shapes.push_back({alone ? found.model : found.model + "::" + found.link, std::move(found.shape.shape),
+                        frames_.in_world(found.base, found.element) * found.X * found.shape.X, found.line});
     }
-    for (std::uint64_t m = 0; m < model.ModelCount(); ++m) add(*model.ModelByIndex(m), X, name + "::");
+    return shapes;
   }
 
  private:
-  void add(const sdf::Collision& collision, const Eigen::Isometry3d& X_WorldLink, const std::string& body) {
-    const Eigen::Isometry3d X = X_WorldLink * resolved(collision.SemanticPose(), body);
-    const sdf::Geometry& geometry = *collision.Geom();
-    if (const auto* box = geometry.BoxShape()) add("box", numbers(box->Size()), X, body, collision);
-    else if (const auto* cylinder = geometry.CylinderShape())
-      add("cylinder", {cylinder->Radius(), cylinder->Length()}, X, body, collision);
-    else if (const auto* sphere = geometry.SphereShape()) add("sphere", {sphere->Radius()}, X, body, collision);
-    else if (const auto* plane = geometry.PlaneShape()) add("plane", numbers(plane->Normal()), X, body, collision);
-    else if (const auto* capsule = geometry.CapsuleShape()) add_capsule(*capsule, X, body, collision);
-    else if (const auto* mesh = geometry.MeshShape(); mesh != nullptr && mesh->Submesh().empty()) {
-      add("mesh", numbers(mesh->Scale()), X, body, collision);
-      list.back()["uri"] = mesh->Uri();
-      list.back()["file"] = mesh->FilePath();
-    } else {
-      throw OwnProcessFailed("'" + body + "' has a shape of a kind that is not read: box, cylinder, sphere, capsule, " +
-                             "plane and whole meshes are");
+  struct Found {
+    std::string model, link, base;
+    Eigen::Isometry3d X;
+    SdfShape shape;
+    SdfElement element;
+    int line;
+  };
+  struct Parts {
+    int links = 0, models = 0;
+  };
+
+  bool is_left_out(const SdfScope& scope, const std::string& name) const {
+    return scope.prefix.empty() &&
+           std::any_of(spec_.except.begin(), spec_.except.end(), [&](const auto& e) { return e.value == name; });
+  }
+
+  void read_children(const SdfElement& element, const SdfScope& scope) {
+    for (const SdfElement& child : element.children()) {
+      if (++elements_ > most_elements) child.fail("is beyond what a world may hold", "200,000 elements");
+      const std::string tag = child.tag();
+      if (tag == "model") read_model({child, child.name(), child.pose(), child.attribute("placement_frame")}, scope);
+      else if (tag == "include") read_include(child, scope);
+      else if (tag == "link" && !scope.model.empty()) read_link(child, scope);
+      else if (tag == "frame") read_frame(child, scope, child.attribute("attached_to"));
+      else if (tag == "joint") read_frame(child, scope, child.text_of("child"));
+      else if (tag == "population") child.fail("<population> is not read", "models that are written out");
     }
   }
 
-  void add_capsule(const sdf::Capsule& capsule, const Eigen::Isometry3d& X, const std::string& body,
-                   const sdf::Collision& collision) {
-    add("cylinder", {capsule.Radius(), capsule.Length()}, X, body, collision);
-    for (const double end : {-0.5, 0.5})
-      add("sphere", {capsule.Radius()}, X * Eigen::Translation3d(0, 0, end * capsule.Length()), body, collision);
+  void read_model(const SdfModel& model, const SdfScope& outer) {
+    if (is_left_out(outer, model.name)) return;
+    const std::string name = outer.prefix + (model.merged ? "_merged__" + model.name + "__model__" : model.name);
+    const SdfScope inner =
+        model.merged ? SdfScope{outer.prefix, name, outer.model} : SdfScope{name + "::", name + "::__model__", name};
+    frames_.add(name, outer.full(model.pose.relative_to), model.pose.X, model.element, inner.full(model.placement, ""),
+                inner.own);
+    if (!model.merged) {
+      frames_.add(inner.own, name, Eigen::Isometry3d::Identity(), model.element);
+      ++parts_[outer.model].models;
+    }
+    read_children(model.element, inner);
   }
 
-  void add(const char* kind, Json values, const Eigen::Isometry3d& X, const std::string& body,
-           const sdf::Collision& collision) {
-    Json place = Json::array();
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 3; ++row) place.push_back(X(row, column));
-    const auto line = collision.Element() == nullptr ? std::nullopt : collision.Element()->LineNumber();
-    list.push_back(
-        {{"kind", kind}, {"values", std::move(values)}, {"name", body}, {"X", place}, {"line", line.value_or(0)}});
+  /// A frame or joint; a joint that is called as its link, as in old files, is no frame of its own.
+  void read_frame(const SdfElement& element, const SdfScope& scope, const std::string& attached_to) {
+    const SdfPose pose = element.pose();
+    const std::string name = scope.prefix + element.name();
+    if (element.tag() == "joint" && frames_.has(name)) return;
+    frames_.add(name, scope.full(pose.relative_to, scope.full(attached_to)), pose.X, element);
   }
+
+  void read_link(const SdfElement& element, const SdfScope& scope) {
+    const SdfPose pose = element.pose();
+    const std::string name = scope.prefix + element.name();
+    frames_.add(name, scope.full(pose.relative_to), pose.X, element);
+    ++parts_[scope.model].links;
+    for (const SdfElement& collision : element.children()) {
+      if (collision.tag() != "collision") continue;
+      const SdfPose at = collision.pose();
+      const auto geometry = collision.child("geometry");
+      if (!geometry) collision.fail("<collision> has no <geometry>", "a shape is needed");
+      for (SdfShape& shape : sdf_shapes(*geometry))
+        found_.push_back({scope.model, element.name(), scope.full(at.relative_to, name), at.X, std::move(shape),
+                          collision, line_ > 0 ? line_ : collision.line()});
+    }
+  }
+
+  void read_include(const SdfElement& include, const SdfScope& scope) {
+    const std::string uri = include.text_of("uri"), name = include.text_of("name");
+    if (uri.empty()) include.fail("<include> has no <uri>", "model://NAME or a file is needed");
+    if (is_left_out(scope, name) || is_left_out(scope, package_of_uri(uri))) return;
+    if (depth_ == deepest_include) include.fail("models include each other too deep", "30 levels");
+    const SdfElement& root = opened(sdf_model_file(include, uri, problem_));
+    const auto element = root.child("model");
+    if (!element && (root.child("light") || root.child("actor"))) return;
+    if (!element) include.fail("'" + root.file().string() + "' has no <model>", "a file with one model is needed");
+    SdfModel model{*element, name.empty() ? element->name() : name, (include.child("pose") ? include : *element).pose(),
+                   include.text_of("placement_frame"), include.attribute("merge") == "true"};
+    if (model.merged && scope.model.empty()) include.fail("merge=\"true\" stands outside a model", "leave it out here");
+    if (model.placement.empty()) model.placement = element->attribute("placement_frame");
+    const int outermost = line_;
+    if (line_ == 0) line_ = include.line();
+    ++depth_;
+    read_model(model, scope);
+    --depth_;
+    line_ = outermost;
+  }
+
+  const SdfElement& opened(const std::filesystem::path& file) {
+    const auto known = files_.find(file);
+    return known != files_.end() ? known->second : files_.emplace(file, SdfElement::open(file)).first->second;
+  }
+
+  const ObstacleFileSpec& spec_;
+  const Problem& problem_;
+  SdfFrames frames_;
+  std::vector<Found> found_;
+  std::map<std::string, Parts> parts_;  // of models by their full names
+  std::map<std::filesystem::path, SdfElement> files_;
+  long elements_ = 0;
+  int depth_ = 0, line_ = 0;  // of includes; line of the <include> in the world's own file, 0: none
 };
-
-bool is_left_out(const ObstacleFileSpec& spec, const std::string& name) {
-  return std::any_of(spec.except.begin(), spec.except.end(), [&](const auto& e) { return e.value == name; });
-}
-
-/// Includes of models that are left out need not be found.
-bool is_forgiven(const sdf::Error& error, const ObstacleFileSpec& spec) {
-  if (error.Code() != sdf::ErrorCode::URI_LOOKUP) return false;
-  return std::any_of(spec.except.begin(), spec.except.end(),
-                     [&](const auto& e) { return error.Message().find("model://" + e.value) != std::string::npos; });
-}
-
-std::string flattened(const ObstacleFileSpec& spec, const Problem& problem) {
-  // The library keeps a log in the user's home otherwise.
-  ::setenv("HOME", "/nonexistent", 1);
-  sdf::Console::Instance()->SetQuiet(true);
-  sdf::ParserConfig config;
-  config.SetFindCallback([&](const std::string& uri) { return find_model(uri, problem).string(); });
-  sdf::Root root;
-  for (const sdf::Error& error : root.Load(spec.file.string(), config)) {
-    if (is_forgiven(error, spec)) continue;
-    const std::string line = error.LineNumber() ? "line " + std::to_string(*error.LineNumber()) + ": " : "";
-    throw OwnProcessFailed("is not read: " + line + error.Message());
-  }
-  Flattener flat;
-  const auto add = [&](const sdf::Model& model) {
-    if (!is_left_out(spec, model.Name())) flat.add(model, Eigen::Isometry3d::Identity(), "");
-  };
-  if (root.Model() != nullptr) add(*root.Model());
-  for (std::uint64_t w = 0; w < root.WorldCount(); ++w)
-    for (std::uint64_t m = 0; m < root.WorldByIndex(w)->ModelCount(); ++m) add(*root.WorldByIndex(w)->ModelByIndex(m));
-  return flat.list.dump();
-}
-
-ShapeSpec shape_of(const Json& entry, const std::filesystem::path& folder) {
-  const std::string kind = entry.at("kind");
-  const auto v = entry.at("values").get<std::vector<double>>();
-  if (kind == "cylinder") return CylinderShape{v[0], v[1]};
-  if (kind == "sphere") return SphereShape{v[0]};
-  const Eigen::Vector3d vector(v[0], v[1], v[2]);
-  if (kind == "box") return BoxShape{vector};
-  if (kind == "plane") return HalfSpaceShape{vector.normalized()};
-  const std::string uri = entry.at("uri"), file = entry.at("file");
-  if (uri.find("://") != std::string::npos) return MeshShape{uri, vector};
-  return MeshShape{(file.empty() ? folder : std::filesystem::path(file).parent_path()) / uri, vector};
-}
 
 }  // namespace
 
 std::vector<PlacedShape> read_sdf_shapes(const ObstacleFileSpec& spec, const Problem& problem) {
-  record_input(spec.file);
-  Json list;
-  try {
-    list = Json::parse(in_own_process([&] { return flattened(spec, problem); }));
-  } catch (const OwnProcessFailed& error) {
-    throw InputError({spec.file.string(), 0}, error.what(),
-                     "an SDF file is needed, and the models it includes: --package NAME=FOLDER, except: [NAME]");
-  }
-  std::vector<PlacedShape> shapes;
-  for (const Json& entry : list) {
-    PlacedShape placed{entry.at("name"), shape_of(entry, spec.file.parent_path()), {}, entry.at("line")};
-    const auto x = entry.at("X").get<std::vector<double>>();
-    placed.X = Eigen::Isometry3d::Identity();
-    placed.X.matrix().topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4>>(x.data());
-    shapes.push_back(std::move(placed));
-  }
-  return shapes;
+  return SdfReader(spec, problem).read();
 }
 
 }  // namespace posewright

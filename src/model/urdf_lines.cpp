@@ -2,14 +2,11 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstring>
-#include <locale>
 #include <map>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <unordered_map>
 
@@ -36,30 +33,14 @@ constexpr std::array<NumberAttribute, 11> number_attributes = {{{"origin", "xyz"
                                                                 {"mimic", "multiplier", 1},
                                                                 {"mimic", "offset", 1}}};
 
-/// Exactly `count` finite numbers separated by blanks.
 bool are_numbers(std::string_view text, int count) {
-  int found = 0;
-  while (true) {
-    const auto first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return found == count;
-    text.remove_prefix(first);
-    if (text.front() == '+') text.remove_prefix(1);
-    double value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || !std::isfinite(value)) return false;
-    text.remove_prefix(std::size_t(end - text.data()));
-    if (!text.empty() && std::strchr(" \t\r\n", text.front()) == nullptr) return false;
-    ++found;
-  }
+  const auto numbers = numbers_in(text);
+  return numbers && numbers->size() == std::size_t(count);
 }
 
-/// Of numbers that are well-formed.
-bool are_positive(const std::string& text) {
-  std::istringstream numbers(text);
-  numbers.imbue(std::locale::classic());
-  for (double value = 0; numbers >> value;)
-    if (!(value > 0)) return false;
-  return true;
+bool are_positive(std::string_view text) {
+  const auto numbers = numbers_in(text);
+  return numbers && std::all_of(numbers->begin(), numbers->end(), [](double value) { return value > 0; });
 }
 
 // Of a file; more is not a robot.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 namespace posewright {
 namespace {
@@ -74,6 +76,22 @@ std::string_view trimmed_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::vector<double> numbers;
+  for (std::size_t begin = text.find_first_not_of(blanks); begin != text.npos; begin = text.find_first_not_of(blanks)) {
+    text.remove_prefix(begin);
+    std::string_view word = text.substr(0, text.find_first_of(blanks));
+    text.remove_prefix(word.size());
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (code != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+    numbers.push_back(value);
+  }
+  return numbers;
 }
 
 }  // namespace posewright

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace posewright {
 
@@ -21,5 +23,8 @@ bool has_control_character(std::string_view text);
 
 /// Without the blanks and tabs at both ends.
 std::string_view trimmed_blanks(std::string_view text);
+
+/// Finite numbers separated by blanks and line breaks; none if `text` holds anything else.
+std::optional<std::vector<double>> numbers_in(std::string_view text);
 
 }  // namespace posewright

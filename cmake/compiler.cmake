@@ -1,4 +1,12 @@
 # How the compiler is called: what an optimised build means, how many run at once, and a cache where there is one.
+foreach(oldest IN ITEMS "GNU 12" "Clang 14")
+  separate_arguments(oldest)
+  list(POP_FRONT oldest id)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL id AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS oldest)
+    message(FATAL_ERROR "posewright is compiled by g++ 12 or clang 14 or later, not by ${id} ${CMAKE_CXX_COMPILER_VERSION}; "
+      "without compiling: pip install posewright-*.whl (docs/install.md)")
+  endif()
+endforeach()
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
@@ -9,10 +17,10 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1 -DNDEBUG")
 # The compiler collects its memory later: less of its time goes there (3.6 of 38 s of one unit before).
 add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=400000>)
 
-# One compiler may take 1.5 GB: as many at once as there are processors and as memory holds.
+# One compiler may take 2.2 GB: as many at once as there are processors and as memory holds.
 cmake_host_system_information(RESULT posewright_cores QUERY NUMBER_OF_LOGICAL_CORES)
 cmake_host_system_information(RESULT posewright_memory QUERY TOTAL_PHYSICAL_MEMORY)   # MiB
-math(EXPR posewright_jobs "${posewright_memory} / 1800")
+math(EXPR posewright_jobs "${posewright_memory} / 2400")
 if(posewright_jobs GREATER posewright_cores)
   set(posewright_jobs ${posewright_cores})
 elseif(posewright_jobs LESS 1)

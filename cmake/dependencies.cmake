@@ -1,8 +1,9 @@
-# Every package comes from Debian 12; docs/dependencies.md gives the reason for each.
+# Every package is one of Debian 12 and 13; docs/dependencies.md gives the reason for each, package.xml its key of rosdep.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
+find_package(Boost 1.74 REQUIRED CONFIG COMPONENTS program_options)
 find_package(urdfdom REQUIRED CONFIG)
-find_package(tinyxml2 9 REQUIRED CONFIG)
+find_package(console_bridge REQUIRED CONFIG)   # urdfdom writes to it; its CMake file brings it in version 3 alone
+find_package(tinyxml2 REQUIRED CONFIG)         # 9 and 11: its CMake file refuses any other number than its own
 find_package(yaml-cpp 0.7 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
@@ -10,14 +11,10 @@ find_package(NLopt 2.7 REQUIRED CONFIG)
 find_package(fcl 0.7 REQUIRED CONFIG)
 find_package(assimp 5.2 REQUIRED CONFIG)
 find_package(Qhull REQUIRED CONFIG)
-find_package(sdformat12 REQUIRED CONFIG)
 find_package(Threads REQUIRED)
 
-# libmd ships no CMake file.
-if(NOT TARGET libmd::libmd)
-  find_library(LIBMD_LIBRARY NAMES md REQUIRED)
-  add_library(libmd::libmd UNKNOWN IMPORTED)
-  set_target_properties(libmd::libmd PROPERTIES IMPORTED_LOCATION "${LIBMD_LIBRARY}")
+if(NOT TARGET yaml-cpp::yaml-cpp)   # so called since version 0.8
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
 
 # Debian's omplConfig.cmake names Boost libraries that libompl-dev does not depend on: take only libompl.so.
@@ -32,5 +29,5 @@ if(NOT TARGET OMPL::ompl)
 endif()
 
 set(POSEWRIGHT_LIBRARIES
-  Boost::headers OMPL::ompl urdfdom::urdfdom_model tinyxml2::tinyxml2 yaml-cpp
-  nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r sdformat12::sdformat12 Threads::Threads libmd::libmd)
+  Boost::headers OMPL::ompl urdfdom::urdfdom_model console_bridge::console_bridge tinyxml2::tinyxml2 yaml-cpp::yaml-cpp
+  nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r Threads::Threads)

@@ -44,7 +44,9 @@ struct Scratch {
 
 /// Fills s.response from s.loops and s.freedoms; false at a singularity.
 bool solve_response(Scratch& s) {
-  s.factor.compute((s.loops.platform * s.freedoms).transpose());
+  // A product of its own type: whether Eigen's temporary of any size meets the heap is up to the compiler.
+  const Square along_freedoms = s.loops.platform.lazyProduct(s.freedoms);
+  s.factor.compute(along_freedoms.transpose());
   if (is_singular(s.factor)) return false;
   const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> freedoms = s.freedoms.transpose();
   s.response = -s.factor.solve(freedoms).transpose();

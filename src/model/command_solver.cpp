@@ -20,7 +20,7 @@ constexpr int most_steps = 60;
 constexpr double longest_step = 0.3;
 constexpr double first_damping = 1e-3, least_damping = 1e-7, most_damping = 1e2;
 // A commanded value at a limit differs from it by rounding.
-constexpr double rounding = 1e-9;
+constexpr double limit_rounding = 1e-9;
 
 using Error = Eigen::Matrix<double, 6, 1>;
 
@@ -228,7 +228,7 @@ void CommandSolver::judge(const Work& w, std::span<const double> configuration, 
       return blame(Outcome::too_far, i, change);
   }
   const auto beyond = [](const Coordinate& c, double value) {
-    return !c.choice() && !c.periodic && (value < c.lower - rounding || value > c.upper + rounding);
+    return !c.choice() && !c.periodic && (value < c.lower - limit_rounding || value > c.upper + limit_rounding);
   };
   for (std::size_t i = 0; i < commanded_.size(); ++i)
     if (beyond(commanded_[i], w.u[Eigen::Index(i)])) return blame(Outcome::beyond_limit, i, w.u[Eigen::Index(i)]);

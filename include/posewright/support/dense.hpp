@@ -64,9 +64,17 @@
   EXTERN template void evaluateProductBlockingSizesHeuristic<double, double, 4, Index>(Index&, Index&, Index&, Index); \
   }                                                                                                                    \
   EXTERN template class LLT<MatrixXd>;                                                                                 \
+  EXTERN template class LDLT<MatrixXd>;                                                                                \
   EXTERN template class HouseholderQR<MatrixXd>;                                                                       \
   EXTERN template class ColPivHouseholderQR<MatrixXd>;                                                                 \
+  EXTERN template class CompleteOrthogonalDecomposition<MatrixXd>;                                                     \
   EXTERN template class SelfAdjointEigenSolver<MatrixXd>;                                                              \
   EXTERN template class JacobiSVD<MatrixXd>;                                                                           \
+  EXTERN template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);                                   \
+  EXTERN template void LLT<MatrixXd>::_solve_impl(const MatrixXd&, MatrixXd&) const;                                   \
+  EXTERN template void LLT<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;                                   \
+  EXTERN template LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);                                 \
+  EXTERN template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(                         \
+      const EigenBase<MatrixXd>&, int);                                                                                \
   }
 POSEWRIGHT_DENSE_INSTANCES(extern)

@@ -1,10 +1,11 @@
-"""The shared libraries that a package needs are put into its wheel, as auditwheel does (which Debian 12 does not have).
+"""The shared libraries that programs and modules need are put beside them, as auditwheel does (which Debian 12 does not have).
 
-Each gets a name with its hash, so that no other wheel's library of that name is taken for it, and finds the others beside it.
+Each gets a name with its hash, so that no other library of that name in the process is taken for it, and finds the others beside it.
 Tools: ldd, readelf (binutils), patchelf; dpkg says whose each library is, for its licence."""
 from __future__ import annotations
 
 import hashlib
+import os
 import pathlib
 import re
 import shutil
@@ -12,16 +13,16 @@ import subprocess
 
 # Present on every Linux that runs wheels (PEP 600).
 EVERYWHERE = re.compile(r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|util|pthread|resolv|stdc\+\+|gcc_s))\.so.*")
+# Of the C++ library of GCC 12, which is as old as glibc 2.35.
+YOUNGEST_CXX = (3, 4, 30)
 
 
-def bundle(content: pathlib.Path, name: str) -> tuple[str, dict[str, str]]:
-    """Libraries go to NAME.libs below `content`. Returns the platform's tag and {Debian packages: their copyright}."""
+def bundle(files: list[pathlib.Path], folder: pathlib.Path) -> dict[str, str]:
+    """Copies all libraries that `files` need into `folder`, where they find them. Returns {Debian packages: their copyright}."""
     if shutil.which("patchelf") is None:
         raise SystemExit("patchelf is missing (Debian: patchelf)")
-    folder = content / f"{name}.libs"
-    folder.mkdir()
-    modules = [path for path in content.rglob("*.so") if folder not in path.parents]
-    needed = {soname: path for module in modules for soname, path in _libraries(module).items()}
+    folder.mkdir(parents=True)
+    needed = {soname: path for file in files for soname, path in _libraries(file).items()}
     names, licences = {}, {}
     for soname, path in sorted(needed.items()):
         stem, _, rest = soname.partition(".so")
@@ -30,12 +31,24 @@ def bundle(content: pathlib.Path, name: str) -> tuple[str, dict[str, str]]:
         (folder / names[soname]).chmod(0o755)
         package = _package(path)
         licences[package] = pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text()
-    for soname, changed in names.items():
+    for changed in names.values():
         _patch(folder / changed, names, "$ORIGIN", "--set-soname", changed)
-    for module in modules:
-        up = "/".join([".."] * len(module.relative_to(content).parent.parts))
-        _patch(module, names, f"$ORIGIN/{up}/{folder.name}")
-    return _platform([*modules, *folder.iterdir()]), _each_once(licences)
+    for file in files:
+        _patch(file, names, f"$ORIGIN/{os.path.relpath(folder, file.parent)}")
+    return _each_once(licences)
+
+
+def oldest_glibc(files: list[pathlib.Path]) -> tuple[int, int]:
+    """Version of the youngest symbol of glibc that any of them needs."""
+    cxx = max((found for file in files for found in _symbols(file, "GLIBCXX")), default=())
+    if cxx > YOUNGEST_CXX:
+        raise SystemExit(f"a symbol of GLIBCXX_{'.'.join(map(str, cxx))} is needed: build on Debian 12, so that older systems can run it")
+    major, minor = max(found[:2] for file in files for found in _symbols(file, "GLIBC"))
+    return major, minor
+
+
+def _symbols(file: pathlib.Path, library: str) -> set[tuple[int, ...]]:
+    return {tuple(map(int, found.split("."))) for found in re.findall(rf"\b{library}_(\d+(?:\.\d+)+)", _output("readelf", "-VW", file))}
 
 
 def _each_once(texts: dict[str, str]) -> dict[str, str]:
@@ -46,15 +59,15 @@ def _each_once(texts: dict[str, str]) -> dict[str, str]:
     return {"+".join(shared): text for text, shared in names.items()}
 
 
-def _libraries(module: pathlib.Path) -> dict[str, pathlib.Path]:
+def _libraries(file: pathlib.Path) -> dict[str, pathlib.Path]:
     """{soname: file} of all that the loader would bring, without what is everywhere."""
     found = {}
-    for line in _output("ldd", module).splitlines():
+    for line in _output("ldd", file).splitlines():
         soname, arrow, rest = line.strip().partition(" => ")
         if not arrow or EVERYWHERE.fullmatch(soname):
             continue
         if rest.startswith("not found"):
-            raise SystemExit(f"{module.name} needs {soname}, which is not installed")
+            raise SystemExit(f"{file.name} needs {soname}, which is not installed")
         found[soname] = pathlib.Path(rest.rsplit(" (", 1)[0])
     return found
 
@@ -79,14 +92,6 @@ def _package(library: pathlib.Path) -> str:
         if done.returncode == 0:
             return done.stdout.split(":")[0]
     raise SystemExit(f"{library} belongs to no Debian package, so its licence is not known")
-
-
-def _platform(files: list[pathlib.Path]) -> str:
-    """manylinux_2_N of the youngest symbol of glibc that any of them needs."""
-    versions = {tuple(map(int, found)) for file in files for found in re.findall(r"\bGLIBC_(\d+)\.(\d+)", _output("readelf", "-VW", file))}
-    major, minor = max(versions)
-    machine = _output("uname", "-m").strip()
-    return f"manylinux_{major}_{minor}_{machine}"
 
 
 def _output(*words) -> str:

@@ -9,20 +9,24 @@ import zipfile
 
 def write(content: pathlib.Path, folder: pathlib.Path, project: dict, root: pathlib.Path, tag: str, licences: dict[str, str]) -> str:
     """Writes NAME-VERSION-TAG.whl into folder and returns its name; `licences` are texts of bundled libraries by name."""
-    stem = f"{project['name']}-{project['version']}"
+    stem = f"{project['name'].replace('-', '_')}-{project['version']}"
     about = f"{stem}.dist-info"
-    files = {str(path.relative_to(content)): path.read_bytes() for path in sorted(content.rglob("*")) if path.is_file()}
-    files[f"{about}/METADATA"] = _metadata(project, root).encode()
-    files[f"{about}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: posewright\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
-    files[f"{about}/LICENSE"] = (root / project["license"]["file"]).read_bytes()
+    files = {str(path.relative_to(content)): (path.read_bytes(), path.stat().st_mode & 0o111)
+             for path in sorted(content.rglob("*")) if path.is_file()}
+    files[f"{about}/METADATA"] = (_metadata(project, root).encode(), 0)
+    files[f"{about}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: posewright\nRoot-Is-Purelib: false\nTag: {tag}\n".encode(), 0)
+    if project.get("scripts"):
+        lines = "".join(f"{name} = {place}\n" for name, place in project["scripts"].items())
+        files[f"{about}/entry_points.txt"] = (f"[console_scripts]\n{lines}".encode(), 0)
+    files[f"{about}/LICENSE"] = ((root / project["license"]["file"]).read_bytes(), 0)
     for name, text in sorted(licences.items()):
-        files[f"{about}/licenses/{name}.txt"] = text.encode()
-    record = "".join(f"{name},sha256={_digest(data)},{len(data)}\n" for name, data in files.items())
-    files[f"{about}/RECORD"] = (record + f"{about}/RECORD,,\n").encode()
+        files[f"{about}/licenses/{name}.txt"] = (text.encode(), 0)
+    record = "".join(f"{name},sha256={_digest(data)},{len(data)}\n" for name, (data, _) in files.items())
+    files[f"{about}/RECORD"] = ((record + f"{about}/RECORD,,\n").encode(), 0)
     with zipfile.ZipFile(folder / f"{stem}-{tag}.whl", "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
+        for name, (data, executable) in files.items():
             entry = zipfile.ZipInfo(name)  # 1980, so that the archive tells nothing of its day
-            entry.external_attr = (0o755 if ".so" in name else 0o644) << 16
+            entry.external_attr = (0o100755 if executable else 0o100644) << 16
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
     return f"{stem}-{tag}.whl"
 

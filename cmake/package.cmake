@@ -10,7 +10,12 @@ string(REPLACE "\n" "\n " license_text " ${license_text}")
 configure_file(cmake/packaging/copyright.in packaging/copyright @ONLY)
 execute_process(COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C date -u -d ${POSEWRIGHT_RELEASE_DATE} "+%a, %d %b %Y"
   OUTPUT_VARIABLE release_day OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-set(debian_revision 0local1)   # not from the Debian archive, whose first one would be 1
+# Not from the Debian archive, whose first one would be 1; the systems' packages differ, and an upgrade takes the later one's.
+cmake_host_system_information(RESULT system QUERY DISTRIB_ID DISTRIB_VERSION_ID DISTRIB_VERSION_CODENAME)
+list(GET system 2 debian_suite)
+list(REMOVE_AT system 2)
+list(JOIN system "" system)
+set(debian_revision 0local1+${system})
 configure_file(cmake/packaging/changelog.Debian.in packaging/changelog.Debian @ONLY)
 set(packed ${PROJECT_BINARY_DIR}/packaging)
 add_custom_command(OUTPUT ${packed}/changelog.gz ${packed}/changelog.Debian.gz

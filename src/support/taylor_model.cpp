@@ -41,8 +41,13 @@ using Norms = std::array<double, Monomials::most_degree + 1>;
 Norms norms_of(const TaylorModel& f) {
   Norms norms{};
   const std::span<const double> c = f.coefficients();
-  for (std::size_t i = 0; i < c.size(); ++i)
-    norms[std::size_t(f.monomials() == nullptr ? 0 : f.monomials()->degree_of(i))] += std::abs(c[i]);
+  if (f.monomials() == nullptr) return {std::abs(c[0])};
+  std::size_t i = 0;
+  for (int d = 0; i < c.size(); ++d) {
+    double norm = 0;
+    for (const std::size_t end = std::min(c.size(), f.monomials()->count_to(d)); i < end; ++i) norm += std::abs(c[i]);
+    norms[std::size_t(d)] = norm;
+  }
   return norms;
 }
 

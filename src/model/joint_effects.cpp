@@ -8,6 +8,7 @@
 
 #include "displacement.hpp"
 #include "parameter_names.hpp"
+#include "posewright/model/pair_names.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 
@@ -37,6 +38,22 @@ ColumnFactor::Kind factor_of(bool cosine, bool sine) {
 }
 
 }  // namespace
+
+std::vector<JointEffectsSpec> with_eccentricity(const std::vector<JointEffectsSpec>& effects,
+                                                const std::vector<Coordinate>& coordinates) {
+  std::vector<JointEffectsSpec> each;
+  for (const Coordinate& c : coordinates) {
+    if (c.choice() || is_second(c.name)) continue;
+    const auto known =
+        std::ranges::find_if(effects, [&](const JointEffectsSpec& spec) { return matches(spec.joint.value, c.name); });
+    JointEffectsSpec spec = known == effects.end() ? JointEffectsSpec{} : *known;
+    spec.joint.value = c.name;
+    spec.eccentricity = c.unit == "rad";
+    if (!spec.eccentricity) spec.gear_ratio.reset();
+    each.push_back(std::move(spec));
+  }
+  return each;
+}
 
 double JointEffects::Effect::value(double q) const {
   switch (kind) {
@@ -102,19 +119,21 @@ JointEffects::JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& a
 void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::string& file) {
   const Coordinate c = coordinates_[std::size_t(joint)];
   const SourcePlace place{file, spec.joint.line};
-  if (c.unit != "rad" && (spec.eccentricity || spec.gear_ratio))
+  const bool turns = c.unit == "rad";
+  // A pattern is meant for the joints among them that turn.
+  if (!turns && (spec.eccentricity || spec.gear_ratio) && spec.joint.value == c.name)
     throw InputError(place, "robot.joint_effects: joint '" + c.name + "' does not turn",
                      "eccentricity and gear_ratio are for joints that turn");
   const auto harmonic = [&](const std::string& suffix, Kind kind, double frequency) {
     parameters_.push_back({c.name + suffix, "rad", 0.0, effect_angle_tolerance, Role::interest});
     effects_.push_back({joint, joint, kind, frequency});
   };
-  if (spec.eccentricity)
+  if (spec.eccentricity && turns)
     for (const int n : {1, 2}) {
       harmonic(".cos" + std::to_string(n), Kind::cosine, n);
       harmonic(".sin" + std::to_string(n), Kind::sine, n);
     }
-  if (spec.gear_ratio) {
+  if (spec.gear_ratio && turns) {
     harmonic(".cos_g", Kind::cosine, *spec.gear_ratio);
     harmonic(".sin_g", Kind::sine, *spec.gear_ratio);
   }
@@ -127,7 +146,6 @@ void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::strin
                            coupling_tolerance, Role::interest});
     effects_.push_back({joint, other, Kind::linear, 0.0});
   }
-  const bool turns = c.unit == "rad";
   if (spec.backlash) {
     parameters_.push_back(
         {c.name + ".backlash", c.unit, 0.0, turns ? backlash_tolerance : backlash_length_tolerance, Role::interest});

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <map>
 
+#include "posewright/model/joint_effects.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
 
-/// The problem with eccentricity among the parameters of every joint, where the file says nothing of joints' effects.
-Problem with_eccentricity(Problem problem) {
-  auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  if (arm == nullptr) return problem;
-  if (arm->joint_effects.empty()) arm->joint_effects.push_back({{"*", 0}, true, std::nullopt, {}, false, {}, false});
-  else
-    for (JointEffectsSpec& spec : arm->joint_effects) spec.eccentricity = true;
+/// The problem with eccentricity among the parameters of every joint that turns.
+/// @param coordinates  of the robot, maybe with others behind them
+Problem with_eccentricity(Problem problem, const std::vector<Coordinate>& coordinates) {
+  if (auto* arm = std::get_if<SerialArmSpec>(&problem.robot))
+    arm->joint_effects = with_eccentricity(arm->joint_effects, coordinates);
   return problem;
 }
 
@@ -42,7 +41,7 @@ std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpe
                                         const std::vector<MeasuredPose>& poses, const Fit& fit,
                                         const ModelMaker& model_of) {
   if (!fit.scale_known || !fit.converged) return {};
-  const Problem wider = with_eccentricity(problem);
+  const Problem wider = with_eccentricity(problem, fitted_model.coordinates());
   const auto model = model_of(wider);
   std::vector<double> correction(model->parameters().size(), 0.0);
   for (std::size_t i = 0; i < fit.correction.size(); ++i)

@@ -1,5 +1,8 @@
 // What joints do beside what they read: by its definition, shifted readings of the plain arm.
 
+#include "posewright/model/joint_effects.hpp"
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,6 +23,7 @@ namespace posewright {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double ratio = 100;
 
@@ -189,6 +193,48 @@ TEST(JointEffects, EccentricityAndHarmonicGearAreFoundInReadingsOfAnArmThatHasTh
   EXPECT_LT(without_gear.effects.front().corrected, 1e-6);
   // What fitting both leaves is noise.
   EXPECT_GT(found.effects.front().corrected, 0.01);
+}
+
+// A rail under a turning arm; readings by formulas of this test with the second joint 2 mrad off.
+TEST(JointEffects, AnArmWithASlidingJointIsCalibratedByDefault) {
+  const TemporaryFolder folder;
+  folder.write("rail.urdf", R"(<robot name="rail"><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
+<joint name="rail" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
+<limit lower="0" upper="2" effort="1" velocity="1"/></joint>
+<joint name="j1" type="revolute"><parent link="c"/><child link="d"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+<joint name="j2" type="revolute"><parent link="d"/><child link="e"/><origin xyz="0.1 0 0.3"/><axis xyz="0 1 0"/>
+<limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  const Problem problem = read_problem(folder.write(
+      "p.yaml",
+      "posewright: 1\nrobot: {urdf: rail.urdf}\nmeasurement: {type: position, target: [0.4, 0.1, 0.1], "
+      "device: {type: isotropic, noise: \"0.1 mm\"}}\nvariants: {v: {parameters: auto, nuisance: [\"base.*\"]}}\n"));
+  Random random(5, 1);
+  std::string data = "id,rail [m],j1 [rad],j2 [rad],target.x [m],target.y [m],target.z [m]\n";
+  for (int id = 1; id <= 25; ++id) {
+    const double rail = random.uniform(0, 2), j1 = random.uniform(-2, 2), j2 = random.uniform(-2, 2);
+    const Eigen::Vector3d on_arm =
+        Eigen::Vector3d(0.1, 0, 0.3) +
+        Eigen::AngleAxisd(j2 + 2e-3, Eigen::Vector3d::UnitY()) * Eigen::Vector3d(0.4, 0.1, 0.1);
+    Eigen::Vector3d at = Eigen::Vector3d(rail, 0, 0.5) + Eigen::AngleAxisd(j1, Eigen::Vector3d::UnitZ()) * on_arm;
+    for (double& x : at) x += 1e-4 * random.normal();
+    data += fmt::format("{},{},{},{},{},{},{}\n", id, rail, j1, j2, at.x(), at.y(), at.z());
+  }
+  CalibrateOptions options;
+  options.data = folder.write("data.csv", data);
+  const Calibration found = calibrate_problem(problem, options, Monitor{});
+  EXPECT_TRUE(found.fit.converged);
+  EXPECT_NEAR(found.fit.scale, 1.0, 0.35);
+  ASSERT_FALSE(found.effects.empty());
+  for (const auto& effect : found.effects) EXPECT_THAT(effect.name, Not(HasSubstr("rail.cos")));
+}
+
+TEST(JointEffects, APatternGivesEccentricityToTheJointsThatTurn) {
+  const std::vector<Coordinate> joints = {{"rail", "m", 0, 2}, {"j1", "rad", -2, 2}};
+  const std::vector<JointEffectsSpec> each = with_eccentricity({}, joints);
+  ASSERT_EQ(each.size(), 2U);
+  EXPECT_FALSE(each[0].eccentricity);
+  EXPECT_TRUE(each[1].eccentricity);
 }
 
 std::string refusal(const std::string& effects) {

@@ -8,6 +8,11 @@
 
 namespace posewright {
 
+/// Effects of the same joints, each by its name, with eccentricity of every joint that turns beside them.
+/// @param coordinates  of the arm; choices and second configurations are passed over
+std::vector<JointEffectsSpec> with_eccentricity(const std::vector<JointEffectsSpec>& effects,
+                                                const std::vector<Coordinate>& coordinates);
+
 /// Serial arm whose joints stand elsewhere than they read, by functions of the readings (theory.md eq. (32)):
 ///   q' = q + c₁ cos q + s₁ sin q + c₂ cos 2q + s₂ sin 2q   (eccentricity: encoder or gear wheel off its axis, and
 ///   oval)
@@ -22,8 +27,9 @@ namespace posewright {
 class JointEffects : public TipModel {
  public:
   /// @param arm  the chain whose coordinates are the joints' readings
-  /// Throws InputError for names that match no joint or one twice, for angles of a joint that slides, and for one that
-  /// drifts with a temperature that nobody states.
+  /// Of the joints that a pattern names, those that turn have eccentricity and gear_ratio. Throws InputError for names
+  /// that match no joint or one twice, for angles of a joint that slides and is named itself, and for one that drifts
+  /// with a temperature that nobody states.
   JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& spec, const std::string& file);
 
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,

@@ -57,6 +57,13 @@ int run_command(const Command& command, const Words& words) {
     return done;
   }
   po::notify(values);
+  // A flag without a value is stored as an empty text.
+  for (const auto& [name, value] : values) {
+    const auto* text = boost::any_cast<std::string>(&value.value());
+    const po::option_description* option = everything.find_nothrow(name, false);
+    if (text != nullptr && text->empty() && option != nullptr && option->semantic()->max_tokens() > 0)
+      throw InputError({}, "--" + name + " is empty", "a value is expected");
+  }
   if (!command.shares_tasks && started_workers()->processes() > 1)
     throw InputError({}, command.name + " runs in one process", "start it without mpirun");
   if (values.count("markdown") > 0) {

@@ -56,7 +56,9 @@ bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".
 
 std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf) {
   require_arguments(arm, urdf);
-  std::vector<std::string> words{"xacro", arm.urdf.string()};
+  // A name that begins with a dash would be an option.
+  const std::string file = arm.urdf.string();
+  std::vector<std::string> words{"xacro", file.starts_with('-') ? "./" + file : file};
   std::string shown = "xacro " + arm.urdf.filename().string();
   for (const auto& [name, value] : arm.xacro) {
     words.push_back(name.value + ":=" + value);

@@ -62,7 +62,9 @@ Json read_result(const std::filesystem::path& file, std::string& text) {
   try {
     Json json = parse_json(text);
     if (json.is_object() && json.contains("schema") && json["schema"].is_string()) return json;
-  } catch (const Json::parse_error&) {
+  } catch (const Json::out_of_range&) {
+    refuse(file, "has a number that is too large for any computer", allowed);
+  } catch (const Json::exception&) {
     refuse(file, "is no JSON", allowed);
   }
   refuse(file, "is no result of posewright", allowed);

@@ -117,6 +117,15 @@ TEST(Messages, NoSourceIsShownOfWhatIsNoLineOfAFile) {
   EXPECT_EQ(lines_of(run_program(folder.path(), {"plan", "empty.yaml"}).err).size(), 1U);
 }
 
+TEST(Messages, AnEmptyValueOfAnOptionIsRefusedAndAFlagHasNone) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", problem());
+  const ProgramRun run = run_program(folder.path(), {"plan", "p.yaml", "--seed", ""});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--seed is empty; a value is expected"));
+  EXPECT_THAT(run_program(folder.path(), {"observe", "p.yaml", "--json"}).err, Not(HasSubstr("is empty")));
+}
+
 TEST(Messages, CommandsOptionsAndTheirWordsAreSuggestedIfTheyAreNear) {
   const TemporaryFolder folder;
   folder.write("p.yaml", problem());

@@ -99,6 +99,7 @@ TEST(ReportResult, RefusesEverythingElseInOneLine) {
   const std::string known = "plan.json, or what calibrate, compare, next, simulate or stations prints with --json";
   EXPECT_THAT(refused("pose,joint_a1 [rad]\n1,0\n"), HasSubstr("is no JSON; " + known));
   EXPECT_THAT(refused("[1, 2]"), HasSubstr("is no result of posewright; " + known));
+  EXPECT_THAT(refused("{\"schema\": \"x\", \"log_det\": 1e999}"), HasSubstr("too large"));
   EXPECT_THAT(refused("{\"schema\": 3}"), HasSubstr("is no result of posewright"));
   EXPECT_THAT(refused("{\"schema\": \"other/1\"}"), HasSubstr("is of schema other/1, which has no page; " + known));
   EXPECT_THAT(refused("{\"schema\": \"posewright/route/1\"}"), HasSubstr("posewright report PLAN --route FILE"));

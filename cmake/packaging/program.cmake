@@ -7,7 +7,7 @@ install(FILES ${PROJECT_BINARY_DIR}/src/cli/completion.zsh RENAME _posewright CO
 install(DIRECTORY controllers DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program)
 install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program FILES_MATCHING PATTERN "*.schema.json")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program
-  PATTERN "__pycache__" EXCLUDE PATTERN "plan.json" EXCLUDE PATTERN "poses.csv" EXCLUDE)
+  PATTERN "__pycache__" EXCLUDE PATTERN "plan.json" EXCLUDE PATTERN "poses.csv" EXCLUDE PATTERN "reproduc*" EXCLUDE)   # that compares pages, in the source folder
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)

@@ -14,7 +14,7 @@ def test_the_package_description_is_sound():
     tomllib = pytest.importorskip("tomllib", reason="Python is older than 3.11")
     described = tomllib.loads((ROOT / "pyproject.toml").read_text())
     version = re.search(r"project\(posewright VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
-    assert described["project"]["version"] == version == pw.__version__
+    assert described["project"]["dynamic"] == ["version"] and version == pw.__version__
     system = described["build-system"]
     assert (ROOT / system["backend-path"][0] / f"{system['build-backend']}.py").exists()
     assert system["requires"] == []  # no index is asked

@@ -30,15 +30,19 @@ struct SdfElement::Document {
   tinyxml2::XMLDocument xml;
 };
 
-SdfElement SdfElement::open(const std::filesystem::path& file) {
-  const std::string text = read_xml_text(file, largest_sdf);
+SdfElement SdfElement::parse(const std::filesystem::path& file, std::uintmax_t most_bytes, const std::string& needed) {
+  const std::string text = read_xml_text(file, most_bytes);
   auto document = std::make_shared<Document>();
   document->file = file;
   if (document->xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError({file.string(), document->xml.ErrorLineNum()}, "is not well-formed XML", "an SDF file is needed");
+    throw InputError({file.string(), document->xml.ErrorLineNum()}, "is not well-formed XML", needed);
   const tinyxml2::XMLElement* root = document->xml.RootElement();
-  if (root == nullptr) throw InputError({file.string(), 0}, "is empty", "an SDF file is needed");
-  SdfElement element(std::move(document), *root);
+  if (root == nullptr) throw InputError({file.string(), 0}, "is empty", needed);
+  return {std::move(document), *root};
+}
+
+SdfElement SdfElement::open(const std::filesystem::path& file) {
+  SdfElement element = parse(file, largest_sdf, "an SDF file is needed");
   if (element.tag() != "sdf" || element.attribute("version").empty())
     element.fail("has the root " + in_quotes(element.tag()), "<sdf version=\"1.4\"> or later is needed");
   return element;
@@ -72,13 +76,17 @@ std::vector<SdfElement> SdfElement::children() const {
   return list;
 }
 
-std::string SdfElement::text_of(const char* tag) const {
-  const tinyxml2::XMLElement* found = xml_->FirstChildElement(tag);
-  const char* text = found == nullptr ? nullptr : found->GetText();
+std::string SdfElement::text() const {
+  const char* text = xml_->GetText();
   if (text == nullptr) return "";
   std::string_view all = text;
   const auto first = all.find_first_not_of(" \t\r\n");
   return first == all.npos ? "" : std::string(all.substr(first, all.find_last_not_of(" \t\r\n") - first + 1));
+}
+
+std::string SdfElement::text_of(const char* tag) const {
+  const auto found = child(tag);
+  return found ? found->text() : "";
 }
 
 std::vector<double> SdfElement::numbers() const {

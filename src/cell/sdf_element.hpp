@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,11 +21,14 @@ struct SdfPose {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
 };
 
-/// An element of an SDF file; the file is held as long as one of its elements is.
+/// An element of an SDF file, or of one that names SDF files; the file is held as long as one of its elements is.
 class SdfElement {
  public:
   /// The root of a file. Throws InputError if it is missing, not XML, or its root is not <sdf> with a version.
   static SdfElement open(const std::filesystem::path& file);
+  /// The root of any XML file. Throws InputError, with what is `needed`, if it is missing, larger than `most_bytes` or
+  /// not XML.
+  static SdfElement parse(const std::filesystem::path& file, std::uintmax_t most_bytes, const std::string& needed);
 
   const std::filesystem::path& file() const;
   int line() const;
@@ -35,7 +39,9 @@ class SdfElement {
   std::string name() const;
   std::optional<SdfElement> child(const char* tag) const;
   std::vector<SdfElement> children() const;
-  /// Text of a child without blanks at its ends, "" if there is none.
+  /// Its text without blanks at its ends, "" if there is none.
+  std::string text() const;
+  /// text() of a child, "" if there is none.
   std::string text_of(const char* tag) const;
   /// Exactly `count` finite numbers of a child. Throws InputError if it is missing or holds anything else.
   std::vector<double> numbers_of(const char* tag, std::size_t count) const;

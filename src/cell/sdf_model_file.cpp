@@ -1,15 +1,11 @@
 #include "sdf_model_file.hpp"
 
-#include <tinyxml2.h>
-
-#include <algorithm>
 #include <cstdlib>
 
 #include "mesh_file.hpp"
 #include "posewright/problem/package_search.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text.hpp"
-#include "posewright/support/text_file.hpp"
 
 namespace posewright {
 namespace {
@@ -19,27 +15,24 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t largest_config = 10'000'000;  // bytes
 
 /// Version "1.10" is later than "1.9".
-std::pair<int, int> version_of(const char* text) {
-  if (text == nullptr) return {0, 0};
+std::pair<int, int> version_of(const std::string& text) {
   char* end = nullptr;
-  const long major = std::strtol(text, &end, 10);
+  const long major = std::strtol(text.c_str(), &end, 10);
   return {int(major), *end == '.' ? int(std::strtol(end + 1, nullptr, 10)) : 0};
 }
 
 fs::path latest_in(const fs::path& config) {
-  const std::string text = read_xml_text(config, largest_config);
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError({config.string(), document.ErrorLineNum()}, "is not well-formed XML", "");
-  const tinyxml2::XMLElement* model = document.FirstChildElement("model");
-  const tinyxml2::XMLElement* latest = nullptr;
-  for (const auto* e = model == nullptr ? nullptr : model->FirstChildElement("sdf"); e != nullptr;
-       e = e->NextSiblingElement("sdf"))
-    if (e->GetText() != nullptr &&
-        (latest == nullptr || version_of(e->Attribute("version")) > version_of(latest->Attribute("version"))))
-      latest = e;
-  if (latest == nullptr) throw InputError({config.string(), 0}, "names no SDF file", "<sdf version=\"1.6\">FILE</sdf>");
-  return config.parent_path() / trimmed_blanks(latest->GetText());
+  const SdfElement model = SdfElement::parse(config, largest_config, "");
+  std::string latest;
+  std::pair<int, int> version;
+  for (const SdfElement& sdf : model.children())
+    if (model.tag() == "model" && sdf.tag() == "sdf" && !sdf.text().empty() &&
+        (latest.empty() || version_of(sdf.attribute("version")) > version)) {
+      latest = sdf.text();
+      version = version_of(sdf.attribute("version"));
+    }
+  if (latest.empty()) throw InputError({config.string(), 0}, "names no SDF file", "<sdf version=\"1.6\">FILE</sdf>");
+  return config.parent_path() / latest;
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ class OfBlock {
     return whitened_gradient(model_, q, selected_, J_, Rows(2 * J_ * S_), scratch_, result);
   }
 
-  /// Romberg's table of central differences, three steps.
+  /// Romberg's table of central differences, three steps. The first step is wide: of a telescope whose range is 4 mm a
+  /// hundredth of the range loses seven digits to rounding.
   double derivative(std::vector<double> q, std::size_t k, double h) {
     double D[3];
     for (double& d : D) {
@@ -98,7 +99,7 @@ double worst_difference(const IdentificationModel& model, const std::vector<int>
     for (std::size_t k = 0; k < q.size(); ++k) {
       if (coordinates[k].discrete()) continue;
       const double range = coordinates[k].upper - coordinates[k].lower;
-      expected[k] = f.derivative(q, k, std::min(1e-3, 0.01 * range)) * range;
+      expected[k] = f.derivative(q, k, std::min(4e-3, 0.04 * range)) * range;
       largest = std::max(largest, std::abs(expected[k]));
     }
     if (!std::isfinite(largest) || largest == 0) continue;

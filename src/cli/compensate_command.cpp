@@ -14,7 +14,6 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/ur_kinematics.hpp"
 #include "posewright/model/variant.hpp"
-#include "posewright/outputs/joint_targets.hpp"
 #include "posewright/problem/calibrated_problem.hpp"
 #include "posewright/results/compensation.hpp"
 #include "posewright/results/dh_table.hpp"
@@ -32,17 +31,17 @@ namespace fs = std::filesystem;
 
 po::options_description compensate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                     //
-      ("output,o", text("FILE|DIR"), "the files again with the joints to command; a folder for several")    //
-      ("partial", "write although some poses cannot be compensated: they stay as they are listed")          //
-      ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")  //
-      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")   //
-      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3")   //
-      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")       //
-      ("with-base", "poses in the measurement frame: where the base was found to stand counts")             //
-      ("without-tool", "the tool's correction is that of what was measured and does not count")             //
-      ("position-only", "position of the tip alone (robots of fewer than six axes)")                        //
-      ("elastic-target", "the poses were found with the nominal springs bent by the load")                  //
+  options.add_options()                                                                                      //
+      ("output,o", text("FILE|DIR"), "the files again with the joints to command; a folder for several")     //
+      ("partial", "write although some poses or program lines are not compensated: these stay as they are")  //
+      ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")   //
+      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")    //
+      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3")    //
+      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")        //
+      ("with-base", "poses in the measurement frame: where the base was found to stand counts")              //
+      ("without-tool", "the tool's correction is that of what was measured and does not count")              //
+      ("position-only", "position of the tip alone (robots of fewer than six axes)")                         //
+      ("elastic-target", "the poses were found with the nominal springs bent by the load")                   //
       ("most", text("DEG"), "largest turn of a joint that is still a correction (10; slides 10 mm a degree)");
   options.add_options()                                                                              //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
@@ -79,7 +78,7 @@ CompensateOptions compensation_options(const po::variables_map& values, const Co
 DocumentOptions document_options(const po::variables_map& values) {
   DocumentOptions options;
   options.format = text_of(values, "from");
-  if (!options.format.empty() && !JointTargets::reads(options.format)) find_readable_format(options.format);
+  if (!options.format.empty() && !is_program_format(options.format)) find_readable_format(options.format);
   if (const std::string name = text_of(values, "controller"); !name.empty())
     options.controller = controller_settings(name);
   if (const auto coupling = number_between(values, "coupling", -10, 10)) options.coupling = *coupling;
@@ -202,15 +201,17 @@ Compensation compensate_files(const Words& files, const Problem& problem, const 
   const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
   std::vector<PoseList> lists;
   std::vector<std::string> notes;
-  for (const std::string& file : files) {
-    documents.push_back(read_document(file, coordinates, reading));
-    lists.push_back(documents.back()->poses());
-    notes.insert(notes.end(), documents.back()->notes().begin(), documents.back()->notes().end());
+  documents = read_documents({files.begin(), files.end()}, coordinates, reading);
+  for (const auto& document : documents) {
+    lists.push_back(document->poses());
+    notes.insert(notes.end(), document->notes().begin(), document->notes().end());
   }
   Compensation result = watched(common, 0, [&](const Monitor& monitor) {
                           return compensate_problem(problem, lists, options, monitor);
                         }).result;
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  for (std::size_t i = 0; i < documents.size(); ++i)
+    if (const ProgramAccount* account = documents[i]->account()) result.add_account(*account, result.lists[i]);
   return result;
 }
 
@@ -255,7 +256,7 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   std::vector<std::unique_ptr<PoseDocument>> documents;
   Compensation result = compensate_files(files, problem, reading, options, common, documents);
   result.notes.insert(result.notes.end(), robot.notes.begin(), robot.notes.end());
-  const bool good = result.failures.empty() || values.count("partial") > 0;
+  const bool good = result.is_whole() || values.count("partial") > 0;
   std::vector<fs::path> written;
   if (good) {
     std::vector<FileToWrite> all = robot.files;
@@ -263,7 +264,7 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
     write_results(all);
     for (const FileToWrite& file : all) written.push_back(file.file);
   } else if (!to.empty() || !robot.files.empty()) {
-    result.notes.emplace_back("nothing is written; --partial writes such poses as they are listed");
+    result.notes.emplace_back("nothing is written; --partial leaves what is not compensated as it is");
   }
   show_compensation(common, problem, result, robot, written);
   return good ? done : cannot_do;

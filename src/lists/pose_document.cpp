@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/outputs/joint_targets.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
@@ -228,79 +227,45 @@ class CsvDocument : public PoseDocument {
   std::vector<Column> columns_;
 };
 
-/// Joint values of a program are replaced where they stand.
-class ProgramDocument : public PoseDocument {
+/// The points of a program.
+class ProgramPoses : public PoseDocument {
  public:
-  ProgramDocument(const std::string& format, const std::string& bytes, const std::string& name,
-                  const std::vector<Coordinate>& coordinates, const DocumentOptions& options)
-      : moving_(moving(coordinates)),
-        width_(coordinates.size()),
-        targets_(format, bytes, name, names_of(coordinates, moving_), units_of(coordinates, moving_),
-                 options.controller, options.coupling) {
-    if (bytes.find(compensated_mark) != std::string::npos) refuse_twice(name);
+  ProgramPoses(std::unique_ptr<ProgramDocument> program, const std::vector<Coordinate>& coordinates)
+      : moving_(moving(coordinates)), width_(coordinates.size()), program_(std::move(program)) {
+    const std::string& name = program_->account().file;
     for (const Coordinate& c : coordinates)
       if (c.choice() && c.labels.size() > 1)
         throw InputError({name, 0}, "has no place for the " + c.name + " of a pose",
                          "a plan, route or list that says it; its result can be exported");
     poses_.name = name;
-    int homes = 0;
-    for (std::size_t t = 0; t < targets_.targets().size(); ++t) {
-      const JointTarget& target = targets_.targets()[t];
-      if (target.home) {
-        ++homes;
-        continue;
-      }
+    for (const ProgramDocument::Point& point : program_->points()) {
       std::vector<double> q;
       for (const Coordinate& c : coordinates) q.push_back(c.choice() ? c.values.front() : 0.0);
-      const std::vector<double> joints = targets_.joints(t);
       for (std::size_t i = 0; i < moving_.size(); ++i) {
-        require_inside(joints[i], coordinates[moving_[i]], {name, target.line});
-        q[moving_[i]] = as_allowed(joints[i], coordinates[moving_[i]]);
+        require_inside(point.joints[i], coordinates[moving_[i]], {name, point.line});
+        q[moving_[i]] = as_allowed(point.joints[i], coordinates[moving_[i]]);
       }
-      of_pose_.push_back(t);
       poses_.configurations.push_back(std::move(q));
       poses_.ids.push_back(int(poses_.configurations.size()));
-      poses_.lines.push_back(target.line);
+      poses_.lines.push_back(point.line);
     }
-    if (targets_.targets().empty()) poses_.notes.push_back(name + " has no joint values: it is written as it is");
-    if (homes > 0) poses_.notes.push_back(fmt::format("{}: home stays where the joints have it", name));
-    if (const auto& lines = targets_.cartesian(); !lines.empty())
-      poses_.notes.push_back(fmt::format(
-          "{}: {} {} given by position and orientation and {} as {}: the controller reaches {} by its own kinematics "
-          "(line {}{})",
-          name, lines.size(), lines.size() == 1 ? "point is" : "points are", lines.size() == 1 ? "stays" : "stay",
-          lines.size() == 1 ? "it is" : "they are", lines.size() == 1 ? "it" : "them",
-          fmt::join(lines.begin(), lines.begin() + long(std::min<std::size_t>(lines.size(), 8)), ", "),
-          lines.size() > 8 ? ", …" : ""));
+    if (program_->points().empty()) poses_.notes.push_back(name + " has no point that is compensated");
   }
 
+  const ProgramAccount* account() const override { return &program_->account(); }
+
   std::string text(const OtherValues& values, const std::string& remark) const override {
-    JointTargets changed = targets_;
-    for (std::size_t p = 0; p < of_pose_.size(); ++p) {
+    std::vector<std::optional<std::vector<double>>> joints(poses_.configurations.size());
+    for (std::size_t p = 0; p < joints.size(); ++p) {
       std::vector<double> q;
       for (const std::size_t k : moving_) q.push_back(values.configurations[p * width_ + k]);
       // What is listed stays to its last digit.
-      if (same(q, p)) continue;
-      try {
-        changed.replace(of_pose_[p], q);
-      } catch (const CannotDo& error) {
-        throw CannotDo(fmt::format("{}:{}: {}", poses_.name, poses_.lines[p], error.what()));
-      }
+      if (!same(q, p)) joints[p] = std::move(q);
     }
-    return changed.text(targets_.targets().empty() ? "" : remark);
+    return program_->text(joints, remark);
   }
 
  private:
-  static std::vector<std::string> names_of(const std::vector<Coordinate>& all, const std::vector<std::size_t>& which) {
-    std::vector<std::string> names;
-    for (const std::size_t k : which) names.push_back(all[k].name);
-    return names;
-  }
-  static std::vector<std::string> units_of(const std::vector<Coordinate>& all, const std::vector<std::size_t>& which) {
-    std::vector<std::string> units;
-    for (const std::size_t k : which) units.push_back(all[k].unit);
-    return units;
-  }
   bool same(const std::vector<double>& q, std::size_t pose) const {
     for (std::size_t i = 0; i < moving_.size(); ++i)
       if (q[i] != poses_.configurations[pose][moving_[i]]) return false;
@@ -309,8 +274,7 @@ class ProgramDocument : public PoseDocument {
 
   std::vector<std::size_t> moving_;
   std::size_t width_;
-  JointTargets targets_;
-  std::vector<std::size_t> of_pose_;
+  std::unique_ptr<ProgramDocument> program_;
 };
 
 /// A list in a format that has a reader and a writer.
@@ -353,25 +317,96 @@ class ListDocument : public PoseDocument {
   std::vector<Coordinate> coordinates_;
 };
 
+std::string format_of(const DocumentFile& file, const DocumentOptions& options) {
+  if (!options.format.empty()) return options.format;
+  const auto first = file.bytes.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && file.bytes[first] == '{') return "json";
+  return program_format_of_ending(std::filesystem::path(file.name).extension().string());
+}
+
+std::unique_ptr<PoseDocument> parse_list(const std::string& format, const DocumentFile& file,
+                                         const std::vector<Coordinate>& coordinates) {
+  if (format.empty() || format == "csv") return std::make_unique<CsvDocument>(file.bytes, file.name, coordinates);
+  if (format == "json") return std::make_unique<JsonDocument>(file.bytes, file.name, coordinates);
+  return std::make_unique<ListDocument>(find_readable_format(format), file.bytes, file.name, coordinates);
+}
+
+ProgramRobot robot_of(const std::vector<Coordinate>& coordinates, const DocumentOptions& options) {
+  ProgramRobot robot{{}, {}, options.controller, options.coupling};
+  for (const std::size_t k : moving(coordinates)) {
+    robot.names.push_back(coordinates[k].name);
+    robot.units.push_back(coordinates[k].unit);
+  }
+  return robot;
+}
+
+/// Programs beside a file of points that have the motions to them: NAME.src of NAME.dat, every .pgx of a .dtx.
+std::vector<DocumentFile> companions(const std::filesystem::path& file) {
+  std::vector<DocumentFile> found;
+  const auto small = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+  };
+  const std::string ending = small(file.extension().string());
+  if (ending != ".dat" && ending != ".dtx") return found;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    const std::filesystem::path& other = entry.path();
+    const std::string kind = small(other.extension().string());
+    const bool wanted = ending == ".dtx"
+                            ? kind == ".pgx"
+                            : kind == ".src" && small(other.stem().string()) == small(file.stem().string());
+    if (wanted && entry.is_regular_file(code))
+      found.push_back({read_file(other, document_size_limit), (file.parent_path() / other.filename()).string()});
+  }
+  return found;
+}
+
 }  // namespace
+
+std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<DocumentFile>& files,
+                                                           const std::vector<Coordinate>& coordinates,
+                                                           const DocumentOptions& options) {
+  std::vector<std::unique_ptr<PoseDocument>> documents(files.size());
+  std::vector<ProgramFile> programs;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string format = format_of(files[i], options);
+    if (!is_program_format(format)) {
+      if (!files[i].context) documents[i] = parse_list(format, files[i], coordinates);
+      continue;
+    }
+    if (!files[i].context && files[i].bytes.find(compensated_mark) != std::string::npos) refuse_twice(files[i].name);
+    if (!files[i].context) places.push_back(i);
+    programs.push_back({format, files[i].bytes, files[i].name, files[i].context});
+  }
+  std::vector<std::unique_ptr<ProgramDocument>> read = read_programs(programs, robot_of(coordinates, options));
+  for (std::size_t k = 0; k < read.size(); ++k)
+    documents[places[k]] = std::make_unique<ProgramPoses>(std::move(read[k]), coordinates);
+  std::erase(documents, nullptr);
+  return documents;
+}
 
 std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
                                              const std::vector<Coordinate>& coordinates,
                                              const DocumentOptions& options) {
-  std::string format = options.format;
-  const auto first = bytes.find_first_not_of(" \t\r\n");
-  if (format.empty() && first != std::string::npos && bytes[first] == '{') format = "json";
-  if (format.empty()) format = JointTargets::format_of_ending(std::filesystem::path(name).extension().string());
-  if (format.empty() || format == "csv") return std::make_unique<CsvDocument>(std::move(bytes), name, coordinates);
-  if (format == "json") return std::make_unique<JsonDocument>(bytes, name, coordinates);
-  if (JointTargets::reads(format)) return std::make_unique<ProgramDocument>(format, bytes, name, coordinates, options);
-  return std::make_unique<ListDocument>(find_readable_format(format), bytes, name, coordinates);
+  return std::move(parse_documents({{std::move(bytes), name}}, coordinates, options).front());
 }
 
-std::unique_ptr<PoseDocument> read_document(const std::filesystem::path& file,
-                                            const std::vector<Coordinate>& coordinates,
-                                            const DocumentOptions& options) {
-  return parse_document(read_file(file, document_size_limit), file.string(), coordinates, options);
+std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std::filesystem::path>& paths,
+                                                          const std::vector<Coordinate>& coordinates,
+                                                          const DocumentOptions& options) {
+  std::vector<DocumentFile> files;
+  for (const std::filesystem::path& path : paths)
+    files.push_back({read_file(path, document_size_limit), path.string()});
+  for (const std::filesystem::path& path : paths)
+    for (DocumentFile& other : companions(path)) {
+      other.context = true;
+      const auto same = [&](const DocumentFile& file) { return file.name == other.name; };
+      if (std::none_of(files.begin(), files.end(), same)) files.push_back(std::move(other));
+    }
+  return parse_documents(files, coordinates, options);
 }
 
 }  // namespace posewright

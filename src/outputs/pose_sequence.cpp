@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 

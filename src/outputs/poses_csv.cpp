@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "formats/text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
 namespace posewright {

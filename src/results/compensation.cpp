@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "document.hpp"
@@ -15,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // More lines than these nobody reads; --json has all.
-constexpr std::size_t most_failures = 20;
+constexpr std::size_t most_failures = 20, most_lines = 20;
 
 std::string length_in_mm(double metres) { return fmt::format("{:.6f}", metres * 1e3); }
 std::string angle_in_deg(double radians) { return fmt::format("{:.6f}", radians * 180 / std::numbers::pi); }
@@ -53,6 +54,58 @@ Json commanded_list_json(const CompensatedList& list, const Compensation& all) {
   return {{"file", list.file}, {"poses", std::move(poses)}};
 }
 
+const char* treatment_key(Treatment treatment) {
+  switch (treatment) {
+    case Treatment::compensated:
+      return "compensated";
+    case Treatment::left:
+      return "left";
+    case Treatment::not_compensated:
+      return "not_compensated";
+    case Treatment::not_understood:
+      return "not_understood";
+  }
+  return "";
+}
+
+Json account_json(const ProgramAccount& program) {
+  Json json = {{"file", program.file}, {"format", program.format}, {"lines", Json::array()}};
+  for (const Treatment t :
+       {Treatment::compensated, Treatment::left, Treatment::not_compensated, Treatment::not_understood})
+    json[treatment_key(t)] = program.count(t);
+  for (const ProgramEntry& entry : program.entries)
+    json["lines"].push_back({{"line", entry.line},
+                             {"what", entry.what},
+                             {"treatment", treatment_key(entry.treatment)},
+                             {"why", entry.why.empty() ? Json(nullptr) : Json(entry.why)}});
+  return json;
+}
+
+std::string words_of(Treatment treatment) {
+  std::string words = treatment_key(treatment);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// Every motion and point of a program, with the reason where it is not compensated.
+std::string account_text(const ProgramAccount& program) {
+  std::string text =
+      fmt::format("\n{} ({}): {} compensated, {} left on purpose, {} not compensated, {} not understood\n",
+                  program.file, program.format, program.count(Treatment::compensated), program.count(Treatment::left),
+                  program.count(Treatment::not_compensated), program.count(Treatment::not_understood));
+  Table table({"line", "motion or point", "", ""},
+              {Table::Align::right, Table::Align::left, Table::Align::left, Table::Align::left});
+  std::size_t hidden = 0;
+  std::map<Treatment, std::size_t> shown;
+  for (const ProgramEntry& entry : program.entries) {
+    if (++shown[entry.treatment] <= most_lines)
+      table.row({std::to_string(entry.line), entry.what, words_of(entry.treatment), entry.why});
+    else ++hidden;
+  }
+  text += table.text();
+  return hidden == 0 ? text : text + fmt::format("  … and {} more lines (--json)\n", hidden);
+}
+
 }  // namespace
 
 std::string compensation_text(const Compensation& c) {
@@ -61,6 +114,10 @@ std::string compensation_text(const Compensation& c) {
   std::string text =
       fmt::format("{} of {} {} compensated, variant {}{}\n\n", c.compensated, all, all == 1 ? "pose is" : "poses are",
                   c.variant, c.position_only ? ", positions alone" : "");
+  if (const std::size_t open = c.open_lines(); open > 0)
+    text.insert(text.size() - 2,
+                fmt::format("; {} of the programs {} not", open == 1 ? "1 line" : fmt::format("{} lines", open),
+                            open == 1 ? "is" : "are"));
   if (c.compensated > 0) {
     Table errors({"error of the tip, predicted", "RMS", "largest"}, {A::left, A::right, A::right});
     errors.row({"position before [mm]", length_in_mm(c.before.position_rms), length_in_mm(c.before.position_largest)});
@@ -77,6 +134,7 @@ std::string compensation_text(const Compensation& c) {
     }
     text += changes.text();
   }
+  for (const ProgramAccount& program : c.programs) text += account_text(program);
   if (c.failures.empty()) return text;
   text += fmt::format("\nNot compensated: {}\n", c.failures.size());
   for (std::size_t i = 0; i < std::min(most_failures, c.failures.size()); ++i)
@@ -109,6 +167,8 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
         {{"file", n.file}, {"line", n.line > 0 ? Json(n.line) : Json(nullptr)}, {"id", n.id}, {"why", n.why}});
   json["lists"] = Json::array();
   for (const CompensatedList& list : c.lists) json["lists"].push_back(commanded_list_json(list, c));
+  json["programs"] = Json::array();
+  for (const ProgramAccount& program : c.programs) json["programs"].push_back(account_json(program));
   json["notes"] = c.notes;
   return json;
 }

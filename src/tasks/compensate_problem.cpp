@@ -246,6 +246,24 @@ std::string NotCompensated::text() const {
   return fmt::format("{}{}: pose {}: {}", file, line > 0 ? fmt::format(":{}", line) : "", id, why);
 }
 
+void Compensation::add_account(ProgramAccount account, const CompensatedList& list) {
+  for (ProgramEntry& entry : account.entries) {
+    if (entry.point < 0 || list.solutions[std::size_t(entry.point)].outcome == CommandSolver::Outcome::reached)
+      continue;
+    entry.treatment = Treatment::not_compensated;
+    for (const NotCompensated& failure : failures)
+      if (failure.file == list.file && failure.id == list.ids[std::size_t(entry.point)]) entry.why = failure.why;
+  }
+  programs.push_back(std::move(account));
+}
+
+std::size_t Compensation::open_lines() const {
+  std::size_t count = 0;
+  for (const ProgramAccount& program : programs)
+    count += program.count(Treatment::not_compensated) + program.count(Treatment::not_understood);
+  return count;
+}
+
 std::vector<Coordinate> compensation_coordinates(const Problem& problem) {
   const auto tip = calibrated_tip(problem);
   const auto model = make_model(problem, calibrated_variant(problem));

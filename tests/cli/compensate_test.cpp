@@ -113,16 +113,16 @@ TEST_F(CompensateCommand, WritesSeveralFilesIntoAFolderAllOrNone) {
   std::filesystem::create_directory(folder_ / "out");
   folder_.write(
       "weld.dat",
-      "DEFDAT WELD\n;mine\nDECL E6AXIS P={A1 5,A2 10,A3 20,A4 20,A5 30,A6 5,E1 0,E2 0,E3 0,E4 0,E5 0,E6 0}\nENDDAT\n");
+      "DEFDAT WELD\n;mine\nDECL E6AXIS XP={A1 5,A2 10,A3 20,A4 20,A5 30,A6 5,E1 0,E2 0,E3 0,E4 0,E5 0,E6 0}\nENDDAT\n");
   const ProgramRun good = run({"cal.yaml", "list.csv", "weld.dat", "-o", "out"});
   ASSERT_EQ(good.exit_code, 0) << good.err;
   EXPECT_TRUE(is_there("out/list.csv"));
   EXPECT_THAT(read_file(folder_ / "out/weld.dat"), HasSubstr("E1 0,E2 0,E3 0,E4 0,E5 0,E6 0}"));
   std::filesystem::remove_all(folder_ / "out");
-  folder_.write("weld.dat", "DEFDAT WELD\nDECL E6AXIS P={A1 5,A2 10,A3 20,A4 20,A5 30}\nENDDAT\n");
+  folder_.write("weld.dat", "DEFDAT WELD\nDECL E6AXIS XP={A1 5,A2 10,A3 20,A4 20,A5 30}\nENDDAT\n");
   const ProgramRun bad = run({"cal.yaml", "list.csv", "weld.dat", "-o", "out"});
-  EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.err, HasSubstr("weld.dat:2: a point has no axis A6"));
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.out, HasSubstr("has no axis A6: it stays where it is"));
   EXPECT_FALSE(is_there("out")) << "a folder that nothing comes into is not left behind";
   // The program of the points says none itself.
   folder_.write("weld.dat", "DEFDAT WELD\nDECL E6AXIS P={A1 5,A2 10,A3 20,A4 20,A5 30,A6 5}\nENDDAT\n");

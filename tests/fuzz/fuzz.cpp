@@ -22,6 +22,7 @@
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/calibrated_parameters.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/programs/program_document.hpp"
 #include "posewright/support/error.hpp"
 #include "src/cell/obstacle_files.hpp"
 #include "src/cell/triangle_files.hpp"
@@ -103,8 +104,23 @@ void read_sequence(const std::string& bytes) {
   }
 }
 
+/// The first byte chooses the language. All points get other values, and what is written is read again.
+void read_program(const std::string& bytes) {
+  static const std::array<const char*, 7> formats = {"kuka-krl",       "abb-rapid",    "fanuc-tp",        "urscript",
+                                                     "yaskawa-inform", "staubli-val3", "joint-trajectory"};
+  if (bytes.empty()) return;
+  const std::string format = formats[static_cast<unsigned char>(bytes.front()) % formats.size()];
+  ProgramRobot robot{{"j1", "j2", "j3", "j4", "j5", "j6"}, std::vector<std::string>(6, "rad"), {}, 0.0};
+  robot.settings.pulses_per_degree = std::vector<double>(6, 1000);
+  const auto document = std::move(read_programs({{format, bytes.substr(1), "program"}}, robot).front());
+  std::vector<std::optional<std::vector<double>>> joints;
+  for (const ProgramDocument::Point& point : document->points()) joints.emplace_back(point.joints);
+  const std::string again = document->text(joints, "remark");
+  if (read_programs({{format, again, "program"}}, robot).front()->points().size() != joints.size()) std::abort();
+}
+
 using Read = void (*)(const std::string&);
-const std::array<std::pair<const char*, Read>, 13> targets = {{
+const std::array<std::pair<const char*, Read>, 14> targets = {{
     {"problem", [](const std::string& bytes) { parse_problem(bytes, "problem.yaml"); }},
     {"urdf", read_urdf},
     {"stl", [](const std::string& bytes) { read_stl(bytes); }},
@@ -140,6 +156,7 @@ const std::array<std::pair<const char*, Read>, 13> targets = {{
      }},
     {"settings", [](const std::string& bytes) { parse_controller_settings(bytes, "controller.yaml"); }},
     {"lists", read_list},
+    {"programs", read_program},
 }};
 
 Read chosen_target() {

@@ -42,6 +42,12 @@ def lists():
     return [bytes([k]) + text for k in range(14) for text in bytes_of[k::5]]
 
 
+def programs():
+    """A first byte for the language, then a program of it."""
+    golden = [("kuka-krl/*.src", "kuka-krl/*.dat"), ("*.mod",), ("*.LS",), ("*.script",), ("*.JBI",), ("val3/*/*.dtx", "val3/*/*.pgx"), ("joint_trajectory*.yaml",)]
+    return [bytes([k]) + text for k, patterns in enumerate(golden) for text in files(*(f"tests/outputs/golden/{p}" for p in patterns))]
+
+
 SEEDS = {
     "problem": lambda: files("examples/**/*.yaml"),
     "urdf": lambda: files("examples/**/*.urdf"),
@@ -56,6 +62,7 @@ SEEDS = {
     "srdf": lambda: [SRDF, *GROUPS, *files("tests/outputs/golden/*.srdf")],
     "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/outputs/golden/yaskawa.yaml")],
     "lists": lists,
+    "programs": programs,
 }
 
 

@@ -12,7 +12,6 @@
 #include <numbers>
 
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/outputs/joint_targets.hpp"
 #include "posewright/support/error.hpp"
 #include "tests/outputs/program_readers.hpp"
 #include "tests/outputs/sequences.hpp"
@@ -120,7 +119,10 @@ TEST(PoseDocument, OfEveryProgramIsReadBackWithTheOtherJointsAndTheSameWayThroug
       options.format = c.format;
       options.controller = c.options.controller;
       options.coupling = c.options.coupling;
-      const auto document = parse_document(exported.files[place].bytes, "program", six_joints(), options);
+      std::vector<DocumentFile> files;
+      for (std::size_t i = 0; i < exported.files.size(); ++i)
+        files.push_back({exported.files[i].bytes, exported.files[i].name, i != place});
+      const auto document = std::move(parse_documents(files, six_joints(), options).front());
       exported.files[place].bytes = rewritten(*document, moved(document->poses()));
       const Program after = c.read(exported);
       ASSERT_EQ(after.moves.size(), before.moves.size()) << c.format;
@@ -152,8 +154,8 @@ TEST(PoseDocument, OfAProgramThatPeopleWroteKeepsEverythingElse) {
   ASSERT_EQ(document->poses().configurations.size(), 1U);
   EXPECT_EQ(document->poses().lines.front(), 4);
   EXPECT_NEAR(document->poses().configurations[0][2], 91.25 * std::numbers::pi / 180, 1e-15);
-  EXPECT_THAT(document->notes(),
-              testing::ElementsAre(HasSubstr("weld.dat: 1 point is given by position and orientation")));
+  EXPECT_EQ(document->account()->entries[1].what, "XSEAM");
+  EXPECT_EQ(document->account()->entries[1].treatment, Treatment::not_compensated);
   std::vector<double> same = document->poses().configurations[0];
   std::string text = rewritten(*document, same);
   const std::string remark = ";Written by posewright compensate: joints\r\n";
@@ -177,7 +179,7 @@ TEST(PoseDocument, OfAUrscriptTakesJointsForJointsOnly) {
   const auto document = parse_document(script, "p.script", six_joints(), {});
   ASSERT_EQ(document->poses().configurations.size(), 2U);
   EXPECT_EQ(document->poses().lines, (std::vector<int>{3, 7}));
-  EXPECT_THAT(document->notes(), testing::ElementsAre(HasSubstr("(line 6)")));
+  EXPECT_EQ(document->account()->count(Treatment::not_compensated), 1U);
 }
 
 TEST(PoseDocument, RefusesProgramsWithoutJointsAxesOrSettingsWithFileAndLine) {
@@ -190,22 +192,21 @@ TEST(PoseDocument, RefusesProgramsWithoutJointsAxesOrSettingsWithFileAndLine) {
     }
     return "";
   };
-  EXPECT_THAT(message("DEFDAT X\nDECL E6AXIS P={A1 1,A2 2,A3 3,A4 4,A5 5}\nENDDAT\n", "x.dat"),
-              HasSubstr("x.dat:2: a point has no axis A6"));
-  EXPECT_THAT(message("DEFDAT X\nENDDAT\n", "x.dat"), HasSubstr("x.dat: has no points that are given by joint values"));
+  EXPECT_THAT(message("DEFDAT X\nENDDAT\n", "x.dat"), HasSubstr("x.dat: has neither points nor motions"));
   EXPECT_THAT(message("MODULE M\nENDMODULE\n", "m.mod"), HasSubstr("abb-rapid needs --coupling F"));
-  EXPECT_THAT(message("DEFDAT X\nDECL E6AXIS P={A1 1,A2 2,A3 300,A4 4,A5 5,A6 6}\nENDDAT\n", "x.dat"),
+  EXPECT_THAT(message("DEFDAT X\nDECL E6AXIS XP={A1 1,A2 2,A3 300,A4 4,A5 5,A6 6}\nENDDAT\n", "x.dat"),
               HasSubstr("x.dat:2: 'joint_a3' is 5.2"));
   EXPECT_THAT(
-      message("DEFDAT X\n;Written by posewright compensate: x\nDECL E6AXIS P={A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\nENDDAT\n",
-              "x.dat"),
+      message(
+          "DEFDAT X\n;Written by posewright compensate: x\nDECL E6AXIS XP={A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\nENDDAT\n",
+          "x.dat"),
       HasSubstr("is compensated already"));
   DocumentOptions ranges;
   ranges.format = "kuka-krl";
   ranges.controller =
       parse_controller_settings("range_deg: [[-5, 5], [-5, 5], [-5, 5], [-5, 5], [-5, 5], [-5, 5]]\n", "k.yaml");
-  const auto document = parse_document("DEFDAT X\n\nDECL E6AXIS P={A1 1,A2 2,A3 3,A4 4,A5 4.9,A6 4}\nENDDAT\n", "x.dat",
-                                       six_joints(), ranges);
+  const auto document = parse_document("DEFDAT X\n\nDECL E6AXIS XP={A1 1,A2 2,A3 3,A4 4,A5 4.9,A6 4}\nENDDAT\n",
+                                       "x.dat", six_joints(), ranges);
   try {
     rewritten(*document, moved(document->poses()));
     FAIL();

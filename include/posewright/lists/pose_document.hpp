@@ -10,6 +10,7 @@
 #include "posewright/controller/controller_settings.hpp"
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/programs/program_document.hpp"
 
 namespace posewright {
 
@@ -44,6 +45,8 @@ class PoseDocument {
   /// @param remark  of one line, put where the format has a place for a comment
   /// Throws CannotDo if the format cannot hold them.
   virtual std::string text(const OtherValues& values, const std::string& remark) const = 0;
+  /// Of a program; null: it is none. Points of its entries are poses().
+  virtual const ProgramAccount* account() const { return nullptr; }
 
  protected:
   PoseList poses_;
@@ -52,10 +55,22 @@ class PoseDocument {
 /// In every remark, so that nobody compensates twice.
 inline constexpr const char* compensated_mark = "Written by posewright compensate";
 
+/// A file in memory.
+struct DocumentFile {
+  std::string bytes, name;
+  bool context = false;  ///< read for the motions of a program alone
+};
+
+/// One document for each file that is no context. Programs are read together: motions of one use points of another.
 /// Throws InputError with file and line as read_poses(), and for a file that is compensated already.
-std::unique_ptr<PoseDocument> read_document(const std::filesystem::path& file,
-                                            const std::vector<Coordinate>& coordinates, const DocumentOptions& options);
-/// The same for bytes in memory; `name` stands for the file.
+std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<DocumentFile>& files,
+                                                           const std::vector<Coordinate>& coordinates,
+                                                           const DocumentOptions& options);
+/// The same for files. The motions to points of a .dat or .dtx are sought in the .src or .pgx beside it, too.
+std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std::filesystem::path>& paths,
+                                                          const std::vector<Coordinate>& coordinates,
+                                                          const DocumentOptions& options);
+/// A single one; `name` stands for the file.
 std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
                                              const std::vector<Coordinate>& coordinates,
                                              const DocumentOptions& options);

@@ -8,6 +8,7 @@
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/model/command_solver.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/programs/program_document.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {
@@ -63,7 +64,15 @@ struct Compensation {
   TipErrorSummary before, after;  ///< of these, as the calibrated model predicts it
   std::vector<NotCompensated> failures;
   std::vector<CompensatedList> lists;
+  std::vector<ProgramAccount> programs;  ///< of the files that are programs
   std::vector<std::string> notes;
+
+  /// Takes a program's account over; points of the list that are not compensated say why.
+  void add_account(ProgramAccount account, const CompensatedList& list);
+  /// Lines of programs that are neither compensated nor left on purpose.
+  std::size_t open_lines() const;
+  /// Every pose is compensated, and no line of a program is open.
+  bool is_whole() const { return failures.empty() && open_lines() == 0; }
 };
 
 /// Coordinates that lists are read with: the robot's own with the limits in force.

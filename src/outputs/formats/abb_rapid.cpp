@@ -4,7 +4,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: public RAPID modules (EGM_connection, ConnectABB); docs/export.md.
 

@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Reader: industrial_calibration (ROS 1), caljob_creator; poses or whole scenes.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "posewright/support/error.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Reader: FIGAROH, optimal_config.py (load_data_set): a mapping of exactly two keys.

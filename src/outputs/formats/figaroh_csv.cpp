@@ -4,7 +4,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Reader: FIGAROH, data_loader.load_data: columns are picked by name, others ignored, so one of ours can say what the
 // positions are.

@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Reader: industrial_calibration, examples/data/kinematic_calibration/measurements.yaml. `pose` is what a camera

@@ -3,7 +3,7 @@
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Form: industrial_calibration, hand-eye examples: cal_data.yaml lists pairs of pose file and image, a pose file holds

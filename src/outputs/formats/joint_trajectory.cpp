@@ -7,7 +7,7 @@
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Form: trajectory_msgs/JointTrajectory as YAML. A pose is two points (arrival, end of the hold), a via point one.

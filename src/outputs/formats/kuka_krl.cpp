@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: public KRL of kuka_experimental (kuka_eki_hw_interface/krl, kuka_rsi_hw_interface/krl/KR_C4); docs/export.md.
 

@@ -3,7 +3,7 @@
 #include "formats.hpp"
 #include "number_rows.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: generated_joints.txt of LT-IRB120, as numpy.savetxt writes it: degrees.
 

@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Reader: MoveIt Calibration, loadJointStateBtnClicked: names must equal the group's active joints, in order.

@@ -3,7 +3,7 @@
 #include "formats.hpp"
 #include "number_rows.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: data/<robot>/<tool position>/hole_0.csv of MUKCa: no header, rad.
 

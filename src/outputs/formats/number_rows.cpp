@@ -9,7 +9,7 @@
 
 #include "posewright/support/error.hpp"
 #include "posewright/support/trimmed.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 namespace {

@@ -7,7 +7,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/trimmed.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // poses.csv of a plan, without actuators.
 

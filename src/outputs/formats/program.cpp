@@ -9,7 +9,7 @@
 #include "controller_axes.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/sha256.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 namespace {

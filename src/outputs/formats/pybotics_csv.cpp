@@ -4,7 +4,7 @@
 #include "number_rows.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: pybotics tests/resources/ur10-joints-poses.csv: joints in degrees, then the pose, 4 x 4 row by row, in mm.
 

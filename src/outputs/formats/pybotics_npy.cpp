@@ -7,7 +7,7 @@
 #include "posewright/blocks/read_blocks.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // pybotics takes joints as an array n x joints in rad. NumPy format version 1.0.
 

@@ -5,7 +5,7 @@
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/near_words.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 namespace posewright {
 

@@ -3,7 +3,7 @@
 #include "formats.hpp"
 #include "number_rows.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // No public text gives RoboDK's rule for columns: a header and one row a pose, in degrees, is a guess.
 

@@ -4,7 +4,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Reader: robot_calibration (ROS 2), src/util/poses_from_yaml.cpp.

@@ -7,7 +7,7 @@
 #include "number_rows.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: SRDF group_state, as MoveIt reads it.
 

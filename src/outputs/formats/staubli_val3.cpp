@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: RoboDK's public VAL 3 examples; the project header is the least certain part; docs/export.md.
 

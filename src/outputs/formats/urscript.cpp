@@ -11,7 +11,7 @@
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: UniversalRobots/URScript_Examples; set_payload(mass in kg, [x, y, z] in m from the flange): Universal Robots'
 // article on payload and centre of gravity by URScript; docs/export.md.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 

@@ -5,7 +5,7 @@
 #include "formats.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 // Form: NX100 manual HW0481924, section 4.1; docs/export.md.
 

@@ -1,4 +1,4 @@
-#include "text.hpp"
+#include "posewright/outputs/format_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,158 @@
+// KRL: PTP XP1, PTP {A1 0.0,A2 -90.0,…}; points are in the .dat file of the same name: DECL E6AXIS XP1={…}.
+
+#include <algorithm>
+#include <array>
+
+#include "reading.hpp"
+
+namespace posewright::programs {
+namespace {
+
+using Kind = Expression::Kind;
+using Form = FoundPoint::Form;
+
+constexpr std::array<std::string_view, 12> axis_names = {"A1", "A2", "A3", "A4", "A5", "A6",
+                                                         "E1", "E2", "E3", "E4", "E5", "E6"};
+
+std::optional<FoundPoint> krl_point(const Expression& list, const Source&) {
+  FoundPoint point{list.line};
+  bool joints = false, pose = false;
+  for (const Expression& item : list.items) {
+    const bool axis = std::find(axis_names.begin(), axis_names.end(), item.label) != axis_names.end();
+    joints = joints || (axis && item.label[0] == 'A');
+    pose = pose || item.label == "X" || item.label == "Y" || item.label == "Z";
+    if (item.is(Kind::constant)) {
+      point.axes.emplace_back(item.label, TextNumber{item.begin, item.end, item.value});
+    } else if (axis || pose) {
+      point.form = Form::unclear;
+      point.why = "has values that only the controller computes";
+    }
+  }
+  // Angles of a pose are called A, B, C.
+  if (!joints && !pose) return std::nullopt;
+  if (point.form != Form::unclear) point.form = pose ? Form::pose : Form::joints;
+  return point;
+}
+
+const Grammar& krl_grammar() {
+  static const char* external = "moves external axes alone";
+  static const Grammar rules = {{'{', '[', true, true},
+                                true,
+                                {{"PTP"},
+                                 {"SPTP"},
+                                 {"LIN"},
+                                 {"SLIN"},
+                                 {"SPL"},
+                                 {"CIRC", Role::pose, 0, 2},
+                                 {"SCIRC", Role::pose, 0, 2},
+                                 {"PTP_REL", Role::step},
+                                 {"SPTP_REL", Role::step},
+                                 {"LIN_REL", Role::step},
+                                 {"SLIN_REL", Role::step},
+                                 {"SPL_REL", Role::step},
+                                 {"CIRC_REL", Role::step, 0, 2},
+                                 {"SCIRC_REL", Role::step, 0, 2},
+                                 {"ASYPTP", Role::other, 0, 1, external}},
+                                {},
+                                {"$POS_ACT", "$AXIS_ACT", "$AXIS_RET", "$AXIS_FOR", "$POS_RET", "$POS_FOR"},
+                                krl_point};
+  return rules;
+}
+
+const LexRules krl_lexical = {";", "\"'", "_$#", true};
+
+class Krl {
+ public:
+  explicit Krl(const Source& source)
+      : tokens_(tokens_of(source.text, krl_lexical)), cursor_(source.text, tokens_), found_(krl_grammar(), source) {}
+
+  Reading run() {
+    while (!cursor_.done()) {
+      statement();
+      cursor_.skip_to("", true);
+      cursor_.skip();
+    }
+    if (!found_.reading.remark) found_.reading.remark = RemarkPlace{0, ";"};
+    return std::move(found_.reading);
+  }
+
+ private:
+  void statement() {
+    while (cursor_.is_word() && !found_.motion(cursor_.text())) {
+      const std::string word = upper(cursor_.text());
+      if (word == "DEF" || word == "DEFDAT" || word == "DEFFCT") return header();
+      if (word == "EXT" || word == "EXTFCT" || word == "SIGNAL") return;
+      if (assignment()) return;
+      if (cursor_.ahead(1).is('(', cursor_.source())) return call();
+      cursor_.skip();
+      if (cursor_.sees('.') || cursor_.sees('[')) cursor_.skip_to("=", true);
+    }
+    if (cursor_.is_word()) motion();
+  }
+
+  /// A remark stands after the line that says what the file is.
+  void header() {
+    cursor_.skip_to("", true);
+    if (found_.reading.remark) return;
+    const std::size_t end = cursor_.now().kind == Token::Kind::line_end ? cursor_.now().end : cursor_.source().size();
+    found_.reading.remark = RemarkPlace{end, ";"};
+  }
+
+  /// XP1={…}, XP1[3]={…}, XP1.A1=…, XP1=XP2; the cursor is left where it was if it is none.
+  bool assignment() {
+    TokenCursor ahead = cursor_;
+    const std::string name(ahead.text());
+    const int line = ahead.now().line;
+    const Expression left = [&] {
+      Expression one;
+      one.component = false;
+      ahead.skip();
+      while (ahead.sees('[') || ahead.sees('.')) {
+        one.component = one.component || ahead.sees('.');
+        if (ahead.take('.')) ahead.skip();
+        else {
+          ahead.skip_to("]", true);
+          ahead.take(']');
+        }
+      }
+      return one;
+    }();
+    if (!ahead.take('=') || ahead.sees('=')) return false;
+    const Expression value = read_expression(ahead, krl_grammar().expressions);
+    cursor_ = ahead;
+    if (name.starts_with('$')) return true;
+    if (left.component || !found_.define(name, value, line)) {
+      found_.change(name, line, "=");
+      found_.pass("=", {value}, line, Role::operand);
+    }
+    return true;
+  }
+
+  void call() {
+    const Expression called = read_expression(cursor_, krl_grammar().expressions);
+    if (called.is(Kind::call)) found_.pass(called.word, called.items, called.line, Role::passed);
+  }
+
+  void motion() {
+    const std::string_view word = cursor_.text();
+    const Motion& motion = *found_.motion(word);
+    const int line = cursor_.now().line;
+    cursor_.skip();
+    std::vector<Expression> arguments;
+    do {
+      // CIRC aux, end, CA 90
+      if (arguments.size() < motion.count) arguments.push_back(read_expression(cursor_, krl_grammar().expressions));
+    } while (arguments.size() < motion.count && cursor_.take(','));
+    found_.move(motion, word, arguments, line);
+  }
+
+  std::vector<Token> tokens_;
+  TokenCursor cursor_;
+  Collector found_;
+};
+
+}  // namespace
+
+Reading read_krl(const Source& source) { return Krl(source).run(); }
+
+}  // namespace posewright::programs

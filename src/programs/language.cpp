@@ -1,0 +1,56 @@
+#include "language.hpp"
+
+#include <algorithm>
+
+namespace posewright::programs {
+
+const std::vector<Language>& languages() {
+  static const std::vector<std::string> six = {"J1", "J2", "J3", "J4", "J5", "J6"};
+  static const std::vector<Language> table = {
+      {"kuka-krl",
+       {".dat", ".src"},
+       ".src",
+       {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
+       Angle::degrees,
+       5,
+       false,
+       Scope::stem,
+       true,
+       'X',
+       read_krl},
+      {"abb-rapid",
+       {".mod", ".prg"},
+       "",
+       {"rax_1", "rax_2", "rax_3", "rax_4", "rax_5", "rax_6", "eax_a", "eax_b", "eax_c", "eax_d", "eax_e", "eax_f"},
+       Angle::degrees,
+       4,
+       true,
+       Scope::all,
+       true,
+       0,
+       read_rapid},
+      {"fanuc-tp", {".ls"}, "", six, Angle::degrees, 5, true, Scope::file, true, 0, read_tp},
+      {"urscript", {".script"}, "", six, Angle::radians, 6, false, Scope::file, false, 0, read_urscript},
+      {"yaskawa-inform", {".jbi"}, "", six, Angle::pulses, 0, true, Scope::file, true, 0, read_inform},
+      {"staubli-val3",
+       {".dtx", ".pgx"},
+       ".pgx",
+       {"j1", "j2", "j3", "j4", "j5", "j6"},
+       Angle::degrees,
+       4,
+       false,
+       Scope::folder,
+       false,
+       0,
+       read_val3},
+      {"joint-trajectory", {}, "", {}, Angle::radians, -1, false, Scope::file, false, 0, read_trajectory}};
+  return table;
+}
+
+const Language* language_of(std::string_view format) {
+  const auto at =
+      std::find_if(languages().begin(), languages().end(), [&](const Language& l) { return l.format == format; });
+  return at == languages().end() ? nullptr : &*at;
+}
+
+}  // namespace posewright::programs

@@ -66,7 +66,7 @@ MadeCalibration calibrate(const Shared& problem, const py::object& data, const s
   return MadeCalibration::of(problem, options, {}, std::move(progress), calibrate_problem);
 }
 
-bool is_useful(const Calibration& c) { return c.fit.converged && !c.left_out.refused(); }
+bool is_useful(const Calibration& c) { return c.verdict != Verdict::do_not_use; }
 
 std::string parameters_text(const MadeCalibration& made) {
   const Problem& problem = made.problem->problem;

@@ -89,11 +89,10 @@ Eigen::MatrixXd root_of_readings(StackedReadings& stacked, const Eigen::VectorXd
 
 /// Covariance in units of tolerance with the noise `factor` times the stated one.
 Eigen::MatrixXd covariance_with(const StackedReadings& stacked, const Eigen::MatrixXd& root, double factor) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(root.rows() + Eigen::Index(stacked.known().size()), root.cols());
-  rows.topRows(root.rows()) = root / factor;
   // Tolerances stay as they are: they do not grow with the noise.
-  Eigen::Index row = root.rows();
-  for (const int j : stacked.known()) rows(row++, j) = 1.0;
+  const Eigen::MatrixXd prior = stacked.prior_rows();
+  Eigen::MatrixXd rows(root.rows() + prior.rows(), root.cols());
+  rows << root / factor, prior;
   if (rows.rows() < rows.cols()) throw CannotDo("the data do not determine all parameters at the solution");
   return inverse_information(rows);
 }
@@ -130,9 +129,9 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, Eigen:
   Eigen::VectorXd f;
   stacked.set_noise_factor(1.0);
   if (!stacked.residual(x, f)) throw CannotDo("the solution is out of the robot's reach");
-  result.chi_square = f.squaredNorm();
+  result.chi_square = f.head(stacked.counted()).squaredNorm();
   result.readings = stacked.readings();
-  result.freedom = stacked.rows() - stacked.columns();
+  result.freedom = stacked.counted() - stacked.columns();
   result.scale = result.freedom > 0 ? std::sqrt(result.chi_square / result.freedom) : 0.0;
   result.scale_known = options.weighting == Weighting::weighted;
   double factor = 1.0;
@@ -166,10 +165,11 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, Eigen:
 Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
         const FitOptions& options) {
   StackedReadings stacked(model, columns, poses, options.prior, options.start);
-  if (stacked.rows() < stacked.columns())
+  stacked.limit(options.limits);
+  if (stacked.counted() < stacked.columns())
     throw CannotDo(std::to_string(stacked.readings()) + " readings cannot determine " +
                    std::to_string(stacked.columns()) + " parameters");
-  if (options.weighting != Weighting::weighted && stacked.rows() == stacked.columns())
+  if (options.weighting != Weighting::weighted && stacked.counted() == stacked.columns())
     throw CannotDo("as many readings as parameters leave no residual to estimate the noise from: use weights wls");
   if (options.effect != nullptr && options.weighting != Weighting::weighted)
     throw CannotDo("an unmodelled effect counts with weights wls alone");

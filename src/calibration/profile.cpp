@@ -42,6 +42,7 @@ class Profile::State {
     if (options.weighting == Weighting::robust) throw CannotDo("profiles are not for robust weights");
     const Eigen::VectorXd unit = stacked_.tolerances().cwiseInverse();
     covariance = unit.asDiagonal() * fit.covariance * unit.asDiagonal();
+    stacked_.limit(options.limits);
     stacked_.correlate(options.effect);
     stacked_.weigh(estimate, options.weighting);
     stacked_.set_noise_factor(fit.scale_known ? fit.noise_factor : fit.scale);

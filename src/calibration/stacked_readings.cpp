@@ -1,5 +1,6 @@
 #include "stacked_readings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -91,6 +92,23 @@ StackedReadings::StackedReadings(const IdentificationModel& model, const Variant
   root_.resize(poses.size());
 }
 
+void StackedReadings::limit(const std::vector<WeakLimit>& limits) {
+  for (const WeakLimit& limit : limits) {
+    const auto at = std::find(columns_.selected.begin(), columns_.selected.end(), limit.parameter);
+    if (at == columns_.selected.end()) continue;
+    const int column = int(at - columns_.selected.begin());
+    limits_.push_back({column, limit.about / tolerances_[column], tolerances_[column] / limit.width});
+  }
+}
+
+Eigen::MatrixXd StackedReadings::prior_rows() const {
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(rows() - readings_, columns());
+  Eigen::Index row = 0;
+  for (const int j : known_) prior(row++, j) = -1.0;
+  for (const Limit& limit : limits_) prior(row++, limit.column) = -limit.weight;
+  return prior;
+}
+
 Eigen::VectorXd StackedReadings::start() const {
   Eigen::VectorXd x(columns());
   for (Eigen::Index j = 0; j < x.size(); ++j)
@@ -180,6 +198,7 @@ bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
   }
   if (!independent_.empty()) independent_.apply(f.head(readings_));
   for (const int j : known_) f[row++] = -x[j];
+  for (const Limit& limit : limits_) f[row++] = -limit.weight * (x[limit.column] - limit.about);
   return f.allFinite();
 }
 
@@ -196,8 +215,7 @@ bool StackedReadings::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& J) {
       J.row(row) = -root_weight(int(row)) * rows_.row(i).cwiseProduct(tolerances_.transpose());
   }
   if (!independent_.empty()) independent_.apply(J.topRows(readings_));
-  J.bottomRows(Eigen::Index(known_.size())).setZero();
-  for (const int j : known_) J(row++, j) = -1.0;
+  J.bottomRows(rows() - readings_) = prior_rows();
   return true;
 }
 

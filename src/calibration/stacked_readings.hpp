@@ -53,6 +53,9 @@ class StackedReadings {
   StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
                   const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start = {});
 
+  /// From now on the sum of squares holds these terms, too.
+  void limit(const std::vector<WeakLimit>& limits);
+
   /// The columns of the corrections to start from, in units of tolerance.
   Eigen::VectorXd start() const;
 
@@ -69,9 +72,13 @@ class StackedReadings {
   void set_group_weights(const Eigen::VectorXd& weights) { group_weights_ = weights; }
 
   int columns() const { return int(columns_.selected.size()); }
-  int rows() const { return readings_ + int(known_.size()); }
+  int rows() const { return counted() + int(limits_.size()); }
+  /// Rows of readings and tolerances, which lead; those of weak limits follow.
+  int counted() const { return readings_ + int(known_.size()); }
   /// Columns whose tolerance counts, ascending; their rows follow the readings'.
   const std::vector<int>& known() const { return known_; }
+  /// Rows of tolerances and weak limits in the Jacobian, rows() − readings() × columns().
+  Eigen::MatrixXd prior_rows() const;
   int readings() const { return readings_; }
   int groups() const { return int(group_of_.empty() ? 0 : group_of_.back() + 1); }
   /// Rows of every group.
@@ -101,7 +108,12 @@ class StackedReadings {
   const IdentificationModel& model_;
   const VariantColumns& columns_;
   const std::vector<MeasuredPose>& poses_;
+  struct Limit {
+    int column;
+    double about, weight;  ///< in units of tolerance
+  };
   std::vector<int> known_;
+  std::vector<Limit> limits_;
   double noise_factor_ = 1.0;
   Eigen::VectorXd tolerances_;
   std::vector<std::vector<int>> read_;             ///< per pose: which readings are there

@@ -42,7 +42,7 @@ po::options_description calibrate_command_options() {
       ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, if the data have them")  //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                   //
       ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")               //
-      ("force", "replace files that posewright did not write; write what predicts worse than base and tool alone");
+      ("force", "replace files that posewright did not write; write an estimate that is not to be used");
   options.add(problem_options());
   return options;
 }
@@ -177,8 +177,8 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
       throw CannotDo("nothing to draw: the data have no joint centres of a platform (columns leg_1.x, leg_1.y, …)");
     files.push_back({wanted.deformation, platform_svg(*result.platform)});
   }
-  const bool useful = result.fit.converged && !result.left_out.refused();
-  const bool written = result.fit.converged && (useful || values.count("force") > 0);
+  const bool useful = result.verdict != Verdict::do_not_use;
+  const bool written = useful || (result.fit.converged && values.count("force") > 0);
   if (written)
     for (FileToWrite& file : files_to_write(wanted, problem, result, result.notes)) files.push_back(std::move(file));
   else if (!wanted.parameters.empty() || !wanted.urdf.empty())
@@ -186,6 +186,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   // These files do not belong together as a program and its points do: one at a time, each replaces its own.
   for (const FileToWrite& file : files) write_results({file});
   print_notes(result.notes);
+  print_notes(result.refusals);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
                  written_text(written ? std::vector{wanted.parameters, wanted.urdf, wanted.deformation}

@@ -13,7 +13,7 @@ using Align = Table::Align;
 
 std::string verdict_of(const Calibration& c) {
   if (!c.fit.converged) return "not converged";
-  if (c.left_out.refused()) return "no better than base and tool";
+  if (c.verdict != Verdict::use_it) return verdict_word(c.verdict);
   for (const AxisImprovement& a : c.axes)
     if (!a.met()) return "a requirement is not met";
   return "";

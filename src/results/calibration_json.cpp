@@ -124,7 +124,7 @@ Json left_out_json(const LeaveOut& left_out) {
   const auto judged = [&](double value) { return left_out.groups > 0 ? finite_or_null(value) : Json(nullptr); };
   return {{"groups", left_out.groups},         {"estimated", judged(left_out.estimated)},
           {"placed", judged(left_out.placed)}, {"gain", judged(left_out.gain)},
-          {"refused", left_out.refused()},     {"why_not", text_or_null(left_out.why_not)}};
+          {"gains", left_out.gains()},         {"why_not", text_or_null(left_out.why_not)}};
 }
 
 Json covariance_json(const Calibration& c) {
@@ -157,6 +157,8 @@ Json figures_json(const Calibration& c) {
                      {"residuals", numbers(pose.residuals)},
                      {"accuracy", pose_accuracy_json(pose.accuracy)}});
   return {{"variant", c.variant},
+          {"verdict", verdict_word(c.verdict)},
+          {"refusals", c.refusals},
           {"weights", weighting_word(c.weighting)},
           {"prior", c.prior == Prior::none ? "none" : "manufactured"},
           {"rows", c.rows},
@@ -204,6 +206,10 @@ Json figures_json(const Calibration& c) {
 
 std::string weighting_word(Weighting weighting) {
   return weighting == Weighting::ordinary ? "ols" : weighting == Weighting::weighted ? "wls" : "robust";
+}
+
+std::string verdict_word(Verdict verdict) {
+  return verdict == Verdict::use_it ? "use it" : verdict == Verdict::gain_not_shown ? "gain not shown" : "do not use";
 }
 
 Weighting weighting_of(std::string_view word) {

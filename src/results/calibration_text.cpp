@@ -198,9 +198,8 @@ std::string left_out_text(const Calibration& c) {
   if (!std::isfinite(c.left_out.estimated)) return "Poses left out cannot be predicted: " + c.left_out.why_not + "\n";
   return fmt::format(
       "Poses left out ({} times) are predicted to {:.3g} times the stated noise, with base and tool alone to "
-      "{:.3g}{}.\n",
-      c.left_out.groups, c.left_out.estimated, c.left_out.placed,
-      c.left_out.refused() ? ": NO GAIN that is more than chance" : "");
+      "{:.3g}.\n",
+      c.left_out.groups, c.left_out.estimated, c.left_out.placed);
 }
 
 std::string outliers_text(const Calibration& c) {
@@ -224,7 +223,7 @@ std::string calibration_text(const Calibration& c) {
          (c.compensator ? compensator_text(*c.compensator) : "") + (c.platform ? platform_text(*c.platform) : "") +
          steps_text(c) + residuals_text(c) + axes_text(c) + predicted_poses_text(c) +
          histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) + revisits_text(c) + effects_text(c) +
-         left_out_text(c) + not_in_auto_text(c) + outliers_text(c);
+         left_out_text(c) + not_in_auto_text(c) + outliers_text(c) + "Verdict: " + verdict_word(c.verdict) + ".\n";
 }
 
 }  // namespace posewright

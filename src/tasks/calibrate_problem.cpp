@@ -9,8 +9,10 @@
 #include "calibration_accuracy.hpp"
 #include "calibration_data.hpp"
 #include "calibration_profiles.hpp"
+#include "calibration_verdict.hpp"
 #include "effects_left_out.hpp"
 #include "posewright/blocks/identifiability.hpp"
+#include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/platform_images.hpp"
@@ -26,8 +28,6 @@
 namespace posewright {
 namespace {
 
-// Residuals so many times the noise are no robot's.
-constexpr double absurd = 1000.0;
 // So often an estimate may be replaced by a better one that its profiles passed.
 constexpr int most_rounds = 4;
 constexpr int random_configurations = 300;
@@ -59,9 +59,11 @@ class CalibrationRun {
     fit_options.prior = result_.prior;
     VariantColumns all = select_columns(*model_, problem_, spec_);
     if (!campaigns_.empty()) all = with_campaign_bases(*model_, all);
+    fit_options.limits = frame_limits(*model_, all, result_.prior);
     place(all, fit_options);
     choose_columns(all);
     leave_at_nominal_values(all, fit_options.start);
+    fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
     place_again(fit_options);
     if (options_.estimate_alone) {
       result_.fit = fit(*model_, columns_, fitted_, fit_options);
@@ -74,8 +76,8 @@ class CalibrationRun {
     if (result_.fit.converged)
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     if (options_.interpolate) interpolate(fit_options);
-    note_end();
     judge_noise();
+    judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
     judge_frame();
     fill_parameters();
     fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
@@ -295,26 +297,6 @@ class CalibrationRun {
         posewright::interpolate(*model_, columns_, fitted_, held_back_, result_.fit, options.effect);
   }
 
-  /// Why an estimate is not to be used.
-  void note_end() {
-    const std::string why = result_.weakest.empty() ? "" : ". Near dependence: " + result_.weakest;
-    const std::string remedy =
-        std::string("; measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
-        (result_.prior == Prior::none ? "let tolerances count (without --no-prior)" : "state tolerances");
-    if (!result_.fit.converged)
-      result_.notes.push_back(result_.weakest.empty()
-                                  ? "the estimate did not converge: are nominal base, tool and units right?"
-                                  : "the estimate did not converge" + why + remedy);
-    else if (result_.left_out.refused())
-      result_.notes.push_back(fmt::format(
-          "poses that are left out are predicted no better by the estimate ({}) than with base and tool alone ({:.3g} "
-          "times the stated noise), or better by chance only: nothing shows that these parameters are better than the "
-          "nominal ones{}{}",
-          std::isfinite(result_.left_out.estimated) ? fmt::format("{:.3g}", result_.left_out.estimated)
-                                                    : result_.left_out.why_not,
-          result_.left_out.placed, why, remedy));
-  }
-
   /// Poses of another day may have been read in another frame: their errors are then those of the frame.
   void judge_frame() {
     if (validation_.empty() || !result_.fit.converged) return;
@@ -334,11 +316,6 @@ class CalibrationRun {
       result_.lack_of_fit = lack_of_fit(*model_, *model_of(without_pose_errors(problem_)), problem_.measurement.repeats,
                                         fitted_, repeated_, fit);
     }
-    if (fit.scale > absurd)
-      result_.notes.push_back(fmt::format(
-          "residuals are {:.3g} times the stated noise: no robot's errors explain that. Are units, signs of the "
-          "joints and the order of the targets right?",
-          fit.scale));
   }
 
   void fill_parameters() {

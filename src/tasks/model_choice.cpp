@@ -56,7 +56,7 @@ void test_against_smaller(const std::vector<Calibration>& models, const Calibrat
   m.probability = fisher_exceeded(*m.f, more, c.fit.left);
 }
 
-bool usable(const Calibration& c) { return c.fit.converged && c.left_out.groups > 0 && !c.left_out.refused(); }
+bool usable(const Calibration& c) { return c.verdict == Verdict::use_it && c.left_out.groups > 0; }
 
 /// How much worse than another one a model predicts poses left out, in standard errors.
 double loss_of(const Calibration& model, const Calibration& best) {

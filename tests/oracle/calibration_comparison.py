@@ -195,9 +195,12 @@ def compare_rest(run, brute_force, estimate, placed, check):
         alike = abs(mine["estimated"] / mine["placed"] - 1) < 1e-6
         for key, value in mine.items():
             check.close("left out", value, said[key] if key != "gain" or not alike else value)
-    # No better than base and tool alone, or better by chance: nothing is written, exit status 1.
-    refused = mine["estimated"] is None or not mine["gain"] > 2
-    check.note("decision", said["refused"] != refused or (run.status == 1) != refused or (run.file is None) != refused)
+    # Worse than base and tool alone beyond chance: nothing is written, exit status 1. No better: a word of its own.
+    gains = mine["estimated"] is not None and mine["gain"] > 2
+    worse = mine["estimated"] is None or not mine["gain"] >= -2
+    refused = run.result["verdict"] == "do not use"
+    check.note("decision", said["gains"] != gains or (worse and not refused) or (run.result["verdict"] == "use it" and not gains))
+    check.note("decision", (run.status == 1) != refused or (run.file is None) != refused or refused != bool(run.result["refusals"]))
 
 
 def compare(run, brute_force):

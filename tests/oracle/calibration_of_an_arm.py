@@ -59,7 +59,7 @@ def main(program, source, count="20", seed="1"):
                     print(f"{told}not judged, exit status {run.status}: {run.said[:150]}")
                     silent += 1
                     continue
-                runs, refusals = runs + 1, refusals + run.result["left_out"]["refused"]
+                runs, refusals = runs + 1, refusals + (run.result["verdict"] != "use it")
                 wrong = check.wrong()
                 good = good and not wrong
                 told += ", ".join(f"{what} {off:.0e}" for what, off in check.worst.items() if off > 0.1 * ALLOWED[what])

@@ -23,11 +23,20 @@ struct MeasuredPose {
 /// `robust` that covariance and less where a target lies far off.
 enum class Weighting { ordinary, weighted, robust };
 
+/// One more term ((correction − about)/width)² of the sum of squares, which keeps a frame that the readings leave open
+/// from running away. It is no knowledge: chi-square and degrees of freedom do not count it.
+struct WeakLimit {
+  int parameter = 0;   ///< of the model; without effect where it is not estimated
+  double about = 0.0;  ///< its correction, SI
+  double width = 1.0;  ///< 1σ, SI
+};
+
 struct FitOptions {
   Weighting weighting = Weighting::weighted;
   Prior prior = Prior::none;  ///< which tolerances count
   /// Corrections of all parameters to start from; those that are not estimated keep them. Empty: all zero.
   std::vector<double> start{};
+  std::vector<WeakLimit> limits{};  ///< see frame_limits()
   /// Weighted fits: readings are correlated from pose to pose by this effect, too (generalised least squares). Null:
   /// none.
   std::shared_ptr<const UnmodelledEffect> effect{};

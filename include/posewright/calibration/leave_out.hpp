@@ -19,8 +19,9 @@ struct LeaveOut {
   std::vector<double> squares;  ///< mean square of every pose left out, by the estimate; in the order they were
   std::string why_not;          ///< not judged, or: why the estimate cannot predict (infinite)
 
-  /// Nothing shows that the estimate predicts better than knowing where things stand does.
-  bool refused() const { return groups > 0 && !(gain > 2.0); }
+  /// The estimate predicts better than knowing where things stand does; worse: both beyond chance.
+  bool gains() const { return groups > 0 && gain > 2.0; }
+  bool worse() const { return groups > 0 && !(gain >= -2.0); }
 };
 
 /// Leaves out one pose after the other (above 30 poses one of ten groups: every tenth pose), estimates from the rest

@@ -17,6 +17,9 @@ std::string weighting_word(Weighting weighting);
 /// Its inverse; weighted for an empty word. The word is one of these.
 Weighting weighting_of(std::string_view word);
 
+/// "use it", "gain not shown", "do not use".
+std::string verdict_word(Verdict verdict);
+
 /// What a person reads: parameters with intervals, residuals before and after, what the residuals say of the model.
 std::string calibration_text(const Calibration& calibration);
 /// The same for machines, nothing left out: schema posewright/calibration/1.

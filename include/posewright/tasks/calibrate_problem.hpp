@@ -99,6 +99,9 @@ struct PoseResidual {
   std::optional<PoseAccuracy> accuracy{};
 };
 
+/// What to do with an estimate: `gain_not_shown` is as good as base and tool alone but for chance.
+enum class Verdict { use_it, gain_not_shown, do_not_use };
+
 struct Calibration {
   std::string variant;
   Weighting weighting = Weighting::weighted;
@@ -133,6 +136,8 @@ struct Calibration {
   std::optional<PlatformDeformation> platform;  ///< if the data have the joint centres of a platform
   std::vector<std::string> columns;             ///< names of what fit.covariance and curvature.parameter count
   std::vector<std::string> notes;
+  Verdict verdict = Verdict::use_it;
+  std::vector<std::string> refusals;  ///< why not; one at least where the verdict is do_not_use
   /// Of the model's whole catalogue, for whoever goes on with the robot.
   std::vector<double> correction;
   std::vector<EstimatedValue> values;  ///< the same as values, under the model's names, with σ where estimated

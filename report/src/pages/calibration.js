@@ -35,9 +35,7 @@ function warnings(c) {
   const named = c.effects_left_out.filter((e) => e.corrected < seldom);
   const smooth = c.smooth_effect;
   return [
-    !c.converged && 'The estimate did not converge.',
-    c.left_out.refused &&
-      `Poses left out are predicted no better than by base and tool alone (${number(c.left_out.estimated, 3)} against ${number(c.left_out.placed, 3)} times the stated noise): these parameters are of no use.`,
+    ...c.refusals.map((why) => `Not to be used: ${why}`),
     named.length > 0 &&
       `The residuals hold an effect that is not fitted: ${named[0].effect}, which explains ${number(100 * named[0].share, 2)} % of the squared residuals (p ${chance(named[0].corrected).startsWith('<') ? chance(named[0].corrected) : `= ${chance(named[0].corrected)}`})${named.length > 1 ? `; ${plural(named.length - 1, 'other')} would do so too` : ''}.`,
     !smooth.why_not &&

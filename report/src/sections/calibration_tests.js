@@ -70,9 +70,9 @@ function rowsOf(c) {
       'Are the parameters of use? (poses left out)',
       `${number(left.estimated, 3)} against ${number(left.placed, 3)}`,
       '',
-      left.refused
-        ? h('span', { class: 'refused' }, 'no better than base and tool alone')
-        : 'poses left out, predicted in units of the stated noise, against base and tool alone',
+      left.gains
+        ? 'poses left out, predicted in units of the stated noise, against base and tool alone'
+        : h('span', { class: 'refused' }, 'no better than base and tool alone beyond chance'),
     ]);
   if (c.curvature !== null)
     rows.push([

@@ -1,0 +1,111 @@
+#include "calibration_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/calibration/frame_limits.hpp"
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+// Share of a step of one σ that the linear model misses: beyond it σ means nothing.
+constexpr double hopeless_curvature = 10.0;
+// Residuals so many times what noise and all tolerances explain are no robot's.
+constexpr double unexplained = 10.0;
+
+/// Root mean square of the whitened readings of a robot drawn from all tolerances of the model, whatever is estimated.
+double explained_size(const CalibratedPoses& poses, const Calibration& result) {
+  VariantColumns all;
+  for (int i = 0; i < int(poses.model.parameters().size()); ++i) {
+    const auto at = std::ranges::find(poses.columns.selected, i);
+    const Parameter& p = at == poses.columns.selected.end()
+                             ? poses.model.parameters()[std::size_t(i)]
+                             : poses.columns.parameters[std::size_t(at - poses.columns.selected.begin())];
+    if (!counts(p, Prior::manufactured)) continue;
+    all.selected.push_back(i);
+    all.parameters.push_back(p);
+  }
+  if (all.selected.empty()) return 1.0;
+  const BlockArray blocks = blocks_of(poses.model, all, poses.fitted, result.fit.correction);
+  const double squares = (blocks.all() * tolerances_of(all).asDiagonal()).squaredNorm();
+  return std::sqrt(1.0 + squares / result.fit.readings);
+}
+
+std::string remedy_of(const Calibration& c) {
+  return std::string("measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
+         (c.prior == Prior::none ? "let tolerances count (without --no-prior)" : "state tolerances");
+}
+
+std::string near_dependence(const Calibration& c) { return c.weakest.empty() ? "" : ". Near dependence: " + c.weakest; }
+
+std::string not_converged(const Calibration& c) {
+  return c.weakest.empty() ? "the estimate did not converge: are nominal base, tool and units right?"
+                           : "the estimate did not converge" + near_dependence(c) + "; " + remedy_of(c);
+}
+
+void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
+  const double explained = explained_size(poses, c);
+  if (!(c.fit.scale > unexplained * explained)) return;
+  c.refusals.push_back(
+      fmt::format("residuals are {:.3g} times the stated noise, noise and tolerances explain {:.3g} times: no robot's "
+                  "errors do that. "
+                  "Are units, signs and zeros of the joints, the order of rows, targets and angles right?",
+                  c.fit.scale, explained));
+}
+
+/// An estimate that nothing can test.
+void refuse_few_poses(Calibration& c) {
+  if (c.poses < 2)
+    c.refusals.emplace_back("a single pose was measured: no other one shows whether the estimate is right");
+  else if (c.left_out.groups > 0 && !std::isfinite(c.left_out.estimated))
+    c.refusals.push_back("too few poses to leave one out: " + c.left_out.why_not + near_dependence(c) + "; " +
+                         remedy_of(c));
+}
+
+/// A frame that the readings leave open may be metres off, wherever the weak limits hold it.
+void refuse_open_frames(const CalibratedPoses& poses, Calibration& c) {
+  if (const auto loose = loose_direction(poses.columns, c.prior, c.fit, size_of(poses.model)))
+    c.refusals.push_back(fmt::format(
+        "the readings tell where frames are along {} to {} only (1σ), which is beyond the size of the robot; {}",
+        loose->text(), shown_value(loose->sigma, loose->unit), remedy_of(c)));
+  if (c.curvature.largest > hopeless_curvature)
+    c.refusals.push_back(
+        fmt::format("the problem bends within one σ (curvature {:.3g}, most along {}): the estimate may lie anywhere "
+                    "along it{}; {}",
+                    c.curvature.largest, poses.columns.parameters[std::size_t(c.curvature.parameter)].name,
+                    near_dependence(c), remedy_of(c)));
+}
+
+std::string predicted(const Calibration& c) {
+  return fmt::format(
+      "poses that are left out are predicted to {:.3g} times the stated noise by the estimate and to "
+      "{:.3g} with base and tool alone",
+      c.left_out.estimated, c.left_out.placed);
+}
+
+}  // namespace
+
+void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
+  if (!c.fit.converged) {
+    c.refusals.push_back(not_converged(c));
+  } else {
+    refuse_residuals(poses, c);
+    refuse_few_poses(c);
+    refuse_open_frames(poses, c);
+    if (c.left_out.worse() && std::isfinite(c.left_out.estimated))
+      c.refusals.push_back(predicted(c) + ", which is better beyond chance" + near_dependence(c) + "; " + remedy_of(c));
+  }
+  c.verdict = !c.refusals.empty()                            ? Verdict::do_not_use
+              : c.left_out.groups > 0 && !c.left_out.gains() ? Verdict::gain_not_shown
+                                                             : Verdict::use_it;
+  if (c.verdict == Verdict::gain_not_shown)
+    c.notes.push_back("gain not shown: " + predicted(c) +
+                      ", a difference that chance gives, too: nothing shows that these parameters are better than the "
+                      "nominal ones" +
+                      near_dependence(c));
+}
+
+}  // namespace posewright

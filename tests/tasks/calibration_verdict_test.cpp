@@ -1,0 +1,144 @@
+// Whether an estimate is to be used, told by cases whose right answer is known.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/temporary_folder.hpp"
+#include "tests/kit/virtual_data.hpp"
+#include "tests/kit/virtual_file.hpp"
+
+namespace posewright {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+
+const fs::path cases = fs::path(POSEWRIGHT_SHARED_DIR) / "cases";
+
+Calibration calibrated_case(const std::string& problem, const std::string& data) {
+  CalibrateOptions options;
+  options.data = cases / data;
+  return calibrate_problem(read_problem(cases / problem), options, Monitor{});
+}
+
+TEST(Verdict, OnePoseReadFifteenTimesIsRefused) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  const Calibration one = calibrated_case("one_pose/problem.yaml", "one_pose/same_pose.csv");
+  EXPECT_EQ(one.verdict, Verdict::do_not_use);
+  EXPECT_THAT(one.refusals, Contains(HasSubstr("a single pose")));
+}
+
+TEST(Verdict, ResidualsThatNoRobotHasAreRefusedAndRightOnesAreNot) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  EXPECT_EQ(calibrated_case("conventions/problem.yaml", "conventions/ok.csv").verdict, Verdict::use_it);
+  EXPECT_EQ(calibrated_case("coupling/told.yaml", "coupling/controller.csv").verdict, Verdict::use_it);
+  EXPECT_EQ(calibrated_case("prismatic/p.yaml", "prismatic/m.csv").verdict, Verdict::use_it);
+  EXPECT_EQ(calibrated_case("coupling/problem.yaml", "coupling/controller.csv").verdict, Verdict::do_not_use);
+  for (const char* wrong :
+       {"mirrored", "index_shift", "euler_order", "wxyz", "tcp_inverted", "not_inverted", "rotvec_as_euler"}) {
+    const Calibration c = calibrated_case("conventions/problem.yaml", std::string("conventions/") + wrong + ".csv");
+    EXPECT_EQ(c.verdict, Verdict::do_not_use) << wrong;
+    EXPECT_THAT(c.refusals, Contains(HasSubstr("no robot's errors do that"))) << wrong;
+  }
+}
+
+TEST(Verdict, AGainThatChanceExplainsIsNoRefusalAndALossBeyondChanceIsOne) {
+  // A robot so near to nominal that its noisy readings hardly tell its parameters.
+  VirtualFile data("kr270/problem.yaml", 20);
+  int not_shown = 0, refused = 0;
+  for (const double share : {0.0, 0.04, 0.05, 0.06, 0.07, 0.08}) {
+    std::vector<double> truth(data.truth.size(), 0.0);
+    if (share > 0) truth = random_truth(*data.model, data.columns, share, data.random);
+    read_poses_of(*data.model, truth, share > 0 ? 2.0 : 1.0, data.random, data.poses);
+    data.write();
+    const Calibration c = calibrate_problem(data.problem, data.options(), Monitor{});
+    ASSERT_GT(c.left_out.groups, 0);
+    EXPECT_EQ(c.verdict == Verdict::use_it, c.left_out.gain > 2) << share;
+    EXPECT_EQ(c.verdict == Verdict::do_not_use, c.left_out.gain < -2) << share;
+    EXPECT_EQ(c.refusals.empty(), c.verdict != Verdict::do_not_use) << share;
+    if (c.verdict == Verdict::do_not_use) ++refused;
+    if (c.verdict != Verdict::gain_not_shown) continue;
+    ++not_shown;
+    EXPECT_THAT(c.notes, Contains(HasSubstr("gain not shown")));
+  }
+  EXPECT_GT(not_shown, 0);
+  EXPECT_GT(refused, 0);
+}
+
+/// A column with an arm whose axes are all vertical but for the digits of 3.1416: base.z and target.P.z are one.
+struct ColumnArm {
+  TemporaryFolder folder;
+  Problem problem;
+  std::unique_ptr<IdentificationModel> model;
+  double base_z = 0;
+
+  ColumnArm() {
+    const auto joint = [](const char* name, const char* type, const char* parent, const char* child, const char* origin,
+                          const char* limit) {
+      return std::string("<joint name=\"") + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+             "\"/><child link=\"" + child + "\"/><origin " + origin + "/><axis xyz=\"0 0 1\"/><limit " + limit +
+             " velocity=\"1\" effort=\"1\"/></joint>";
+    };
+    const char* turn = "lower=\"-2.4\" upper=\"2.4\"";
+    std::string urdf = "<robot name=\"column\">";
+    for (const char* link : {"base_link", "l1", "l2", "l3", "tip"})
+      urdf += std::string("<link name=\"") + link + "\"/>";
+    urdf += joint("column", "prismatic", "base_link", "l1", "xyz=\"0 0 0.3\"", "lower=\"0\" upper=\"0.5\"") +
+            joint("j1", "revolute", "l1", "l2", "xyz=\"0 0 0\"", turn) +
+            joint("j2", "revolute", "l2", "l3", "xyz=\"0.35 0 0\" rpy=\"3.1416 0 0\"", turn) +
+            joint("j3", "revolute", "l3", "tip", "xyz=\"0.3 0 0\" rpy=\"3.1416 0 0\"", turn) + "</robot>";
+    folder.write("arm.urdf", urdf);
+    problem = read_problem(folder.write("problem.yaml", R"(posewright: 1
+robot: {urdf: arm.urdf, base: base_link, tip: tip}
+measurement:
+  type: points
+  targets: {P: [0.05, 0, 0.02]}
+  device: {type: isotropic, noise: "0.1 mm"}
+variants: {geometric: {parameters: ["j*.offset"], nuisance: ["base.*", "target.*"]}}
+design: {poses: 20, candidates: 500}
+)"));
+    model = make_model(problem);
+  }
+  Calibration calibrated(Random& random, Prior prior) {
+    const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+    std::vector<MeasuredPose> poses = random_poses(*model, 20, random);
+    std::vector<double> truth = random_truth(*model, columns, 0.3, random);
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      if (model->parameters()[i].name == "base.z") base_z = truth[i] = 0.03 * random.normal();
+    read_poses_of(*model, truth, 1.0, random, poses);
+    CalibrateOptions options;
+    options.data = folder.write("data.csv", measured_data_csv(*model, poses));
+    options.prior = prior;
+    return calibrate_problem(problem, options, Monitor{});
+  }
+};
+
+TEST(Verdict, AnArmOnAColumnIsNeverMetresOffAndItsOpenDirectionIsNamed) {
+  ColumnArm arm;
+  Random random(3, 1);
+  for (int draw = 0; draw < 20; ++draw) {
+    const Calibration c = arm.calibrated(random, Prior::manufactured);
+    ASSERT_TRUE(c.fit.converged);
+    EXPECT_EQ(c.verdict, Verdict::do_not_use);
+    EXPECT_THAT(c.refusals, Contains(testing::AllOf(HasSubstr("base.z"), HasSubstr("target.P.z"))));
+    for (const CalibratedParameter& p : c.parameters)
+      if (p.label.name == "base.z") {
+        EXPECT_NEAR(p.value, arm.base_z, 0.1) << draw;
+      }
+    // Plain least squares have no limit: what is estimated and runs away is refused.
+    const Calibration plain = arm.calibrated(random, Prior::none);
+    for (const CalibratedParameter& p : plain.parameters)
+      if (p.label.name == "base.z" && plain.verdict != Verdict::do_not_use) {
+        EXPECT_NEAR(p.value, arm.base_z, 0.1) << draw;
+      }
+  }
+}
+
+}  // namespace
+}  // namespace posewright

@@ -128,7 +128,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
         throw InputError({}, outputs[i].string() + " is named for two outputs", "give each a file of its own");
     if (fs::is_regular_file(outputs[i], code) && fs::file_size(outputs[i], code) > 0 && !force &&
         !is_earlier_result(outputs[i], outputs))
-      throw CannotDo(outputs[i].string() + " exists and was not written by posewright; --force replaces it");
+      throw CannotDo(outputs[i].string() + " exists and is not known to be written by posewright; --force replaces it");
     require_writable(outputs[i]);
   }
   begin_stage(SignalStage::nothing_to_lose);

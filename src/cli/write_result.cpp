@@ -13,7 +13,9 @@ namespace posewright::cli {
 po::options_description output_options(bool poses) {
   po::options_description options("Output");
   options.add_options()("output,o", text("FILE"), "plan as JSON (plan.json; - for none)");
-  if (poses) options.add_options()("poses-csv", text("FILE"), "poses as CSV (poses.csv; - for none)");
+  if (poses)
+    options.add_options()("poses-csv", text("FILE"),
+                          "poses as CSV (poses.csv beside plan.json, a-poses.csv beside a.json; - for none)");
   options.add_options()                                         //
       ("force", "replace files that posewright did not write")  //
       ("time-limit", text("S"), "stop after S seconds with the best plan so far");
@@ -56,6 +58,16 @@ std::filesystem::path for_validation(std::filesystem::path file) {
   return file.replace_filename(file.stem().string() + "-validation" + file.extension().string());
 }
 
+/// plan.json: poses.csv; arm.plan.json: arm.poses.csv; a.json: a-poses.csv. Two plans in a folder have two lists.
+std::filesystem::path list_beside(std::filesystem::path plan) {
+  if (plan.empty()) return "poses.csv";
+  const std::string stem = plan.stem().string(), word = "plan";
+  const bool begins = stem.starts_with(word + "-") || stem == word;
+  if (begins) return plan.replace_filename("poses" + stem.substr(word.size()) + ".csv");
+  if (stem.ends_with(".plan")) return plan.replace_filename(stem.substr(0, stem.size() - word.size()) + "poses.csv");
+  return plan.replace_filename(stem + "-poses.csv");
+}
+
 std::string validation_text(const Plan& plan) {
   std::string ids;
   for (const PlannedPose& pose : plan.poses)
@@ -70,7 +82,7 @@ std::string validation_text(const Plan& plan) {
 Outputs::Outputs(const po::variables_map& values, const std::vector<std::filesystem::path>& inputs, bool poses,
                  bool validation) {
   plan_ = output_file(values, "output", "plan.json");
-  if (poses) poses_ = output_file(values, "poses-csv", "poses.csv");
+  if (poses) poses_ = output_file(values, "poses-csv", list_beside(plan_).c_str());
   if (validation) {
     validation_plan_ = for_validation(plan_);
     validation_poses_ = for_validation(poses_);

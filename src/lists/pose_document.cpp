@@ -68,7 +68,7 @@ class JsonDocument : public PoseDocument {
     }
     if (json.contains("motions")) write_motions(json, values, next);
     json["compensated"] = remark;
-    return lenient_json_text(json);
+    return json_text(json);
   }
 
  private:

@@ -54,6 +54,12 @@ void require_fits(const PoseList& list, const std::vector<Coordinate>& coordinat
                        fmt::format("{} coordinates of this problem", coordinates.size()));
 }
 
+void require_at_most(const PoseList& list, std::size_t most, const std::string& task) {
+  if (list.configurations.size() > most)
+    throw InputError({list.name, 0}, "has " + std::to_string(list.configurations.size()) + " poses",
+                     task + " at most " + std::to_string(most));
+}
+
 PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates) {
   return read_poses_text(plan_json(plan), "plan", coordinates);
 }

@@ -94,7 +94,7 @@ std::string yaml_number(double value) {
 std::string yaml_numbers(const std::vector<double>& values) { return list(values, yaml_number); }
 
 std::string yaml_text(const std::string& text) {
-  return is_plain_yaml(text) ? text : lenient_json_text(text, JsonLayout::one_line);
+  return is_plain_yaml(text) ? text : json_text(nlohmann::ordered_json(text), JsonLayout::one_line);
 }
 
 std::string yaml_texts(const std::vector<std::string>& texts) { return list(texts, yaml_text); }

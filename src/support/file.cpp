@@ -31,9 +31,7 @@ void require_bytes(const fs::path& file) {
     throw InputError({file.string(), 0}, "is a device", "a file or a pipe is needed");
 }
 
-}  // namespace
-
-std::string read_file(const fs::path& file, std::uintmax_t limit) {
+std::string bytes_of(const fs::path& file, std::uintmax_t limit) {
   const SourcePlace place{file.string(), 0};
   require_bytes(file);
   std::ifstream in(file, std::ios::binary);
@@ -52,8 +50,22 @@ std::string read_file(const fs::path& file, std::uintmax_t limit) {
     if (bytes.size() > limit) throw InputError(place, "has more than " + std::to_string(limit) + " bytes", allowed);
   }
   if (in.bad()) throw InputError(place, "cannot be read to its end", "");
+  return bytes;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file, std::uintmax_t limit) {
+  std::string bytes = bytes_of(file, limit);
   record_input(file);
   return bytes;
+}
+
+std::string read_file_to_replace(const fs::path& file, std::uintmax_t limit) {
+  std::error_code code;
+  if (fs::exists(file, code) && !fs::is_regular_file(file, code))
+    throw InputError({file.string(), 0}, "is not an ordinary file", "a file that can be written anew");
+  return bytes_of(file, limit);
 }
 
 FileReader::FileReader(const fs::path& file) : file_(file) {

@@ -22,6 +22,8 @@ namespace {
 
 // Sets that branch and bound tries before it would take too long; above, the search is good but not proved.
 constexpr double proved_drop = 5e4;
+// Bounds and each pose's worth take seconds by the square of their number: some minutes of this many.
+constexpr std::size_t most_judged = 2000;
 
 class ListEvaluation {
  public:
@@ -258,6 +260,7 @@ class ListEvaluation {
 PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& list, const EvaluateOptions& options,
                                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
+  require_at_most(list, most_judged, "evaluate judges");
   PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate(problem);
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/sha256.hpp"
 #include "posewright/version.hpp"
@@ -19,6 +19,12 @@ namespace {
 using StateJson = nlohmann::ordered_json;
 
 constexpr const char* schema = "posewright/next-state/1";
+constexpr std::uintmax_t largest_state = 1'000'000'000;
+
+[[noreturn]] void refuse_damaged(const std::filesystem::path& file, const std::string& how) {
+  throw InputError({file.string(), 0}, "is damaged: " + how,
+                   "a state that posewright next wrote (--restart begins a new one)");
+}
 
 StateJson or_null(const std::optional<double>& value) { return value ? StateJson(*value) : StateJson(nullptr); }
 
@@ -43,7 +49,8 @@ std::shared_ptr<const KeptCandidates> candidates_of(const nlohmann::json& json) 
   for (const nlohmann::json& entry : json.at("rejected"))
     kept->configurations.rejected.emplace_back(entry.at(0).get<std::string>(), entry.at(1).get<long>());
   const int dimension = kept->configurations.dimension;
-  if (dimension < 1 || kept->configurations.values.size() % std::size_t(dimension) != 0) return nullptr;
+  const std::size_t numbers = kept->configurations.values.size();
+  if (dimension < 1 || numbers == 0 || numbers % std::size_t(dimension) != 0) return nullptr;
   return kept;
 }
 
@@ -79,18 +86,16 @@ NextState state_of(const nlohmann::json& json) {
 std::optional<NextState> read_next_state(const std::filesystem::path& file) {
   std::error_code code;
   if (!std::filesystem::exists(file, code)) return std::nullopt;
-  const std::string allowed = "a state that posewright next wrote (--restart begins a new one)";
-  // Not as an input: it is written again.
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw InputError({file.string(), 0}, "cannot be read", "");
+  const std::string text = read_file_to_replace(file, largest_state);
   try {
     const nlohmann::json json = parse_json(text);
     if (!json.is_object() || json.value("schema", "") != schema)
       throw InputError({file.string(), 0}, "is no state of posewright next", "another file for --state");
-    return state_of(json);
+    NextState state = state_of(json);
+    if (state.kept == nullptr && !json.at("candidates").is_null()) refuse_damaged(file, "its candidates are no table");
+    return state;
   } catch (const nlohmann::json::exception& error) {
-    throw InputError({file.string(), 0}, std::string("is damaged: ") + error.what(), allowed);
+    refuse_damaged(file, error.what());
   }
 }
 
@@ -119,9 +124,10 @@ void require_continues(const NextState& state, const std::filesystem::path& file
 }
 
 void reuse(const NextState& state, const Problem& problem, NextOptions& options) {
-  if (state.kept != nullptr && state.seed == options.seed &&
-      state.variant == find_variant(problem, options.variant).name)
-    options.kept = state.kept;
+  if (state.kept == nullptr || state.seed != options.seed) return;
+  if (state.variant != find_variant(problem, options.variant).name) return;
+  const std::size_t dimension = pose_coordinates(problem, options.variant).size();
+  if (std::size_t(state.kept->configurations.dimension) == dimension) options.kept = state.kept;
 }
 
 NextState state_after(const Problem& problem, const NextOptions& options, const NextPoses& result,

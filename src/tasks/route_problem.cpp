@@ -23,6 +23,8 @@ namespace {
 
 // What a motion that does not exist costs in a tour, s.
 constexpr double no_way = 1e7;
+// A tour's search takes seconds by more than the square of their number: a minute of this many.
+constexpr std::size_t most_routed = 1000;
 
 struct Stop {
   int id = 0;  ///< of the pose; 0: home
@@ -398,6 +400,7 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan) {
 Route route_problem(const Problem& problem, const PoseList& poses, const RouteOptions& options,
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
+  require_at_most(poses, most_routed, "route orders");
   Route route = Router(problem, poses, options, monitor).make();
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;

@@ -160,12 +160,50 @@ TEST(CommandLine, FilesOfOthersAreNotReplacedUnlessForced) {
   const std::vector<std::string> words = {"plan", telescope, "--candidates", "100", "--method", "exchange"};
   const ProgramRun refused = run_program(folder.path(), words);
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("plan.json exists and was not written by posewright; --force replaces it"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("plan.json exists and is not known to be written by posewright; --force replaces it"));
   EXPECT_EQ(read_file(folder / "plan.json"), "my notes");
   std::vector<std::string> forced = words;
   forced.push_back("--force");
   EXPECT_EQ(run_program(folder.path(), forced).exit_code, 0);
   EXPECT_EQ(run_program(folder.path(), words).exit_code, 0) << "an earlier plan of ours may be replaced";
+}
+
+TEST(CommandLine, TwoPlansInAFolderHaveTwoPoseListsAndBothMayBeReplaced) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.json", "plan.json", "arm.plan.json", "plan-b.json", "a.json"}) {
+    const ProgramRun run = run_program(folder.path(), {"plan", telescope, "--candidates", "100", "--method", "greedy",
+                                                       "--proof-time", "0", "-o", name});
+    EXPECT_EQ(run.exit_code, 0) << name << run.err;
+  }
+  for (const char* list : {"a-poses.csv", "poses.csv", "arm.poses.csv", "poses-b.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder / list)) << list;
+}
+
+TEST(CommandLine, AFolderWhoseNameIsNotUtf8HasItsPlan) {
+  const TemporaryFolder folder;
+  const std::filesystem::path latin = folder / "caf\xe9";
+  std::filesystem::create_directory(latin);
+  std::filesystem::copy_file(telescope, latin / "p.yaml");
+  const std::string problem = (latin / "p.yaml").string();
+  const ProgramRun run = run_program(latin, {"plan", problem, "--candidates", "100", "--method", "greedy", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_THAT(json["problem"]["file"].get<std::string>(), HasSubstr("caf\xef\xbf\xbd/p.yaml"));
+  EXPECT_EQ(run_program(latin, {"report", "plan.json", "--problem", "p.yaml"}).exit_code, 0);
+}
+
+TEST(CommandLine, MorePosesThanATaskTakesAreRefusedAtOnce) {
+  const TemporaryFolder folder;
+  std::string list = "x,y,z,rx,ry,rz\n";
+  for (int i = 0; i < 100000; ++i) list += "0,0,0,0,0,0\n";
+  folder.write("many.csv", list);
+  const ProgramRun judged = run_program(folder.path(), {"evaluate", telescope, "many.csv"});
+  EXPECT_EQ(judged.exit_code, 2);
+  EXPECT_THAT(judged.err, HasSubstr("many.csv: has 100000 poses; evaluate judges at most 2000"));
+  const ProgramRun routed = run_program(folder.path(), {"route", "many.csv", "--problem", telescope});
+  EXPECT_EQ(routed.exit_code, 2);
+  EXPECT_THAT(routed.err, HasSubstr("many.csv: has 100000 poses; route orders at most 1000"));
 }
 
 TEST(CommandLine, InterruptWritesTheBestPlanSoFar) {

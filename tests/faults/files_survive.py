@@ -380,7 +380,7 @@ class Owned(unittest.TestCase):
                 (folder / "poses.csv").write_text(text)
                 done = run(folder, "plan", "problem.yaml")
                 self.assertEqual(done.returncode, 1)
-                self.assertIn("poses.csv exists and was not written by posewright", done.stderr)
+                self.assertIn("poses.csv exists and is not known to be written by posewright", done.stderr)
                 self.assertEqual((folder / "poses.csv").read_text(), text)
             self.assertEqual(run(folder, "plan", "problem.yaml", "--force").returncode, 0)
 

@@ -70,7 +70,7 @@ TEST(ExportCommand, ReplacesItsOwnFilesAndNoOthers) {
     folder.write(words[5], "my notes");
     const ProgramRun refused = run_program(folder.path(), words);
     EXPECT_EQ(refused.exit_code, 1) << format.name;
-    EXPECT_THAT(refused.err, HasSubstr("exists and was not written by posewright; --force replaces it"));
+    EXPECT_THAT(refused.err, HasSubstr("exists and is not known to be written by posewright; --force replaces it"));
     EXPECT_EQ(read_file(folder / words[5]), "my notes");
     words.emplace_back("--force");
     EXPECT_EQ(run_program(folder.path(), words).exit_code, 0) << format.name;

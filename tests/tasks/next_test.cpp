@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -413,6 +414,29 @@ TEST_F(NextStates, DataThatGrowAreGoneOnWithAndReplacedOnesRefused) {
 TEST_F(NextStates, ADamagedFileIsOneLine) {
   for (const char* bytes : {"{", "{\"schema\": \"posewright/next-state/1\"}", "[]", ""})
     EXPECT_THROW(read_next_state(folder_.write("s.json", bytes)), InputError) << bytes;
+  std::filesystem::create_symlink("/dev/zero", folder_.path() / "device.json");
+  EXPECT_THROW(read_next_state(folder_.path() / "device.json"), InputError);
+  ASSERT_EQ(::mkfifo((folder_.path() / "pipe.json").c_str(), 0600), 0);
+  EXPECT_THROW(read_next_state(folder_.path() / "pipe.json"), InputError) << "a pipe cannot be written anew";
+}
+
+TEST_F(NextStates, AStateWithoutCandidatesIsDamagedAndOneOfAnotherRobotIsNotUsed) {
+  const Problem p = problem();
+  NextState state;
+  state.problem_sha256 = p.sha256;
+  state.variant = p.variants.front().name;
+  KeptCandidates kept;
+  kept.asked = 60;
+  kept.configurations.dimension = 3;
+  state.kept = std::make_shared<KeptCandidates>(kept);
+  EXPECT_THROW(read_next_state(folder_.write("s.json", next_state_text(state))), InputError);
+  kept.configurations.values = {0.1, 0.2, 0.3};
+  state.kept = std::make_shared<KeptCandidates>(kept);
+  const NextState again = *read_next_state(folder_.write("s.json", next_state_text(state)));
+  NextOptions next;
+  next.seed = state.seed;
+  reuse(again, p, next);
+  EXPECT_EQ(next.kept, nullptr) << "the robot has other than three coordinates";
 }
 
 }  // namespace

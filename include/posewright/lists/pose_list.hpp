@@ -29,6 +29,9 @@ struct PoseList {
 /// Throws InputError for a list that was read with coordinates of another number than these.
 void require_fits(const PoseList& list, const std::vector<Coordinate>& coordinates);
 
+/// Throws InputError for a list of more poses than a task takes whose time grows with their square.
+void require_at_most(const PoseList& list, std::size_t most, const std::string& task);
+
 /// The poses of a plan in memory. Throws InputError for a plan that has other coordinates.
 PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates);
 /// Configurations in memory: one value for each coordinate, in their order; choices that have one label only may be

@@ -12,6 +12,9 @@ namespace posewright {
 /// Throws InputError if it is missing, a folder, a device, unreadable or larger than `limit` bytes.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = std::uintmax_t(1) << 31);
 
+/// read_file() of a file that the program writes anew at its end. Throws InputError also for a pipe.
+std::string read_file_to_replace(const std::filesystem::path& file, std::uintmax_t limit);
+
 /// A file read from front to back without holding all of it. Throws InputError as read_file() does.
 class FileReader {
  public:

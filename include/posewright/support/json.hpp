@@ -14,10 +14,8 @@ nlohmann::ordered_json parse_ordered_json(const std::string& text);
 
 /// Indented by one blank a level and with a line end, or in one line without one.
 enum class JsonLayout { indented, one_line };
-/// Throws nlohmann::json::type_error where a text is not UTF-8.
+/// Bytes that are not UTF-8 become U+FFFD: a folder's name may have them.
 std::string json_text(const nlohmann::json& json, JsonLayout layout = JsonLayout::indented);
 std::string json_text(const nlohmann::ordered_json& json, JsonLayout layout = JsonLayout::indented);
-/// The same; bytes that are not UTF-8 become U+FFFD.
-std::string lenient_json_text(const nlohmann::ordered_json& json, JsonLayout layout = JsonLayout::indented);
 
 }  // namespace posewright

@@ -22,7 +22,7 @@ Exported write_plain_json(const PoseSequence& all, const ExportOptions&) {
     if (!pose.conditions.empty()) entry["conditions"] = conditions_json(pose.conditions);
     json["poses"].push_back(entry);
   }
-  return one_file("poses.json", lenient_json_text(json));
+  return one_file("poses.json", json_text(json));
 }
 
 PoseTable read_plain_json(const std::string& bytes, const std::string& file) {

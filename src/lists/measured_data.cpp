@@ -11,6 +11,7 @@
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text_file.hpp"
+#include "suspicious_rows.hpp"
 
 namespace posewright {
 namespace {
@@ -202,6 +203,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
   data.notes = columns.notes();
   data.rows = columns.rows();
   ReadingAverages averaging(model, problem.measurement.repeats, data);
+  SuspiciousRows suspicious(model);
   const std::optional<PlatformPoints> platform = platform_points(problem, model);
   for (int i = 0; i < columns.rows(); ++i) {
     Row row;
@@ -216,6 +218,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
       --data.rows;
       continue;
     }
+    suspicious.add(row.id, row.line, row.q, row.y);
     if (platform)
       if (std::optional<PlatformImage> image = image_of(columns, i, row, *platform, model))
         data.images.push_back(std::move(*image));
@@ -223,6 +226,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
   }
   if (data.rows == 0) throw InputError({file.string(), 0}, "has no readings", "at least one line with some");
   averaging.finish();
+  std::ranges::move(suspicious.notes(file.string()), std::back_inserter(data.notes));
   return data;
 }
 

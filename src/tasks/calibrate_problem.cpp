@@ -14,6 +14,7 @@
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
+#include "posewright/calibration/gross_errors.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/model/campaigns.hpp"
@@ -31,6 +32,7 @@ namespace {
 // So often an estimate may be replaced by a better one that its profiles passed.
 constexpr int most_rounds = 4;
 constexpr int random_configurations = 300;
+constexpr std::size_t most_named = 8;
 constexpr std::uint64_t everywhere_stream = 0xe3e7;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
 constexpr double prior_share = 1 / std::numbers::sqrt2;
@@ -65,6 +67,7 @@ class CalibrationRun {
     leave_at_nominal_values(all, fit_options.start);
     fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
     place_again(fit_options);
+    refuse_gross_poses(fit_options);
     if (options_.estimate_alone) {
       result_.fit = fit(*model_, columns_, fitted_, fit_options);
       return estimate_alone(fit_options);
@@ -194,6 +197,24 @@ class CalibrationRun {
     } catch (const CannotDo& error) {
       result_.notes.push_back(std::string("how the platform deforms is not judged: ") + error.what());
     }
+  }
+
+  /// A fit of readings that are none of the robot's goes astray; robust weights leave them aside.
+  void refuse_gross_poses(FitOptions options) const {
+    if (options_.weighting == Weighting::robust) return;
+    options.start = placed_;
+    const std::vector<GrossPose> gross = gross_poses(*model_, columns_, fitted_, options);
+    if (gross.empty()) return;
+    std::string list;
+    for (std::size_t k = 0; k < std::min(most_named, gross.size()); ++k)
+      list += fmt::format("{}{} ({:.3g} times the stated noise)", k == 0 ? "" : ", ", gross[k].id, gross[k].size);
+    if (gross.size() > most_named) list += fmt::format(" and {} more", gross.size() - most_named);
+    std::string noted;
+    for (const std::string& note : result_.notes) noted += "; " + note;
+    throw CannotDo(fmt::format(
+        "gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: was a target "
+        "lost, or the wrong row written? Leave it out, or use --weights robust{}",
+        gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
   }
 
   void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }

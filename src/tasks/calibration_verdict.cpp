@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "posewright/calibration/frame_limits.hpp"
+#include "posewright/calibration/gross_errors.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright {
@@ -16,22 +17,16 @@ constexpr double hopeless_curvature = 10.0;
 // Residuals so many times what noise and all tolerances explain are no robot's.
 constexpr double unexplained = 10.0;
 
-/// Root mean square of the whitened readings of a robot drawn from all tolerances of the model, whatever is estimated.
-double explained_size(const CalibratedPoses& poses, const Calibration& result) {
-  VariantColumns all;
-  for (int i = 0; i < int(poses.model.parameters().size()); ++i) {
-    const auto at = std::ranges::find(poses.columns.selected, i);
-    const Parameter& p = at == poses.columns.selected.end()
-                             ? poses.model.parameters()[std::size_t(i)]
-                             : poses.columns.parameters[std::size_t(at - poses.columns.selected.begin())];
-    if (!counts(p, Prior::manufactured)) continue;
-    all.selected.push_back(i);
-    all.parameters.push_back(p);
+/// Over all poses.
+double explained_size(const CalibratedPoses& poses, const Calibration& c) {
+  double squares = 0, count = 0;
+  const std::vector<double> sizes = explained_sizes(poses.model, poses.columns, poses.fitted, c.fit.correction);
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const auto read = double(poses.fitted[k].y.array().isFinite().count());
+    squares += read * sizes[k] * sizes[k];
+    count += read;
   }
-  if (all.selected.empty()) return 1.0;
-  const BlockArray blocks = blocks_of(poses.model, all, poses.fitted, result.fit.correction);
-  const double squares = (blocks.all() * tolerances_of(all).asDiagonal()).squaredNorm();
-  return std::sqrt(1.0 + squares / result.fit.readings);
+  return std::sqrt(squares / count);
 }
 
 std::string remedy_of(const Calibration& c) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "posewright/problem/read_problem.hpp"
@@ -69,6 +70,36 @@ TEST(Verdict, AGainThatChanceExplainsIsNoRefusalAndALossBeyondChanceIsOne) {
   }
   EXPECT_GT(not_shown, 0);
   EXPECT_GT(refused, 0);
+}
+
+TEST(Verdict, APoseWithALostTargetIsNamedBeforeAnythingIsFitted) {
+  VirtualFile data("kr270/problem.yaml", 20);
+  data.poses[4].y.head<3>().setZero();
+  data.poses[11].y.segment<3>(3).setConstant(-9.999);
+  data.write();
+  try {
+    calibrate_problem(data.problem, data.options(), Monitor{});
+    FAIL() << "fitted";
+  } catch (const CannotDo& error) {
+    EXPECT_THAT(error.what(), testing::ContainsRegex("gross errors at poses (5|12) .*(5|12) "));
+    EXPECT_THAT(error.what(), HasSubstr("data.csv:6: a target is read as 0"));
+    EXPECT_THAT(error.what(), HasSubstr("data.csv:13: 9999 stands for no reading"));
+  }
+  CalibrateOptions robust = data.options();
+  robust.weighting = Weighting::robust;
+  const Calibration c = calibrate_problem(data.problem, robust, Monitor{});
+  EXPECT_TRUE(c.fit.converged);
+  EXPECT_LT(*std::min_element(c.fit.weights[4].begin(), c.fit.weights[4].end()), 0.01);
+}
+
+TEST(Verdict, RowsThatLookLikeNoReadingAreNoted) {
+  VirtualFile data("kr270/problem.yaml", 12);
+  data.poses[7].y = data.poses[6].y;
+  data.poses[9].id = data.poses[2].id;
+  data.write();
+  const MeasuredData read = read_measured_data(data.options().data, data.problem, *data.model);
+  EXPECT_THAT(read.notes, testing::UnorderedElementsAre(HasSubstr("data.csv:9: the readings of the row before"),
+                                                        HasSubstr("data.csv:11: an id that another configuration")));
 }
 
 /// A column with an arm whose axes are all vertical but for the digits of 3.1416: base.z and target.P.z are one.

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "posewright/calibration/fit.hpp"
+
+namespace posewright {
+
+/// Root mean square of the whitened readings of each pose of a robot drawn from all tolerances of the model, whatever
+/// is estimated: √((n + tr(J T² Jᵀ))/n) of n readings, at least 1.
+/// @param columns  those that are estimated, whose tolerances may be stated
+std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
+                                    const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
+
+/// A pose whose readings no error of the robot gives.
+struct GrossPose {
+  int id = 0;
+  double size = 0.0;       ///< root mean square of its whitened residuals, placed by the others
+  double explained = 0.0;  ///< explained_sizes() of it
+};
+
+/// Fewer than a quarter of the poses that lie beyond ten times what noise and tolerances explain, five times the median
+/// of all, while the others are within three times what they explain once these are left out; largest first. Empty if
+/// there are none, or if the others do not fit either.
+/// @param options  of the placing fit; its start: things placed
+std::vector<GrossPose> gross_poses(const IdentificationModel& model, const VariantColumns& columns,
+                                   const std::vector<MeasuredPose>& poses, const FitOptions& options);
+
+}  // namespace posewright

@@ -1,0 +1,145 @@
+#include "posewright/calibration/gross_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/calibration/placement.hpp"
+#include "posewright/support/dense.hpp"
+#include "posewright/support/error.hpp"
+#include "stacked_readings.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double beyond_tolerances = 10.0, beyond_median = 5.0, fitting = 3.0;
+constexpr std::size_t least_poses = 5;
+constexpr int most_trims = 5;
+
+/// Root mean square of the whitened residuals of each pose.
+std::vector<double> sizes_of(const IdentificationModel& model, const std::vector<double>& correction,
+                             const std::vector<MeasuredPose>& poses) {
+  StackedReadings stacked(model, VariantColumns{}, poses, Prior::none, correction);
+  const Eigen::VectorXd none(0);
+  stacked.weigh(none, Weighting::weighted);
+  std::vector<Eigen::VectorXd> raw, whitened;
+  stacked.spread(none, raw, whitened);
+  std::vector<double> sizes;
+  for (const Eigen::VectorXd& r : whitened) {
+    double squares = 0, count = 0;
+    for (const double value : r)
+      if (std::isfinite(value)) {
+        squares += value * value;
+        ++count;
+      }
+    sizes.push_back(std::sqrt(squares / std::max(count, 1.0)));
+  }
+  return sizes;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Once the poses are sorted into kept and left out.
+class Trimming {
+ public:
+  Trimming(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+           const FitOptions& options)
+      : model_(model),
+        place_(placing_columns(columns)),
+        poses_(poses),
+        options_(options),
+        explained_(explained_sizes(model, columns, poses, options.start)),
+        out_(poses.size(), 0) {}
+
+  std::vector<GrossPose> gross() {
+    for (int round = 0; round < most_trims; ++round) {
+      const std::vector<double> sizes = sizes_of(model_, options_.start, poses_);
+      if (!trim(sizes)) return others_fit(sizes) ? listed(sizes) : std::vector<GrossPose>{};
+      if (count() * 4 >= poses_.size()) return {};
+      place();
+    }
+    return {};
+  }
+
+ private:
+  std::size_t count() const { return std::size_t(std::count(out_.begin(), out_.end(), 1)); }
+
+  /// Leaves out what is far off; false if nothing changes.
+  bool trim(const std::vector<double>& sizes) {
+    const double middle = median_of(sizes);
+    const std::vector<char> before = out_;
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      out_[k] = sizes[k] > beyond_tolerances * explained_[k] && sizes[k] > beyond_median * middle ? 1 : 0;
+    return out_ != before;
+  }
+
+  void place() {
+    std::vector<MeasuredPose> rest;
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      if (out_[k] == 0) rest.push_back(poses_[k]);
+    const VariantColumns place = determined(model_, place_, rest, options_.start, options_.prior);
+    if (!place.selected.empty()) options_.start = fit(model_, place, rest, options_).correction;
+  }
+
+  bool others_fit(const std::vector<double>& sizes) const {
+    double squares = 0, explained = 0;
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      if (out_[k] == 0) {
+        squares += sizes[k] * sizes[k];
+        explained += explained_[k] * explained_[k];
+      }
+    return squares < fitting * fitting * explained;
+  }
+
+  std::vector<GrossPose> listed(const std::vector<double>& sizes) const {
+    std::vector<GrossPose> gross;
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      if (out_[k] != 0) gross.push_back({poses_[k].id, sizes[k], explained_[k]});
+    std::ranges::sort(gross, [](const GrossPose& a, const GrossPose& b) { return a.size > b.size; });
+    return gross;
+  }
+
+  const IdentificationModel& model_;
+  const VariantColumns place_;
+  const std::vector<MeasuredPose>& poses_;
+  FitOptions options_;
+  std::vector<double> explained_;
+  std::vector<char> out_;
+};
+
+}  // namespace
+
+std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
+                                    const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+  VariantColumns all;
+  for (int i = 0; i < int(model.parameters().size()); ++i) {
+    const auto at = std::ranges::find(columns.selected, i);
+    const Parameter& p = at == columns.selected.end() ? model.parameters()[std::size_t(i)]
+                                                      : columns.parameters[std::size_t(at - columns.selected.begin())];
+    if (!counts(p, Prior::manufactured)) continue;
+    all.selected.push_back(i);
+    all.parameters.push_back(p);
+  }
+  const BlockArray blocks = blocks_of(model, all, poses, correction);
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double count = std::max(1.0, double(poses[k].y.array().isFinite().count()));
+    sizes.push_back(std::sqrt(1.0 + (blocks.block(k) * tolerances_of(all).asDiagonal()).squaredNorm() / count));
+  }
+  return sizes;
+}
+
+std::vector<GrossPose> gross_poses(const IdentificationModel& model, const VariantColumns& columns,
+                                   const std::vector<MeasuredPose>& poses, const FitOptions& options) {
+  if (poses.size() < least_poses) return {};
+  try {
+    return Trimming(model, columns, poses, options).gross();
+  } catch (const CannotDo&) {
+    return {};  // out of reach, or too little is read without them: the fit says so
+  }
+}
+
+}  // namespace posewright

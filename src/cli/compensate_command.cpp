@@ -37,11 +37,16 @@ po::options_description compensate_command_options() {
       ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")   //
       ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")    //
       ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3")    //
-      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")        //
-      ("with-base", "poses in the measurement frame: where the base was found to stand counts")              //
-      ("without-tool", "the tool's correction is that of what was measured and does not count")              //
-      ("position-only", "position of the tip alone (robots of fewer than six axes)")                         //
-      ("elastic-target", "the poses were found with the nominal springs bent by the load")                   //
+      ("tool", po::value<Words>(),
+       "of poses in programs: [NAME=]X Y Z and turns as the language writes them, mm and deg")                 //
+      ("base", po::value<Words>(), "the same of the frame that they are in")                                   //
+      ("world", text("POSE"), "the controller's world in the robot's base: x y z roll pitch yaw, mm and deg")  //
+      ("flange", text("POSE"), "the controller's flange in the robot's tip, the same way")                     //
+      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")          //
+      ("with-base", "poses in the measurement frame: where the base was found to stand counts")                //
+      ("without-tool", "the tool's correction is that of what was measured and does not count")                //
+      ("position-only", "position of the tip alone (robots of fewer than six axes)")                           //
+      ("elastic-target", "the poses were found with the nominal springs bent by the load")                     //
       ("most", text("DEG"), "largest turn of a joint that is still a correction (10; slides 10 mm a degree)");
   options.add_options()                                                                              //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
@@ -75,6 +80,39 @@ CompensateOptions compensation_options(const po::variables_map& values, const Co
   return options;
 }
 
+std::vector<double> pose_numbers(const std::string& option, std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  std::vector<double> numbers;
+  double number = 0;
+  while (stream >> number) numbers.push_back(number);
+  if (!stream.eof() || numbers.size() < 6 || numbers.size() > 7)
+    throw InputError({}, fmt::format("--{} has '{}'", option, text),
+                     "six numbers, seven with a quaternion: mm and deg");
+  return numbers;
+}
+
+std::map<std::string, std::vector<double>> named_poses(const po::variables_map& values, const std::string& option) {
+  std::map<std::string, std::vector<double>> poses;
+  if (values.count(option) == 0) return poses;
+  for (const std::string& text : values[option].as<Words>()) {
+    const std::size_t equal = text.find('=');
+    std::string name = equal == std::string::npos ? "" : text.substr(0, equal);
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+    poses[name] = pose_numbers(option, equal == std::string::npos ? text : text.substr(equal + 1));
+  }
+  return poses;
+}
+
+Eigen::Isometry3d fixed_place(const po::variables_map& values, const std::string& option) {
+  const std::string text = text_of(values, option.c_str());
+  if (text.empty()) return Eigen::Isometry3d::Identity();
+  const std::vector<double> numbers = pose_numbers(option, text);
+  if (numbers.size() != 6) throw InputError({}, fmt::format("--{} has seven numbers", option), "x y z roll pitch yaw");
+  return place_of_rpy(numbers);
+}
+
 DocumentOptions document_options(const po::variables_map& values) {
   DocumentOptions options;
   options.format = text_of(values, "from");
@@ -82,6 +120,10 @@ DocumentOptions document_options(const po::variables_map& values) {
   if (const std::string name = text_of(values, "controller"); !name.empty())
     options.controller = controller_settings(name);
   if (const auto coupling = number_between(values, "coupling", -10, 10)) options.coupling = *coupling;
+  options.frames.tools = named_poses(values, "tool");
+  options.frames.bases = named_poses(values, "base");
+  options.frames.X_BaseWorld = fixed_place(values, "world");
+  options.frames.X_TipFlange = fixed_place(values, "flange");
   return options;
 }
 
@@ -192,13 +234,18 @@ struct RobotFiles {
 };
 
 /// Poses read, solved, and the files that they make.
-Compensation compensate_files(const Words& files, const Problem& problem, const DocumentOptions& reading,
+Compensation compensate_files(const Words& files, const Problem& problem, DocumentOptions reading,
                               const CompensateOptions& options, const CommonOptions& common,
                               std::vector<std::unique_ptr<PoseDocument>>& documents) {
   Compensation none;
   none.variant = problem.parameters->variant.value;
   if (files.empty()) return none;
   const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
+  try {
+    reading.inverse = nominal_inverse(problem);
+  } catch (const CannotDo& error) {
+    reading.why_no_inverse = error.what();
+  }
   std::vector<PoseList> lists;
   std::vector<std::string> notes;
   documents = read_documents({files.begin(), files.end()}, coordinates, reading);
@@ -212,6 +259,7 @@ Compensation compensate_files(const Words& files, const Problem& problem, const 
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   for (std::size_t i = 0; i < documents.size(); ++i)
     if (const ProgramAccount* account = documents[i]->account()) result.add_account(*account, result.lists[i]);
+  result.settle_motions();
   return result;
 }
 

@@ -230,42 +230,111 @@ class CsvDocument : public PoseDocument {
 /// The points of a program.
 class ProgramPoses : public PoseDocument {
  public:
-  ProgramPoses(std::unique_ptr<ProgramDocument> program, const std::vector<Coordinate>& coordinates)
-      : moving_(moving(coordinates)), width_(coordinates.size()), program_(std::move(program)) {
-    const std::string& name = program_->account().file;
+  ProgramPoses(std::unique_ptr<ProgramDocument> program, const std::vector<Coordinate>& coordinates,
+               const std::optional<ArmInverse>& inverse)
+      : moving_(moving(coordinates)),
+        coordinates_(coordinates),
+        inverse_(inverse),
+        program_(std::move(program)),
+        account_(program_->account()) {
+    const std::string& name = account_.file;
     for (const Coordinate& c : coordinates)
       if (c.choice() && c.labels.size() > 1)
         throw InputError({name, 0}, "has no place for the " + c.name + " of a pose",
                          "a plan, route or list that says it; its result can be exported");
     poses_.name = name;
-    for (const ProgramDocument::Point& point : program_->points()) {
-      std::vector<double> q;
-      for (const Coordinate& c : coordinates) q.push_back(c.choice() ? c.values.front() : 0.0);
-      for (std::size_t i = 0; i < moving_.size(); ++i) {
-        require_inside(point.joints[i], coordinates[moving_[i]], {name, point.line});
-        q[moving_[i]] = as_allowed(point.joints[i], coordinates[moving_[i]]);
-      }
-      poses_.configurations.push_back(std::move(q));
-      poses_.ids.push_back(int(poses_.configurations.size()));
-      poses_.lines.push_back(point.line);
+    std::vector<int> pose_of_point(program_->points().size(), -1);
+    std::vector<std::string> reasons(program_->points().size());
+    for (std::size_t p = 0; p < program_->points().size(); ++p) {
+      if (!add(p, reasons[p])) continue;
+      pose_of_point[p] = int(of_pose_.size());
+      of_pose_.push_back(p);
     }
-    if (program_->points().empty()) poses_.notes.push_back(name + " has no point that is compensated");
+    for (ProgramEntry& entry : account_.entries) {
+      if (entry.point < 0) continue;
+      const auto p = std::size_t(entry.point);
+      entry.point = pose_of_point[p];
+      if (entry.point >= 0) continue;
+      entry.treatment = Treatment::not_compensated;
+      entry.why = reasons[p];
+    }
+    if (of_pose_.empty()) poses_.notes.push_back(name + " has no point that is compensated");
   }
 
-  const ProgramAccount* account() const override { return &program_->account(); }
+  const ProgramAccount* account() const override { return &account_; }
 
   std::string text(const OtherValues& values, const std::string& remark) const override {
-    std::vector<std::optional<std::vector<double>>> joints(poses_.configurations.size());
-    for (std::size_t p = 0; p < joints.size(); ++p) {
+    std::vector<std::optional<ProgramDocument::Values>> points(program_->points().size());
+    for (std::size_t k = 0; k < of_pose_.size(); ++k) {
       std::vector<double> q;
-      for (const std::size_t k : moving_) q.push_back(values.configurations[p * width_ + k]);
+      for (const std::size_t m : moving_) q.push_back(values.configurations[k * coordinates_.size() + m]);
       // What is listed stays to its last digit.
-      if (!same(q, p)) joints[p] = std::move(q);
+      if (same(q, k)) continue;
+      points[of_pose_[k]] = ProgramDocument::Values{};
+      points[of_pose_[k]]->stand = branches_[k];
+      points[of_pose_[k]]->stand.joints = q;
+      if (program_->points()[of_pose_[k]].is_pose()) points[of_pose_[k]]->X_BaseTip = inverse_->tip(six(q));
     }
-    return program_->text(joints, remark);
+    return program_->text(points, remark);
   }
 
  private:
+  static ArmInverse::Joints six(const std::vector<double>& q) {
+    ArmInverse::Joints joints{};
+    std::copy_n(q.begin(), joints.size(), joints.begin());
+    return joints;
+  }
+
+  /// Takes a point over; false with the reason where a pose has no joints.
+  bool add(std::size_t p, std::string& why) {
+    const ProgramDocument::Point& point = program_->points()[p];
+    ArmStand stand{point.joints};
+    if (point.is_pose()) {
+      const std::vector<ArmStand> stands = stands_at(point.X_BaseTip);
+      const std::vector<std::size_t> meant = program_->meant(p, stands);
+      if (meant.size() != 1) {
+        why = stands.empty()  ? "the nominal robot does not reach it within its limits, or its wrist is stretched"
+              : meant.empty() ? "no joints within the limits have the status that it states"
+                              : "its status does not decide between several joints";
+        return false;
+      }
+      stand = stands[meant.front()];
+    }
+    std::vector<double> q;
+    for (const Coordinate& c : coordinates_) q.push_back(c.choice() ? c.values.front() : 0.0);
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+      require_inside(stand.joints[i], coordinates_[moving_[i]], {poses_.name, point.line});
+      q[moving_[i]] = as_allowed(stand.joints[i], coordinates_[moving_[i]]);
+    }
+    poses_.configurations.push_back(std::move(q));
+    poses_.ids.push_back(int(poses_.configurations.size()));
+    poses_.lines.push_back(point.line);
+    branches_.push_back(std::move(stand));
+    return true;
+  }
+
+  /// All joints within the limits, on any turn, that the nominal robot has at a pose.
+  std::vector<ArmStand> stands_at(const Eigen::Isometry3d& X_BaseTip) const {
+    std::vector<ArmBranch> branches;
+    inverse_->solve(X_BaseTip, branches);
+    std::vector<ArmStand> all;
+    for (const ArmBranch& branch : branches) {
+      std::vector<ArmStand> stands = {{{branch.q.begin(), branch.q.end()}, branch.behind_base, branch.behind_arm}};
+      for (std::size_t i = 0; i < branch.q.size(); ++i) {
+        std::vector<ArmStand> turned;
+        for (const ArmStand& stand : stands)
+          for (const int turn : {0, -1, 1}) {
+            ArmStand other = stand;
+            other.joints[i] += turn * 2 * std::numbers::pi;
+            if (inside(other.joints[i], coordinates_[moving_[i]])) turned.push_back(std::move(other));
+          }
+        stands = std::move(turned);
+      }
+      all.insert(all.end(), stands.begin(), stands.end());
+    }
+    return all;
+  }
+
   bool same(const std::vector<double>& q, std::size_t pose) const {
     for (std::size_t i = 0; i < moving_.size(); ++i)
       if (q[i] != poses_.configurations[pose][moving_[i]]) return false;
@@ -273,8 +342,12 @@ class ProgramPoses : public PoseDocument {
   }
 
   std::vector<std::size_t> moving_;
-  std::size_t width_;
+  std::vector<Coordinate> coordinates_;
+  std::optional<ArmInverse> inverse_;
   std::unique_ptr<ProgramDocument> program_;
+  ProgramAccount account_;
+  std::vector<std::size_t> of_pose_;  ///< point of each pose
+  std::vector<ArmStand> branches_;    ///< of each pose, as it is listed
 };
 
 /// A list in a format that has a reader and a writer.
@@ -337,6 +410,9 @@ ProgramRobot robot_of(const std::vector<Coordinate>& coordinates, const Document
     robot.names.push_back(coordinates[k].name);
     robot.units.push_back(coordinates[k].unit);
   }
+  robot.frames = options.frames;
+  if (!options.inverse)
+    robot.why_no_poses = options.why_no_inverse.empty() ? "the controller finds its joints" : options.why_no_inverse;
   return robot;
 }
 
@@ -383,7 +459,7 @@ std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<Doc
   }
   std::vector<std::unique_ptr<ProgramDocument>> read = read_programs(programs, robot_of(coordinates, options));
   for (std::size_t k = 0; k < read.size(); ++k)
-    documents[places[k]] = std::make_unique<ProgramPoses>(std::move(read[k]), coordinates);
+    documents[places[k]] = std::make_unique<ProgramPoses>(std::move(read[k]), coordinates, options.inverse);
   std::erase(documents, nullptr);
   return documents;
 }

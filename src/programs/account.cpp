@@ -48,6 +48,7 @@ std::string scope_of(const ReadProgram& program) {
 /// Where the first of each kind of use is.
 struct Tally {
   std::map<Role, const Use*> first;
+  std::vector<FramePair> frames;  ///< that motions to it are in
   std::vector<Verdict> points;
 
   const Use* with(Role role) const {
@@ -58,13 +59,18 @@ struct Tally {
 
 class Accountant {
  public:
-  explicit Accountant(const std::vector<ReadProgram>& programs) : programs_(programs) {}
+  Accountant(const std::vector<ReadProgram>& programs, const ProgramRobot& robot)
+      : programs_(programs), robot_(robot), frames_(robot.frames) {}
 
-  std::vector<ProgramAccount> run() {
-    for (const ReadProgram& program : programs_) count_uses(program);
-    std::vector<ProgramAccount> accounts;
+  std::vector<Accounted> run() {
+    for (const ReadProgram& program : programs_) {
+      count_uses(program);
+      frames_.add(*program.language, program.reading);
+      if (!program.reading.displaced.empty()) displaced_.try_emplace(scope_of(program), program.reading.displaced);
+    }
+    std::vector<Accounted> accounts;
     for (const ReadProgram& program : programs_) accounts.push_back(points_of(program));
-    for (std::size_t i = 0; i < programs_.size(); ++i) add_motions(programs_[i], accounts[i]);
+    for (std::size_t i = 0; i < programs_.size(); ++i) add_motions(programs_[i], accounts[i].account);
     return accounts;
   }
 
@@ -78,38 +84,61 @@ class Accountant {
     for (const Use& use : program.reading.uses) {
       if (use.role != Role::operand && use.role != Role::changed && use.role != Role::passed)
         moving_.insert(scope_of(program));
-      if (!use.name.empty()) tallies_[key(program, use.name)].first.try_emplace(use.role, &use);
+      if (use.name.empty()) continue;
+      Tally& tally = tallies_[key(program, use.name)];
+      tally.first.try_emplace(use.role, &use);
+      if (use.role == Role::pose &&
+          std::find(tally.frames.begin(), tally.frames.end(), use.frames) == tally.frames.end())
+        tally.frames.push_back(use.frames);
     }
   }
 
-  ProgramAccount points_of(const ReadProgram& program) {
-    ProgramAccount account{program.file->name, program.language->format, {}};
+  Accounted points_of(const ReadProgram& program) {
+    Accounted result{{program.file->name, program.language->format, {}}, {}};
     const Reading& reading = program.reading;
+    result.frames.resize(reading.points.size());
     std::vector<const Use*> inline_use(reading.points.size(), nullptr);
     for (const Use& use : reading.uses)
       if (use.point) inline_use[*use.point] = &use;
     for (std::size_t i = 0; i < reading.points.size(); ++i) {
       const FoundPoint& point = reading.points[i];
       Verdict verdict;
-      std::string what = point.name;
+      std::string what = point.name, target;
       if (const Use* use = inline_use[i]) {
         verdict = of_inline(program, point, *use);
+        if (verdict.treatment == Treatment::compensated)
+          verdict = placed(program, point, {use->frames}, result.frames[i]);
         what = use->instruction;
       } else {
-        Tally& tally = tallies_[key(program, point.name)];
+        target = key(program, point.name);
+        Tally& tally = tallies_[target];
         verdict = of_named(program, point, tally);
+        if (verdict.treatment == Treatment::compensated)
+          verdict = placed(program, point, tally.frames, result.frames[i]);
         tally.points.push_back(verdict);
         if (!point.label.empty()) what += " " + point.label;
       }
-      account.entries.push_back({point.line, what.empty() ? "point" : what, verdict.treatment, verdict.why, int(i)});
+      result.account.entries.push_back(
+          {point.line, what.empty() ? "point" : what, verdict.treatment, verdict.why, int(i), target});
     }
-    return account;
+    return result;
   }
 
-  static Verdict by_form(const ReadProgram& program, const FoundPoint& point) {
+  /// Frames of a pose that is to be compensated; a point of joints has none.
+  Verdict placed(const ReadProgram& program, const FoundPoint& point, std::vector<FramePair> used,
+                 std::optional<PlacedFrames>& frames) const {
+    if (point.form != Form::pose) return {Treatment::compensated, ""};
+    if (!point.frames.tool.name.empty() || used.empty()) used = {point.frames};
+    if (used.size() > 1) return {Treatment::not_compensated, "motions to it have several tools or bases"};
+    Verdict verdict{Treatment::not_compensated, ""};
+    frames = frames_.of(*program.language, used.front(), verdict.why);
+    if (frames) verdict.treatment = Treatment::compensated;
+    return verdict;
+  }
+
+  Verdict by_form(const ReadProgram& program, const FoundPoint& point) const {
     if (point.form == Form::unclear) return not_understood(point.why);
-    if (point.form == Form::pose)
-      return {Treatment::not_compensated, "given by position and orientation: the controller finds its joints"};
+    if (point.form == Form::pose) return by_pose(program, point);
     for (const std::string& axis : program.axes)
       if (std::none_of(point.axes.begin(), point.axes.end(),
                        [&](const auto& a) { return upper(a.first) == upper(axis); }))
@@ -117,7 +146,22 @@ class Accountant {
     return {Treatment::compensated, ""};
   }
 
-  static Verdict of_inline(const ReadProgram& program, const FoundPoint& point, const Use& use) {
+  Verdict by_pose(const ReadProgram& program, const FoundPoint& point) const {
+    const auto refuse = [](const std::string& why) { return Verdict{Treatment::not_compensated, why}; };
+    if (program.language->pose == nullptr)
+      return refuse("given by position and orientation: those of " + program.language->format + " are not compensated");
+    if (!robot_.why_no_poses.empty()) return refuse("given by position and orientation: " + robot_.why_no_poses);
+    if (const auto at = displaced_.find(scope_of(program)); at != displaced_.end()) return refuse(at->second);
+    const PoseForm& form = program.language->pose();
+    std::vector<std::string> needed = form.values;
+    needed.insert(needed.end(), form.status.begin(), form.status.begin() + long(form.required));
+    for (const std::string& name : needed)
+      if (std::none_of(point.axes.begin(), point.axes.end(), [&](const auto& a) { return a.first == name; }))
+        return not_understood(fmt::format("has no {}: the controller takes it from where the robot is", name));
+    return {Treatment::compensated, ""};
+  }
+
+  Verdict of_inline(const ReadProgram& program, const FoundPoint& point, const Use& use) {
     if (use.role == Role::step) return left("relative");
     if (use.role == Role::passed) return not_understood("is handed to " + use.instruction);
     return by_form(program, point);
@@ -155,7 +199,8 @@ class Accountant {
         continue;
       const Verdict verdict = of_motion(program, use);
       account.entries.push_back({use.line, use.name.empty() ? use.instruction : use.instruction + " " + use.name,
-                                 verdict.treatment, verdict.why});
+                                 verdict.treatment, verdict.why, -1,
+                                 use.role == Role::pose && !use.name.empty() ? key(program, use.name) : ""});
     }
     std::stable_sort(account.entries.begin(), account.entries.end(),
                      [](const ProgramEntry& a, const ProgramEntry& b) { return a.line < b.line; });
@@ -198,12 +243,17 @@ class Accountant {
   }
 
   const std::vector<ReadProgram>& programs_;
+  const ProgramRobot& robot_;
+  FrameValues frames_;
+  std::map<std::string, std::string> displaced_;  ///< scopes, and by what
   std::map<std::string, Tally> tallies_;
   std::set<std::string> moving_;  ///< scopes with motions
 };
 
 }  // namespace
 
-std::vector<ProgramAccount> account_for(const std::vector<ReadProgram>& programs) { return Accountant(programs).run(); }
+std::vector<Accounted> account_for(const std::vector<ReadProgram>& programs, const ProgramRobot& robot) {
+  return Accountant(programs, robot).run();
+}
 
 }  // namespace posewright::programs

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "language.hpp"
+#include "frames.hpp"
 #include "posewright/programs/program_document.hpp"
 
 namespace posewright::programs {
@@ -16,8 +17,12 @@ struct ReadProgram {
   Reading reading;
 };
 
-/// What becomes of every point and motion, by the uses of all programs. `point` of an entry is an index among the
-/// points of its reading.
-std::vector<ProgramAccount> account_for(const std::vector<ReadProgram>& programs);
+struct Accounted {
+  ProgramAccount account;                           ///< `point` of an entry is an index among the points of the reading
+  std::vector<std::optional<PlacedFrames>> frames;  ///< one a point of the reading: of poses that are compensated
+};
+
+/// What becomes of every point and motion, by the uses of all programs.
+std::vector<Accounted> account_for(const std::vector<ReadProgram>& programs, const ProgramRobot& robot);
 
 }  // namespace posewright::programs

@@ -80,22 +80,29 @@ std::vector<double> AxisCounter::joints(const std::vector<double>& values) const
   return result;
 }
 
-std::vector<double> AxisCounter::values(const std::vector<double>& joints) const {
+std::vector<double> AxisCounter::count(const std::vector<double>& joints) const {
   std::vector<double> result;
   const std::size_t a = index_of(second), b = index_of(third);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     double value = joints[i];
     if (i == b && a < joints.size()) value -= coupling_ * joints[a];
-    const bool turns = units_[i] == "rad";
-    value /= turns ? degree : 1e-3;
+    value /= units_[i] == "rad" ? degree : 1e-3;
     if (!settings_.sign.empty()) value *= settings_.sign[i];
     if (!settings_.zero_deg.empty()) value += settings_.zero_deg[i];
+    result.push_back(value);
+  }
+  return result;
+}
+
+std::vector<double> AxisCounter::values(const std::vector<double>& joints) const {
+  std::vector<double> result = count(joints);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    double& value = result[i];
     if (!settings_.range_deg.empty() && (value < settings_.range_deg[i][0] || value > settings_.range_deg[i][1]))
       throw CannotDo(fmt::format("axis {} of the controller would be at {:.3f}; {} allows {} to {}", axes_[i], value,
                                  settings_.file, settings_.range_deg[i][0], settings_.range_deg[i][1]));
-    if (language_.angle == Angle::radians) value *= turns ? degree : language_.decimals < 0 ? 1e-3 : 1.0;
+    if (language_.angle == Angle::radians) value *= units_[i] == "rad" ? degree : language_.decimals < 0 ? 1e-3 : 1.0;
     if (language_.angle == Angle::pulses) value *= settings_.pulses_per_degree[i];
-    result.push_back(value);
   }
   return result;
 }

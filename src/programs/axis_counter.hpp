@@ -22,6 +22,8 @@ class AxisCounter {
   const std::vector<std::string>& axes() const { return axes_; }
   /// SI, the robot's signs and zeros.
   std::vector<double> joints(const std::vector<double>& values) const;
+  /// As the controller counts them, wherever that is.
+  std::vector<double> count(const std::vector<double>& joints) const;
   /// Throws CannotDo for an axis beyond the range that the settings give it.
   std::vector<double> values(const std::vector<double>& joints) const;
   /// A value as text.

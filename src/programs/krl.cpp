@@ -1,5 +1,7 @@
 // KRL: PTP XP1, PTP {A1 0.0,A2 -90.0,…}; points are in the .dat file of the same name: DECL E6AXIS XP1={…}.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -103,6 +105,7 @@ class Krl {
     TokenCursor ahead = cursor_;
     const std::string name(ahead.text());
     const int line = ahead.now().line;
+    long index = -1;
     const Expression left = [&] {
       Expression one;
       one.component = false;
@@ -111,6 +114,7 @@ class Krl {
         one.component = one.component || ahead.sees('.');
         if (ahead.take('.')) ahead.skip();
         else {
+          if (ahead.ahead(1).kind == Token::Kind::number) index = long(std::min(ahead.ahead(1).value, 1e6));
           ahead.skip_to("]", true);
           ahead.take(']');
         }
@@ -120,7 +124,7 @@ class Krl {
     if (!ahead.take('=') || ahead.sees('=')) return false;
     const Expression value = read_expression(ahead, krl_grammar().expressions);
     cursor_ = ahead;
-    if (name.starts_with('$')) return true;
+    if (frame(upper(name), index, value)) return true;
     if (left.component || !found_.define(name, value, line)) {
       found_.change(name, line, "=");
       found_.pass("=", {value}, line, Role::operand);
@@ -128,8 +132,83 @@ class Krl {
     return true;
   }
 
+  /// $TOOL=…, $BASE=…, TOOL_DATA[n]={…}, FDAT_ACT=FP1, FP1={TOOL_NO 1,BASE_NO 0,…}, $IPO_MODE=#TCP.
+  bool frame(const std::string& name, long index, const Expression& value) {
+    FramePair& frames = found_.frames;
+    if (name == "$TOOL") {
+      frames.tool = named_frame(value);
+    } else if (name == "$BASE") {
+      frames.base = named_frame(value);
+    } else if (name == "FDAT_ACT") {
+      frames = {{upper(value.word)}, {upper(value.word)}};
+    } else if (name == "$IPO_MODE") {
+      if (upper(value.word) == "#TCP") found_.reading.displaced = "the tool is stationary ($IPO_MODE=#TCP)";
+    } else if ((name == "TOOL_DATA" || name == "BASE_DATA") && index >= 0) {
+      if (const auto values = frame_values(value)) found_.reading.frames[numbered(name, double(index))] = *values;
+    } else if (value.is(Kind::list) && !value.items.empty() && value.items[0].label == "TOOL_NO") {
+      frame_data(name, value);
+    } else {
+      return name.starts_with('$');
+    }
+    return true;
+  }
+
+  void frame_data(const std::string& name, const Expression& value) {
+    FramePair& frames = found_.reading.frame_data[name];
+    for (const Expression& item : value.items) {
+      if (item.label == "TOOL_NO") frames.tool.name = numbered("TOOL_DATA", item.value);
+      if (item.label == "BASE_NO") frames.base.name = numbered("BASE_DATA", item.value);
+    }
+  }
+
+  static std::string numbered(const std::string& name, double number) {
+    return fmt::format("{}[{}]", name, long(std::clamp(number, -1e6, 1e6)));
+  }
+
+  static std::optional<std::vector<double>> frame_values(const Expression& value) {
+    std::vector<double> values;
+    for (const char* label : {"X", "Y", "Z", "A", "B", "C"})
+      for (const Expression& item : value.items)
+        if (value.is(Kind::list) && item.label == label && item.is(Kind::constant)) values.push_back(item.value);
+    return values.size() == 6 ? std::optional(values) : std::nullopt;
+  }
+
+  /// {X …}, TOOL_DATA[1], $NULLFRAME; what only the controller computes has a name that no value is for.
+  static FrameName named_frame(const Expression& value) {
+    if (auto values = frame_values(value)) return {"{}", values};
+    const std::string word = upper(value.word);
+    if (value.is(Kind::name) && word == "$NULLFRAME") return {word, std::vector<double>(6, 0.0)};
+    if (value.is(Kind::name) && value.items.size() == 1 && value.items[0].is(Kind::constant))
+      return {numbered(word, value.items[0].value)};
+    return {word.empty() ? "an expression" : word};
+  }
+
+  /// BAS(#TOOL,1), BAS(#BASE,0)
+  void frame_by_number(const Expression& called) {
+    if (upper(called.word) != "BAS" || called.items.size() != 2 || !called.items[1].is(Kind::constant)) return;
+    const double number = called.items[1].value;
+    if (upper(called.items[0].word) == "#TOOL") found_.frames.tool = {numbered("TOOL_DATA", number)};
+    if (upper(called.items[0].word) == "#BASE") found_.frames.base = {numbered("BASE_DATA", number)};
+  }
+
+  /// SLIN XP1 WITH $TOOL=STOOL2(FP1),$BASE=SBASE(FP1.BASE_NO)
+  void frames_of_statement() {
+    for (; !cursor_.done() && cursor_.now().kind != Token::Kind::line_end; cursor_.skip()) {
+      const std::string word = cursor_.is_word() ? upper(cursor_.text()) : "";
+      if ((word != "$TOOL" && word != "$BASE") || !cursor_.ahead(1).is('=', cursor_.source())) continue;
+      TokenCursor ahead = cursor_;
+      ahead.skip();
+      ahead.skip();
+      const Expression value = read_expression(ahead, krl_grammar().expressions);
+      const bool data = value.is(Kind::call) && value.items.size() == 1 && value.items[0].is(Kind::name);
+      (word == "$TOOL" ? found_.frames.tool : found_.frames.base) =
+          data ? FrameName{upper(value.items[0].word)} : named_frame(value);
+    }
+  }
+
   void call() {
     const Expression called = read_expression(cursor_, krl_grammar().expressions);
+    frame_by_number(called);
     if (called.is(Kind::call)) found_.pass(called.word, called.items, called.line, Role::passed);
   }
 
@@ -143,7 +222,10 @@ class Krl {
       // CIRC aux, end, CA 90
       if (arguments.size() < motion.count) arguments.push_back(read_expression(cursor_, krl_grammar().expressions));
     } while (arguments.size() < motion.count && cursor_.take(','));
+    const FramePair before = found_.frames;
+    frames_of_statement();
     found_.move(motion, word, arguments, line);
+    found_.frames = before;
   }
 
   std::vector<Token> tokens_;

@@ -17,7 +17,8 @@ const std::vector<Language>& languages() {
        Scope::stem,
        true,
        'X',
-       read_krl},
+       read_krl,
+       krl_pose},
       {"abb-rapid",
        {".mod", ".prg"},
        "",
@@ -28,10 +29,11 @@ const std::vector<Language>& languages() {
        Scope::all,
        true,
        0,
-       read_rapid},
-      {"fanuc-tp", {".ls"}, "", six, Angle::degrees, 5, true, Scope::file, true, 0, read_tp},
-      {"urscript", {".script"}, "", six, Angle::radians, 6, false, Scope::file, false, 0, read_urscript},
-      {"yaskawa-inform", {".jbi"}, "", six, Angle::pulses, 0, true, Scope::file, true, 0, read_inform},
+       read_rapid,
+       rapid_pose},
+      {"fanuc-tp", {".ls"}, "", six, Angle::degrees, 5, true, Scope::file, true, 0, read_tp, tp_pose},
+      {"urscript", {".script"}, "", six, Angle::radians, 6, false, Scope::file, false, 0, read_urscript, nullptr},
+      {"yaskawa-inform", {".jbi"}, "", six, Angle::pulses, 0, true, Scope::file, true, 0, read_inform, nullptr},
       {"staubli-val3",
        {".dtx", ".pgx"},
        ".pgx",
@@ -42,8 +44,9 @@ const std::vector<Language>& languages() {
        Scope::folder,
        false,
        0,
-       read_val3},
-      {"joint-trajectory", {}, "", {}, Angle::radians, -1, false, Scope::file, false, 0, read_trajectory}};
+       read_val3,
+       nullptr},
+      {"joint-trajectory", {}, "", {}, Angle::radians, -1, false, Scope::file, false, 0, read_trajectory, nullptr}};
   return table;
 }
 

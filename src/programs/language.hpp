@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pose_form.hpp"
 #include "reading.hpp"
 
 namespace posewright::programs {
@@ -26,6 +27,7 @@ struct Language {
   bool capitals = true;    ///< names are the same in capitals
   char taught_prefix = 0;  ///< begins names of points that are taught, whose motions are in another file
   Reading (*read)(const Source& source) = nullptr;
+  const PoseForm& (*pose)() = nullptr;  ///< null: poses of this language are not compensated
 };
 
 const std::vector<Language>& languages();

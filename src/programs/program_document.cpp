@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "account.hpp"
 #include "axis_counter.hpp"
@@ -32,35 +33,65 @@ std::string with_edits(const std::string& text, std::vector<Edit> edits) {
 
 class Document : public ProgramDocument {
  public:
-  Document(ReadProgram program, ProgramAccount account, const AxisCounter& counter)
-      : program_(std::move(program)), account_(std::move(account)), text_(program_.file->text), counter_(counter) {
+  Document(ReadProgram program, Accounted accounted, const AxisCounter& counter)
+      : program_(std::move(program)),
+        account_(std::move(accounted.account)),
+        text_(program_.file->text),
+        counter_(counter) {
     program_.file = nullptr;
     for (ProgramEntry& entry : account_.entries) {
       const int found = entry.point;
       entry.point = -1;
       if (found < 0 || entry.treatment != Treatment::compensated) continue;
       entry.point = int(points_.size());
-      add(program_.reading.points[std::size_t(found)]);
+      add(program_.reading.points[std::size_t(found)], accounted.frames[std::size_t(found)]);
     }
   }
 
   const ProgramAccount& account() const override { return account_; }
   const std::vector<Point>& points() const override { return points_; }
 
-  std::string text(const std::vector<std::optional<std::vector<double>>>& joints,
-                   const std::string& remark) const override {
+  std::vector<std::size_t> meant(std::size_t point, const std::vector<ArmStand>& stands) const override {
+    const PoseForm& form = program_.language->pose();
+    std::vector<std::size_t> left(stands.size());
+    std::iota(left.begin(), left.end(), 0);
+    std::vector<std::vector<std::vector<long>>> statuses;
+    for (const ArmStand& stand : stands) statuses.push_back(statuses_of(stand));
+    for (std::size_t k = 0; k < form.status.size(); ++k) {
+      const TextNumber* listed = value_of(*found_[point], form.status[k]);
+      const auto differs = [&](std::size_t i) { return listed != nullptr && !met(k, *listed, statuses[i]); };
+      if (k < form.required) std::erase_if(left, differs);
+      else if (left.size() > 1 && !std::ranges::all_of(left, differs)) std::erase_if(left, differs);
+    }
+    return left;
+  }
+
+  std::string text(const std::vector<std::optional<Values>>& values, const std::string& remark) const override {
     std::vector<Edit> edits;
-    for (std::size_t p = 0; p < joints.size(); ++p) {
-      if (!joints[p]) continue;
-      const std::vector<double> values = values_of(p, *joints[p]);
-      for (std::size_t i = 0; i < values.size(); ++i)
-        edits.push_back({places_[p][i].begin, places_[p][i].end, counter_.text(values[i])});
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      if (!values[p]) continue;
+      const std::vector<double> axes = values_of(p, values[p]->stand.joints);
+      if (points_[p].is_pose()) {
+        edit_pose(edits, p, *values[p]);
+        continue;
+      }
+      for (std::size_t i = 0; i < axes.size(); ++i)
+        edits.push_back(edit(*value_of(*found_[p], counter_.axes()[i]), counter_.text(axes[i])));
     }
     if (!points_.empty()) add_remark(edits, remark);
     return with_edits(text_, std::move(edits));
   }
 
  private:
+  static Edit edit(const TextNumber& at, std::string text) { return {at.begin, at.end, std::move(text)}; }
+
+  const TextNumber* value_of(const FoundPoint& point, const std::string& name) const {
+    const bool exact = program_.language->pose != nullptr && point.form == FoundPoint::Form::pose;
+    for (const auto& [own, value] : point.axes)
+      if (exact ? own == name : upper(own) == upper(name)) return &value;
+    return nullptr;
+  }
+
   std::vector<double> values_of(std::size_t point, const std::vector<double>& joints) const {
     try {
       return counter_.values(joints);
@@ -69,17 +100,74 @@ class Document : public ProgramDocument {
     }
   }
 
-  void add(const FoundPoint& point) {
-    std::vector<TextNumber> places;
-    std::vector<double> values;
-    for (const std::string& axis : counter_.axes()) {
-      const auto at = std::find_if(point.axes.begin(), point.axes.end(),
-                                   [&](const auto& a) { return upper(a.first) == upper(axis); });
-      places.push_back(at->second);
-      values.push_back(at->second.value);
+  /// The six axes in the language's order, as the controller counts them.
+  std::array<double, 6> axes_of(const ArmStand& stand) const {
+    const std::vector<double> values = counter_.count(stand.joints);
+    std::array<double, 6> axes{};
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (counter_.axes()[k] == program_.language->axes[i]) axes[i] = values[k];
+    return axes;
+  }
+
+  bool met(std::size_t k, const TextNumber& listed, const std::vector<std::vector<long>>& statuses) const {
+    return std::ranges::any_of(statuses, [&](const std::vector<long>& status) {
+      return program_.language->pose().meets(k, listed.value, status[k]);
+    });
+  }
+
+  /// The status of these joints, first, and those that it may be stated as where an axis is at a border, as at zero.
+  std::vector<std::vector<long>> statuses_of(const ArmStand& stand) const {
+    constexpr double border = 0.01;  // deg
+    const PoseForm& form = program_.language->pose();
+    const std::array<double, 6> axes = axes_of(stand);
+    std::vector<std::array<double, 6>> near = {axes};
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      for (const double side : {-border, border}) {
+        std::array<double, 6> beside = axes;
+        beside[i] += side;
+        if (form.status_of(stand, beside) == form.status_of(stand, axes)) continue;
+        for (std::size_t k = 0, count = near.size(); k < count; ++k) {
+          near.push_back(near[k]);
+          near.back()[i] = beside[i];
+        }
+      }
+    std::vector<std::vector<long>> statuses;
+    for (const std::array<double, 6>& at : near) statuses.push_back(form.status_of(stand, at));
+    return statuses;
+  }
+
+  void edit_pose(std::vector<Edit>& edits, std::size_t p, const Values& values) const {
+    const PoseForm& form = program_.language->pose();
+    const PlacedFrames& frames = *frames_[p];
+    const std::vector<double> pose = form.written(frames.X_BaseUser.inverse() * values.X_BaseTip * frames.X_TipTool);
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      edits.push_back(
+          edit(*value_of(*found_[p], form.values[i]), formats::fixed(pose[i], i < 3 ? 4 : form.turn_decimals)));
+    const std::vector<std::vector<long>> statuses = statuses_of(values.stand);
+    const std::vector<long>& status = statuses.front();
+    for (std::size_t k = 0; k < form.status.size(); ++k) {
+      const TextNumber* listed = value_of(*found_[p], form.status[k]);
+      // What only decides between others may be anything where it is not needed.
+      if (listed == nullptr || k >= form.required || met(k, *listed, statuses)) continue;
+      edits.push_back(edit(*listed, form.status_text(k, form.merged(k, long(listed->value), status[k]))));
     }
-    points_.push_back({point.line, point.name, counter_.joints(values)});
-    places_.push_back(std::move(places));
+  }
+
+  void add(const FoundPoint& point, const std::optional<PlacedFrames>& frames) {
+    Point added{point.line, point.name, {}};
+    std::vector<double> values;
+    if (frames) {
+      const PoseForm& form = program_.language->pose();
+      for (const std::string& name : form.values) values.push_back(value_of(point, name)->value);
+      added.X_BaseTip = frames->X_BaseUser * form.place(values) * frames->X_TipTool.inverse();
+    } else {
+      for (const std::string& axis : counter_.axes()) values.push_back(value_of(point, axis)->value);
+      added.joints = counter_.joints(values);
+    }
+    points_.push_back(std::move(added));
+    found_.push_back(&point);
+    frames_.push_back(frames);
   }
 
   void add_remark(std::vector<Edit>& edits, const std::string& remark) const {
@@ -100,7 +188,8 @@ class Document : public ProgramDocument {
   std::string text_;
   AxisCounter counter_;
   std::vector<Point> points_;
-  std::vector<std::vector<TextNumber>> places_;
+  std::vector<const FoundPoint*> found_;             ///< one a point, of the reading
+  std::vector<std::optional<PlacedFrames>> frames_;  ///< one a point
 };
 
 bool has_code_ending(const ReadProgram& program) {
@@ -131,7 +220,7 @@ std::vector<std::unique_ptr<ProgramDocument>> read_programs(const std::vector<Pr
       throw InputError({file.name, 0}, "has neither points nor motions",
                        "a " + file.format + " program, or --from FORMAT");
   }
-  std::vector<ProgramAccount> accounts = account_for(read);
+  std::vector<Accounted> accounts = account_for(read, robot);
   std::vector<std::unique_ptr<ProgramDocument>> documents;
   for (std::size_t i = 0; i < files.size(); ++i)
     if (!files[i].context)

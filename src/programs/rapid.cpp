@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pose_form.hpp"
 #include "reading.hpp"
 
 namespace posewright::programs {
@@ -115,6 +116,9 @@ class Rapid {
     const std::string word = upper(cursor_.text());
     if (word == "MODULE") return header();
     if (word == "JOINTTARGET" || word == "ROBTARGET") return declaration();
+    if (word == "TOOLDATA" || word == "WOBJDATA") return frame_data(word == "TOOLDATA");
+    for (const char* moved : {"PDISPON", "PDISPSET", "EOFFSON", "EOFFSSET"})
+      if (word == moved) found_.reading.displaced = std::string(cursor_.text()) + " displaces poses";
     if (word == "PROC" || word == "FUNC" || word == "TRAP") return cursor_.skip_to(")", false);
     if (const Motion* motion = found_.motion(word)) return instruction(motion);
     const bool followed = cursor_.ahead(1).kind == Token::Kind::word || cursor_.ahead(1).is('[', cursor_.source());
@@ -163,6 +167,33 @@ class Rapid {
     if (!found_.define(name, value, line)) found_.change(name, line, ":=");
   }
 
+  /// tooldata t:=[TRUE,[[…],[…]],[…]], wobjdata w:=[FALSE,TRUE,"",[[…],[…]],[[…],[…]]]: a user and an object frame.
+  void frame_data(bool tool) {
+    cursor_.skip();
+    if (!cursor_.is_word()) return;
+    const std::string name = upper(cursor_.text());
+    cursor_.skip();
+    if (!cursor_.take(':') || !cursor_.take('=')) return;
+    const Expression value = read_expression(cursor_, rapid_grammar().expressions);
+    const bool held = !value.items.empty() && upper(value.items[0].word) == "TRUE";
+    if (tool && held && value.items.size() == 3) {
+      if (const auto values = frame_values(value.items[1])) found_.reading.frames[name] = *values;
+    } else if (!tool && !held && value.items.size() == 5 && upper(value.items[1].word) == "TRUE") {
+      const auto user = frame_values(value.items[3]), object = frame_values(value.items[4]);
+      if (user && object)
+        found_.reading.frames[name] = rapid_pose().written(rapid_pose().place(*user) * rapid_pose().place(*object));
+    }
+  }
+
+  static std::optional<std::vector<double>> frame_values(const Expression& pose) {
+    std::vector<double> values;
+    for (const Expression& part : pose.items)
+      for (const Expression& item : part.items)
+        if (item.is(Kind::constant)) values.push_back(item.value);
+    const bool whole = is_list(pose, 2) && is_list(pose.items[0], 3) && is_list(pose.items[1], 4) && values.size() == 7;
+    return whole ? std::optional(values) : std::nullopt;
+  }
+
   /// p1.trans.z := …, p2 := p1, and j1:=[…] of a variable.
   void assignment() {
     const Expression left = [&] {
@@ -197,19 +228,27 @@ class Rapid {
     const int line = cursor_.now().line;
     cursor_.skip();
     std::vector<Expression> arguments;
+    found_.frames = {{}, {"WOBJ0"}};
     while (!cursor_.done() && !cursor_.sees(';')) {
       // IF held MoveL p1,…; has an instruction behind a condition.
       if (cursor_.is_word() && found_.motion(cursor_.text()) != nullptr) break;
       const std::size_t start = cursor_.at;
       if (cursor_.take('\\')) {
+        const bool object = upper(cursor_.text()) == "WOBJ";
         cursor_.skip();
-        if (cursor_.take(':') && cursor_.take('=')) read_expression(cursor_, rapid_grammar().expressions);
+        if (cursor_.take(':') && cursor_.take('=')) {
+          const Expression value = read_expression(cursor_, rapid_grammar().expressions);
+          const bool named = value.is(Kind::name) && !value.component && value.items.empty();
+          if (object) found_.frames.base.name = named ? upper(value.word) : "an expression";
+        }
         cursor_.take(',');  // \Conc,
       } else if (!cursor_.take(',')) {
         arguments.push_back(read_expression(cursor_, rapid_grammar().expressions));
       }
       if (cursor_.at == start) cursor_.skip();
     }
+    // The tool is the last argument.
+    if (!arguments.empty() && arguments.back().is(Kind::name)) found_.frames.tool.name = upper(arguments.back().word);
     if (motion != nullptr) found_.move(*motion, word, arguments, line);
     else found_.pass(word, arguments, line, Role::passed);
   }

@@ -22,6 +22,7 @@ const Motion* Collector::motion(std::string_view word) const {
 
 void Collector::move(const Motion& motion, std::string_view word, const std::vector<Expression>& arguments, int line) {
   Use use{line, std::string(word), motion.role};
+  use.frames = frames;
   if (motion.role == Role::other) {
     use.why = motion.why;
     reading.uses.push_back(use);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,17 @@ struct TextNumber {
 /// Values of a point by the names of its axes, as the program has them.
 using AxisValues = std::vector<std::pair<std::string, TextNumber>>;
 
+/// A tool or base as a program names it.
+struct FrameName {
+  std::string name{};                           ///< empty: the program does not say
+  std::optional<std::vector<double>> values{};  ///< stated in place, as the language writes a pose
+  bool operator==(const FrameName&) const = default;
+};
+struct FramePair {
+  FrameName tool{}, base{};
+  bool operator==(const FramePair&) const = default;
+};
+
 struct FoundPoint {
   enum class Form { joints, pose, unclear };
   int line = 0;
@@ -26,6 +38,7 @@ struct FoundPoint {
   Form form = Form::joints;
   AxisValues axes{};
   std::string why{};    ///< it is unclear
+  FramePair frames{};   ///< where the point itself names them
   std::string label{};  ///< what people call it, where its name is a number
 };
 
@@ -49,7 +62,8 @@ struct Use {
   std::string name{};                  ///< of the point; empty: `point`, or none
   std::optional<std::size_t> point{};  ///< that stands in the instruction itself
   std::string why{};                   ///< for roles other and unclear
-  bool moves = true;                   ///< false: a name within an instruction that is listed by itself
+  FramePair frames{};
+  bool moves = true;  ///< false: a name within an instruction that is listed by itself
 };
 
 /// Where a remark goes, and how it is written there.
@@ -61,6 +75,9 @@ struct RemarkPlace {
 };
 
 struct Reading {
+  std::map<std::string, std::vector<double>> frames;  ///< values by name, as the language writes a pose
+  std::map<std::string, FramePair> frame_data;        ///< names of frames behind a name (FDAT of KRL)
+  std::string displaced;                              ///< what moves all poses of the file; empty: nothing
   std::vector<FoundPoint> points;
   std::vector<Use> uses;
   std::optional<RemarkPlace> remark;  ///< none: there is no place for one
@@ -108,6 +125,7 @@ class Collector {
   void pass(const std::string& procedure, const std::vector<Expression>& arguments, int line, Role role);
 
   Reading reading;
+  FramePair frames;  ///< of the motions from here on
 
  private:
   void target(const Motion& motion, const Expression& to, Use use);

@@ -1,6 +1,7 @@
 // TP: 1:J P[1] 20% FINE ; in /MN, P[1]{ GP1: UF : 0, UT : 1, J1= 0.0 deg, … }; in /POS; X = … is a position.
 
 #include <algorithm>
+#include <array>
 
 #include "reading.hpp"
 
@@ -180,6 +181,10 @@ class Tp {
       if (!cursor.is_word()) continue;
       const std::string word = upper(cursor.text());
       if (word.starts_with("GP") && word != "GP1" && word.size() > 2 && is_digit(word[2])) break;
+      if (cursor.ahead(1).is(':', text_) && (word == "UF" || word == "UT" || word == "CONFIG")) {
+        head_of_pose(point, word, cursor.ahead(2));
+        continue;
+      }
       if (!cursor.ahead(1).is('=', text_)) continue;
       cursor.skip();
       cursor.skip();
@@ -192,6 +197,33 @@ class Tp {
         point.why = word + " has no value";
         return;
       }
+    }
+  }
+
+  /// UF : 1, UT : 2, CONFIG : 'N U T, 0, 0, 0'
+  void head_of_pose(FoundPoint& point, const std::string& word, const Token& value) {
+    const std::string text(text_.substr(value.begin, value.end - value.begin));
+    if (word == "UF") point.frames.base.name = text;
+    if (word == "UT") point.frames.tool.name = text;
+    if (word == "CONFIG" && value.kind == Token::Kind::text && text.size() >= 2)
+      configuration(point, tokens_of(text_, {"", "", "_", false}, value.begin + 1, value.end - 1));
+  }
+
+  void configuration(FoundPoint& point, const std::vector<Token>& parts) {
+    static constexpr std::array<std::pair<const char*, const char*>, 3> letters = {
+        {{"flip", "NF"}, {"elbow", "UD"}, {"side", "TB"}}};
+    static constexpr std::array<const char*, 3> turns = {"turn1", "turn4", "turn6"};
+    std::size_t turn = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Token& token = parts[i];
+      const std::string part = upper(text_.substr(token.begin, token.end - token.begin));
+      for (const auto& [name, pair] : letters)
+        if (part.size() == 1 && std::string_view(pair).find(part) != std::string_view::npos)
+          point.axes.emplace_back(name, TextNumber{token.begin, token.end, part[0] == pair[0] ? 0.0 : 1.0});
+      if (token.kind != Token::Kind::number || turn >= turns.size()) continue;
+      const bool minus = i > 0 && parts[i - 1].is('-', text_);
+      point.axes.emplace_back(turns[turn++], TextNumber{minus ? parts[i - 1].begin : token.begin, token.end,
+                                                        minus ? -token.value : token.value});
     }
   }
 

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/model/serial_chain.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/error.hpp"
@@ -255,6 +257,28 @@ void Compensation::add_account(ProgramAccount account, const CompensatedList& li
       if (failure.file == list.file && failure.id == list.ids[std::size_t(entry.point)]) entry.why = failure.why;
   }
   programs.push_back(std::move(account));
+}
+
+void Compensation::settle_motions() {
+  std::map<std::string, std::string> open;
+  for (const ProgramAccount& program : programs)
+    for (const ProgramEntry& entry : program.entries)
+      if (entry.treatment == Treatment::not_compensated && !entry.target.empty())
+        open.insert({entry.target, entry.why});
+  for (ProgramAccount& program : programs)
+    for (ProgramEntry& entry : program.entries) {
+      const auto at = open.find(entry.target);
+      if (entry.point >= 0 || at == open.end() || entry.treatment != Treatment::compensated) continue;
+      entry.treatment = Treatment::not_compensated;
+      entry.why = at->second;
+    }
+}
+
+ArmInverse nominal_inverse(const Problem& problem) {
+  const auto tip = nominal_tip(problem, calibrated_variant(problem), false);
+  const auto* chain = dynamic_cast<const SerialChain*>(tip.get());
+  if (chain == nullptr) throw CannotDo("this robot has no inverse in closed form: it is no arm of six joints");
+  return ArmInverse(chain->description());
 }
 
 std::size_t Compensation::open_lines() const {

@@ -113,10 +113,15 @@ void read_program(const std::string& bytes) {
   ProgramRobot robot{{"j1", "j2", "j3", "j4", "j5", "j6"}, std::vector<std::string>(6, "rad"), {}, 0.0};
   robot.settings.pulses_per_degree = std::vector<double>(6, 1000);
   const auto document = std::move(read_programs({{format, bytes.substr(1), "program"}}, robot).front());
-  std::vector<std::optional<std::vector<double>>> joints;
-  for (const ProgramDocument::Point& point : document->points()) joints.emplace_back(point.joints);
-  const std::string again = document->text(joints, "remark");
-  if (read_programs({{format, again, "program"}}, robot).front()->points().size() != joints.size()) std::abort();
+  std::vector<std::optional<ProgramDocument::Values>> values;
+  for (std::size_t p = 0; p < document->points().size(); ++p) {
+    const ProgramDocument::Point& point = document->points()[p];
+    const ArmStand stand{std::vector<double>(6, 0.1)};
+    if (point.is_pose()) document->meant(p, {stand, stand});
+    values.emplace_back(ProgramDocument::Values{point.is_pose() ? stand : ArmStand{point.joints}, point.X_BaseTip});
+  }
+  const std::string again = document->text(values, "remark");
+  if (read_programs({{format, again, "program"}}, robot).front()->points().size() != values.size()) std::abort();
 }
 
 using Read = void (*)(const std::string&);

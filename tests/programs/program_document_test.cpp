@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 ProgramRobot six_axes() {
-  ProgramRobot robot{{"j1", "j2", "j3", "j4", "j5", "j6"}, std::vector<std::string>(6, "rad"), {}, 0.0};
+  ProgramRobot robot{{"j1", "j2", "j3", "j4", "j5", "j6"}, std::vector<std::string>(6, "rad"), {}, 0.0, "no inverse"};
   robot.settings.pulses_per_degree = std::vector<double>(6, 1000);
   return robot;
 }
@@ -43,12 +43,12 @@ std::string why(const ProgramDocument& document, int line) {
 
 /// A text with other values for all its points.
 std::string moved(const ProgramDocument& document) {
-  std::vector<std::optional<std::vector<double>>> joints;
+  std::vector<std::optional<ProgramDocument::Values>> values;
   for (const ProgramDocument::Point& point : document.points()) {
-    joints.push_back(point.joints);
-    for (double& value : *joints.back()) value += 0.01;
+    values.emplace_back(ProgramDocument::Values{{point.joints}, point.X_BaseTip});
+    for (double& value : values.back()->stand.joints) value += 0.01;
   }
-  return document.text(joints, "Written by posewright compensate: x");
+  return document.text(values, "Written by posewright compensate: x");
 }
 
 constexpr const char* krl_zero = "{A1 0,A2 10,A3 20,A4 0,A5 30,A6 0}";
@@ -207,6 +207,84 @@ TEST(Val3Program, TakesTheUseOfItsDataFromTheProgramsBesideThem) {
   EXPECT_THAT(lines_of(*read({{"staubli-val3", data, "a/a.dtx"}, {"staubli-val3", code, "a/start.pgx"}})[1]),
               ElementsAre("4 movej jA: C", "6 movej: L", "7 movel: L", "8 movel pA: N"));
   EXPECT_THAT(account("staubli-val3", data, "a/a.dtx"), ElementsAre("5 jA: L", "8 jStep: L", "11 pA: L"));
+}
+
+/// The same robot, whose poses can be compensated.
+std::unique_ptr<ProgramDocument> read_poses_of(const std::string& format, const std::string& text,
+                                               const ProgramFrames& frames = {}) {
+  ProgramRobot robot = six_axes();
+  robot.why_no_poses.clear();
+  robot.frames = frames;
+  return std::move(read_programs({{format, text, "p"}}, robot).front());
+}
+
+TEST(KrlProgram, TakesToolAndBaseFromTheProgramOrTheUserAndSaysWhichIsMissing) {
+  const std::string pose = "{X 600,Y 10,Z 500,A 0,B 90,C 0,S 2,T 35}";
+  const auto program = [&](const std::string& lines) { return "DEF P()\n" + lines + "LIN " + pose + "\nEND\n"; };
+  const auto reason = [&](const std::string& lines, const ProgramFrames& frames = {}) {
+    const std::string text = program(lines);
+    return read_poses_of("kuka-krl", text, frames)->account().entries.back().why;
+  };
+  EXPECT_EQ(reason("$TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}\n$BASE=$NULLFRAME\n"), "");
+  EXPECT_EQ(reason("BAS(#TOOL,0)\nBAS(#BASE,0)\n"), "");
+  EXPECT_EQ(reason("$BASE=$NULLFRAME\n"), "the program does not state its tool: --tool");
+  EXPECT_EQ(reason("BAS (#TOOL,3)\nBAS (#BASE,0)\n"), "TOOL_DATA[3] has no value in these files: --tool");
+  EXPECT_EQ(reason("TOOL_DATA[3]={X 0,Y 0,Z 100,A 0,B 0,C 0}\nBAS (#TOOL,3)\nBAS (#BASE,0)\n"), "");
+  EXPECT_EQ(reason("DECL FDAT FP1={TOOL_NO 3,BASE_NO 0,IPO_FRAME #BASE}\nFDAT_ACT=FP1\n"),
+            "TOOL_DATA[3] has no value in these files: --tool");
+  ProgramFrames given;
+  given.tools["3"] = {0, 0, 100, 0, 0, 0};
+  EXPECT_EQ(reason("BAS (#TOOL,3)\nBAS (#BASE,0)\n", given), "");
+  EXPECT_EQ(reason("$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\n$IPO_MODE=#TCP\n"), "the tool is stationary ($IPO_MODE=#TCP)");
+
+  const std::string text = program("$TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}\n$BASE={X 1000,Y 0,Z 0,A 90,B 0,C 0}\n");
+  const auto document = read_poses_of("kuka-krl", text);
+  // The tool points along x where B is 90 deg; then the base turns and displaces it.
+  const Eigen::Vector3d tip = document->points()[0].X_BaseTip.translation();
+  EXPECT_LT((tip - Eigen::Vector3d(0.99, 0.5, 0.5)).norm(), 1e-12) << tip.transpose();
+}
+
+TEST(KrlProgram, DoesNotUnderstandAPoseWithoutStatusOrWithSeveralTools) {
+  const std::string frames = "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n";
+  const auto open = read_poses_of("kuka-krl", "DEF P()\n" + frames + "LIN {X 600,Y 10,Z 500,A 0,B 90,C 0}\nEND\n");
+  EXPECT_THAT(lines_of(*open), ElementsAre("4 LIN: ?"));
+  EXPECT_THAT(why(*open, 4), HasSubstr("has no S"));
+  const auto two = read_poses_of("kuka-krl", "DEF P()\nXP={X 600,Y 10,Z 500,A 0,B 90,C 0,S 2,T 35}\n" + frames +
+                                                 "LIN XP\n$TOOL={X 0,Y 0,Z 9,A 0,B 0,C 0}\nLIN XP\nEND\n");
+  EXPECT_THAT(lines_of(*two), ElementsAre("2 XP: N", "5 LIN XP: N", "7 LIN XP: N"));
+  EXPECT_THAT(why(*two, 2), HasSubstr("several tools or bases"));
+}
+
+TEST(RapidProgram, TakesTooldataAndWobjdataOfItsMotions) {
+  const std::string target = "[[600,0,500],[0,0,1,0],[0,0,0,0]" + std::string(none);
+  const std::string text =
+      "MODULE M\n PERS tooldata tGun:=[TRUE,[[0,0,100],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];\n"
+      " PERS wobjdata wA:=[FALSE,TRUE,\"\",[[1000,0,0],[1,0,0,0]],[[0,50,0],[1,0,0,0]]];\n CONST robtarget p1:=" +
+      target + ";\n CONST robtarget p2:=" + target + ";\n PROC main()\n  MoveL p1,v100,fine,tGun\\WObj:=wA;\n" +
+      "  MoveJ p2,v100,z10,tOther;\n ENDPROC\nENDMODULE\n";
+  const auto document = read_poses_of("abb-rapid", text);
+  EXPECT_THAT(lines_of(*document), ElementsAre("4 p1: C", "5 p2: N", "7 MoveL p1: C", "8 MoveJ p2: N"));
+  EXPECT_EQ(why(*document, 5), "TOTHER has no value in these files: --tool");
+  EXPECT_LT((document->points()[0].X_BaseTip.translation() - Eigen::Vector3d(1.6, 0.05, 0.6)).norm(), 1e-12);
+  std::string displaced = text;
+  displaced.replace(displaced.find("  MoveL"), 0, "  PDispOn p1,tGun;\n");
+  EXPECT_THAT(why(*read_poses_of("abb-rapid", displaced), 4), HasSubstr("PDispOn displaces poses"));
+}
+
+TEST(TpProgram, MeansTheJointsOfItsConfiguration) {
+  const std::string text = "/PROG  T\n/MN\n   1:L P[3] 100mm/sec FINE    ;\n/POS\n" + tp_positions;
+  ProgramFrames frames;
+  frames.tools["1"] = frames.bases[""] = {0, 0, 0, 0, 0, 0};
+  const auto document = read_poses_of("fanuc-tp", text, frames);
+  ASSERT_EQ(document->points().size(), 1U);
+  const auto stand = [](double first, double fifth, bool behind) {
+    return ArmStand{{first, 0.2, 0.1, 0.3, fifth, 0.1}, behind, false};
+  };
+  EXPECT_THAT(document->meant(0, {stand(0, 1, false), stand(0, -1, false), stand(0, -1, true), stand(4, -1, false)}),
+              ElementsAre(1U));
+  const std::string after =
+      document->text({ProgramDocument::Values{stand(4, -1, true), document->points()[0].X_BaseTip}}, "r");
+  EXPECT_THAT(after, HasSubstr("CONFIG : 'N U B, 1, 0, 0',\n\tX = 600.0000  mm"));
 }
 
 TEST(JointTrajectory, HasNoCoupling) {

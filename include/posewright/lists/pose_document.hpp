@@ -9,6 +9,7 @@
 
 #include "posewright/controller/controller_settings.hpp"
 #include "posewright/lists/pose_list.hpp"
+#include "posewright/model/arm_inverse.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/programs/program_document.hpp"
 
@@ -19,6 +20,9 @@ struct DocumentOptions {
   std::string format;  ///< as `export` calls it; empty: by the file's ending and first character
   ControllerSettings controller;
   std::optional<double> coupling;
+  std::optional<ArmInverse> inverse{};  ///< of the nominal arm, for poses of programs
+  std::string why_no_inverse{};         ///< why there is none
+  ProgramFrames frames{};
 };
 
 /// Other values for the poses of a document.

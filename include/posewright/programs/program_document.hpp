@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,8 +24,9 @@ struct ProgramEntry {
   int line = 0;
   std::string what;  ///< the instruction and its point, or the point
   Treatment treatment = Treatment::left;
-  std::string why;  ///< empty: it is compensated
-  int point = -1;   ///< index among the document's points; -1: none
+  std::string why;       ///< empty: it is compensated
+  int point = -1;        ///< index among the document's points; -1: none
+  std::string target{};  ///< the same for a point that has a name and for motions to it; not for people
 };
 
 /// Every motion and every point of a program, in the order of the file.
@@ -41,11 +44,30 @@ struct ProgramFile {
   bool context = false;  ///< read for its motions alone: it is not written
 };
 
+/// Joints of a robot, and where its wrist is at them.
+struct ArmStand {
+  std::vector<double> joints;  ///< SI, the robot's signs and zeros
+  bool behind_base = false, behind_arm = false;
+};
+
+/// Frames that a program's poses are in, where it does not state them itself.
+struct ProgramFrames {
+  /// Values by name or number, as the language writes a pose (mm, deg); the empty name is for all that have no value.
+  std::map<std::string, std::vector<double>> tools{}, bases{};
+  Eigen::Isometry3d X_BaseWorld = Eigen::Isometry3d::Identity();  ///< the controller's world in the robot's base
+  Eigen::Isometry3d X_TipFlange = Eigen::Isometry3d::Identity();  ///< the controller's flange in the robot's tip
+};
+
+/// x y z in mm, then roll pitch yaw in deg as in a URDF.
+Eigen::Isometry3d place_of_rpy(const std::vector<double>& values);
+
 /// The robot that a program moves.
 struct ProgramRobot {
   std::vector<std::string> names, units;  ///< of its joints; rad or m
   ControllerSettings settings{};
   std::optional<double> coupling{};  ///< overrules that of the settings
+  std::string why_no_poses{};        ///< poses are not compensated: the reason; empty: they are
+  ProgramFrames frames{};
 };
 
 /// A robot program: its account, the points that are compensated, and the text with other values for them. Everything
@@ -55,18 +77,26 @@ class ProgramDocument {
   struct Point {
     int line = 0;
     std::string name;            ///< as the program calls it; empty: it has none
-    std::vector<double> joints;  ///< SI, the robot's signs and zeros
+    std::vector<double> joints;  ///< SI, the robot's signs and zeros; empty: it is given as a pose
+    Eigen::Isometry3d X_BaseTip = Eigen::Isometry3d::Identity();  ///< of a pose, in the robot's base
+    bool is_pose() const { return joints.empty(); }
+  };
+  /// Other values for a point.
+  struct Values {
+    ArmStand stand;
+    Eigen::Isometry3d X_BaseTip = Eigen::Isometry3d::Identity();  ///< nominal, at these joints; for poses
   };
 
   virtual ~ProgramDocument() = default;
   virtual const ProgramAccount& account() const = 0;
   /// Those that are to be compensated.
   virtual const std::vector<Point>& points() const = 0;
-  /// @param joints  one a point; none: it stays as it is
+  /// Which of these a pose means by its status (S and T, confdata, CONFIG); several where it does not decide.
+  virtual std::vector<std::size_t> meant(std::size_t point, const std::vector<ArmStand>& stands) const = 0;
+  /// @param values  one a point; none: it stays as it is
   /// @param remark  put into a comment where a point has other values
   /// Throws CannotDo for an axis beyond the range that the settings give it.
-  virtual std::string text(const std::vector<std::optional<std::vector<double>>>& joints,
-                           const std::string& remark) const = 0;
+  virtual std::string text(const std::vector<std::optional<Values>>& values, const std::string& remark) const = 0;
 };
 
 /// Reads programs that belong together: motions of one use points of another. One document for each file that is no

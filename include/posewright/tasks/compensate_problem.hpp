@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posewright/lists/pose_list.hpp"
+#include "posewright/model/arm_inverse.hpp"
 #include "posewright/model/command_solver.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/programs/program_document.hpp"
@@ -69,6 +70,8 @@ struct Compensation {
 
   /// Takes a program's account over; points of the list that are not compensated say why.
   void add_account(ProgramAccount account, const CompensatedList& list);
+  /// Motions to points of which one is not compensated are not compensated either; after all accounts.
+  void settle_motions();
   /// Lines of programs that are neither compensated nor left on purpose.
   std::size_t open_lines() const;
   /// Every pose is compensated, and no line of a program is open.
@@ -79,6 +82,9 @@ struct Compensation {
 /// @param problem  with parameters (apply_parameters())
 /// Throws CannotDo for a robot that carries no tip.
 std::vector<Coordinate> compensation_coordinates(const Problem& problem);
+
+/// Inverse kinematics of the nominal arm. Throws CannotDo for other kinds of robots.
+ArmInverse nominal_inverse(const Problem& problem);
 
 /// Commands for the robot of a problem with parameters (apply_parameters()), so that it stands where the nominal one
 /// would. Poses are independent of each other: any number of threads has the same result.

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Form: public RAPID modules (EGM_connection, ConnectABB); docs/export.md.
 

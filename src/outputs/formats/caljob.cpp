@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 #include "yaml_list.hpp"
 
 // Reader: industrial_calibration (ROS 1), caljob_creator; poses or whole scenes.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/support/error.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright::formats {
 namespace {

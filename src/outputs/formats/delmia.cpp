@@ -4,9 +4,9 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: 3DEXPERIENCE help, DELMIA Auto ID data: tab-delimited; tag name, X Y Z in mm, roll pitch yaw in deg as
 // measured, joints in deg or mm. The first line is skipped unless it is numeric.

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Form: easy_handeye2, tests/data/easy_handeye2_demo_eih.samples, which its server loads from

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: public TP listings (ros-industrial/fanuc fanuc_driver/tpe; PAYLOAD[n] stands behind the frames there; an R-30iA
 // has ten payload schedules); coupling: fanuc_driver/src/fanuc_utils.cpp;

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 #include "yaml_list.hpp"
 
 // Reader: FIGAROH, optimal_config.py (load_data_set): a mapping of exactly two keys.

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Reader: FIGAROH, data_loader.load_data: columns are picked by name, others ignored, so one of ours can say what the
 // positions are.

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Commands: PI MS204E (C-887), GCS 2.0. Rotations: PI H-850 manual MS202E, "Rotation": the rotational axes move with
 // the platform and are applied in the order U, V, W, so R = Rx(U) Ry(V) Rz(W); translations are in fixed axes.

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 #include "yaml_list.hpp"
 
 // Reader: industrial_calibration, examples/data/kinematic_calibration/measurements.yaml. `pose` is what a camera

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Form: industrial_calibration, hand-eye examples: cal_data.yaml lists pairs of pose file and image, a pose file holds

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 #include "yaml_list.hpp"
 
 // Form: trajectory_msgs/JointTrajectory as YAML. A pose is two points (arrival, end of the hold), a via point one.

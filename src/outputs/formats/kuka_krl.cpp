@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Form: public KRL of kuka_experimental (kuka_eki_hw_interface/krl, kuka_rsi_hw_interface/krl/KR_C4); docs/export.md.
 

@@ -2,8 +2,8 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Form: generated_joints.txt of LT-IRB120, as numpy.savetxt writes it: degrees.
 

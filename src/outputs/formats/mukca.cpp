@@ -2,8 +2,8 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Form: data/<robot>/<tool position>/hole_0.csv of MUKCa: no header, rad.
 

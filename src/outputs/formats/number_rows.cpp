@@ -7,9 +7,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/trimmed.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 namespace {

@@ -4,10 +4,10 @@
 #include <sstream>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/trimmed.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // poses.csv of a plan, without actuators.
 

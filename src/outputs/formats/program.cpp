@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "controller_axes.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/sha256.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 namespace posewright::formats {
 namespace {

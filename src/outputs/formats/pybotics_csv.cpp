@@ -2,9 +2,9 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: pybotics tests/resources/ur10-joints-poses.csv: joints in degrees, then the pose, 4 x 4 row by row, in mm.
 

@@ -5,9 +5,9 @@
 
 #include "formats.hpp"
 #include "posewright/blocks/read_blocks.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // pybotics takes joints as an array n x joints in rad. NumPy format version 1.0.
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/near_words.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 namespace posewright {
 

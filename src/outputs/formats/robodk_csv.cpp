@@ -2,8 +2,8 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // No public text gives RoboDK's rule for columns: a header and one row a pose, in degrees, is a guess.
 

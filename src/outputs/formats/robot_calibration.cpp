@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 #include "yaml_list.hpp"
 
 // Reader: robot_calibration (ROS 2), src/util/poses_from_yaml.cpp.

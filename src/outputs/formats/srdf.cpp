@@ -5,9 +5,9 @@
 
 #include "formats.hpp"
 #include "number_rows.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: SRDF group_state, as MoveIt reads it.
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
-#include "program.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "program.hpp"
 
 // Form: RoboDK's public VAL 3 examples; the project header is the least certain part; docs/export.md.
 

@@ -3,9 +3,9 @@
 #include <set>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Where an instrument will find the targets, in the order they are measured: for its software, which guides or drives
 // it from point to point. Readers: SpatialAnalyzer, user's manual, "Importing Predefined ASCII Formatted Files" (fields

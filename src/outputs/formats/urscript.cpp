@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: UniversalRobots/URScript_Examples; set_payload(mass in kg, [x, y, z] in m from the flange): Universal Robots'
 // article on payload and centre of gravity by URScript; docs/export.md.

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "formats.hpp"
+#include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-#include "posewright/outputs/format_text.hpp"
 
 // Form: NX100 manual HW0481924, section 4.1; docs/export.md.
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "posewright/programs/program_document.hpp"
+
+namespace posewright::programs {
+
+/// How a language writes a pose, and which of the robot's joints it means by it.
+struct PoseForm {
+  std::vector<std::string> values;  ///< three in mm, then those of the orientation, deg unless they are a quaternion
+  int turn_decimals = 5;
+  Eigen::Isometry3d (*place)(const std::vector<double>& values) = nullptr;
+  std::vector<double> (*written)(const Eigen::Isometry3d& X) = nullptr;
+
+  std::vector<std::string> status;  ///< numbers that say which joints
+  std::vector<long> masks{};        ///< bits of each that are of the six axes; 0: the whole number
+  std::size_t required = 0;         ///< so many of them must be met; others decide between what is left
+  std::vector<long> (*status_of)(const ArmStand& stand, const std::array<double, 6>& axes) = nullptr;
+  std::string (*status_text)(std::size_t which, long value) = nullptr;
+
+  /// The listed number with the bits of the six axes as they are now.
+  long merged(std::size_t which, long listed, long now) const;
+  bool meets(std::size_t which, double listed, long now) const;
+};
+
+const PoseForm& krl_pose();
+const PoseForm& rapid_pose();
+const PoseForm& tp_pose();
+
+}  // namespace posewright::programs

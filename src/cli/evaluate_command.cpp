@@ -2,7 +2,9 @@
 
 #include "command.hpp"
 #include "planners/registry.hpp"
+#include "posewright/controller/known_controllers.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/lists/pose_document.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/evaluation.hpp"
@@ -30,9 +32,29 @@ po::options_description evaluate_command_options() {
        help_with_default("feasible configurations to compare with", default_candidates).c_str())  //
       ("restarts", text("k"), "starts of a search (10)")                                          //
       ("time-limit", text("S"), "stop searching after S seconds")                                 //
-      ("from", text("FORMAT"), ("format of POSES: " + readable_format_names()).c_str());
+      ("from", text("FORMAT"),
+       ("format of POSES: " + readable_format_names() + "; of programs: " + program_format_names()).c_str())  //
+      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")     //
+      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3");
   options.add(problem_options());
   return options;
+}
+
+PoseList given_poses(const po::variables_map& values, const std::string& file,
+                     const std::vector<Coordinate>& coordinates) {
+  DocumentOptions options;
+  options.format = text_of(values, "from");
+  const std::string controller = text_of(values, "controller");
+  const auto coupling = number_between(values, "coupling", -10, 10);
+  if (!is_program_format(options.format) || options.format == "joint-trajectory") {
+    if (!controller.empty() || coupling)
+      throw InputError({}, "--controller and --coupling are for programs", "--from " + program_format_names());
+    return read_poses(file, coordinates, options.format);
+  }
+  if (!controller.empty()) options.controller = controller_settings(controller);
+  if (coupling) options.coupling = *coupling;
+  PoseList poses = program_poses(file, coordinates, options);
+  return poses;
 }
 
 int run_evaluate(const po::variables_map& values, const Words& positional) {
@@ -43,7 +65,7 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);
   const std::string from = text_of(values, "from");
-  if (!from.empty()) find_readable_format(from);
+  if (!from.empty() && !is_program_format(from)) find_readable_format(from);
   evaluate.plan.variant = text_of(values, "variant");
   evaluate.plan.truth = text_of(values, "truth");
   evaluate.plan.criterion = text_of(values, "criterion");
@@ -53,7 +75,7 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   evaluate.plan.seed = common.seed;
   evaluate.plan.threads = common.threads;
   const Problem problem = given_problem(positional[0], values);
-  const PoseList poses = read_poses(positional[1], pose_coordinates(problem, evaluate.plan.variant), from);
+  const PoseList poses = given_poses(values, positional[1], pose_coordinates(problem, evaluate.plan.variant));
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return evaluate_problem(problem, poses, evaluate, monitor);
   });

@@ -309,6 +309,7 @@ class ProgramPoses : public PoseDocument {
     poses_.configurations.push_back(std::move(q));
     poses_.ids.push_back(int(poses_.configurations.size()));
     poses_.lines.push_back(point.line);
+    poses_.own_ids.push_back(point.measured);
     branches_.push_back(std::move(stand));
     return true;
   }
@@ -416,7 +417,7 @@ ProgramRobot robot_of(const std::vector<Coordinate>& coordinates, const Document
   return robot;
 }
 
-/// Programs beside a file of points that have the motions to them: NAME.src of NAME.dat, every .pgx of a .dtx.
+/// Files beside one of a program that belong to it: NAME.src and NAME.dat, .dtx and .pgx.
 std::vector<DocumentFile> companions(const std::filesystem::path& file) {
   std::vector<DocumentFile> found;
   const auto small = [](std::string text) {
@@ -424,19 +425,39 @@ std::vector<DocumentFile> companions(const std::filesystem::path& file) {
     return text;
   };
   const std::string ending = small(file.extension().string());
-  if (ending != ".dat" && ending != ".dtx") return found;
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::error_code code;
   for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
     const std::filesystem::path& other = entry.path();
     const std::string kind = small(other.extension().string());
-    const bool wanted = ending == ".dtx"
-                            ? kind == ".pgx"
-                            : kind == ".src" && small(other.stem().string()) == small(file.stem().string());
+    const bool same_stem = small(other.stem().string()) == small(file.stem().string());
+    const bool wanted =
+        other.filename() != file.filename() &&
+        ((ending == ".dtx" && kind == ".pgx") || (ending == ".pgx" && (kind == ".dtx" || kind == ".pgx")) ||
+         (same_stem && ((ending == ".dat" && kind == ".src") || (ending == ".src" && kind == ".dat"))));
     if (wanted && entry.is_regular_file(code))
       found.push_back({read_file(other, document_size_limit), (file.parent_path() / other.filename()).string()});
   }
   return found;
+}
+
+/// If remarks number poses, other points are on the way: the numbered ones stay, in the order of their numbers.
+void keep_numbered(PoseList& list) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < list.own_ids.size(); ++k)
+    if (list.own_ids[k] > 0) order.push_back(k);
+  if (order.empty()) return list.own_ids.clear();
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return list.own_ids[a] < list.own_ids[b]; });
+  PoseList kept;
+  kept.name = list.name;
+  kept.notes = list.notes;
+  for (const std::size_t k : order) {
+    kept.configurations.push_back(list.configurations[k]);
+    kept.own_ids.push_back(list.own_ids[k]);
+    kept.lines.push_back(list.lines[k]);
+  }
+  list = std::move(kept);
 }
 
 }  // namespace
@@ -483,6 +504,31 @@ std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std:
       if (std::none_of(files.begin(), files.end(), same)) files.push_back(std::move(other));
     }
   return parse_documents(files, coordinates, options);
+}
+
+PoseList program_poses(const std::filesystem::path& path, const std::vector<Coordinate>& coordinates,
+                       const DocumentOptions& options) {
+  std::vector<DocumentFile> files = {{read_file(path, document_size_limit), path.string()}};
+  for (DocumentFile& other : companions(path)) files.push_back(std::move(other));
+  PoseList all;
+  all.name = path.string();
+  std::size_t open = 0;
+  for (const auto& document : parse_documents(files, coordinates, options)) {
+    const PoseList& own = document->poses();
+    const ProgramAccount& account = *document->account();
+    open += account.count(Treatment::not_compensated) + account.count(Treatment::not_understood);
+    all.configurations.insert(all.configurations.end(), own.configurations.begin(), own.configurations.end());
+    all.own_ids.insert(all.own_ids.end(), own.own_ids.begin(), own.own_ids.end());
+    all.lines.insert(all.lines.end(), own.lines.begin(), own.lines.end());
+  }
+  if (open > 0)
+    all.notes.push_back(
+        fmt::format("{}: {} lines are not read as poses: posewright compensate lists them", all.name, open));
+  keep_numbered(all);
+  if (all.configurations.empty())
+    throw InputError({path.string(), 0}, "has no poses by joint values", "a program that moves to them");
+  for (std::size_t k = 0; k < all.configurations.size(); ++k) all.ids.push_back(int(k) + 1);
+  return all;
 }
 
 }  // namespace posewright

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -65,6 +66,7 @@ class Accountant {
   std::vector<Accounted> run() {
     for (const ReadProgram& program : programs_) {
       count_uses(program);
+      number_poses(program);
       frames_.add(*program.language, program.reading);
       if (!program.reading.displaced.empty()) displaced_.try_emplace(scope_of(program), program.reading.displaced);
     }
@@ -93,8 +95,44 @@ class Accountant {
     }
   }
 
+  /// "pose 3" in a remark is the number of the pose that the next motion leads to.
+  void number_poses(const ReadProgram& program) {
+    std::vector<std::pair<int, int>> remarks;  // lines and numbers
+    int line = 1;
+    const std::string_view text = program.file->text;
+    for (std::size_t begin = 0; begin < text.size(); ++line) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      if (const int number = pose_of_remark(text.substr(begin, end - begin)); number > 0)
+        remarks.emplace_back(line, number);
+      begin = end + 1;
+    }
+    for (const auto& [at, number] : remarks) {
+      const Use* next = nullptr;
+      for (const Use& use : program.reading.uses)
+        if (use.role == Role::pose && use.line > at && (next == nullptr || use.line < next->line)) next = &use;
+      if (next == nullptr) continue;
+      if (next->point) numbers_[inline_key(program, *next->point)] = number;
+      else numbers_[element_key(program, next->name, next->index)] = number;
+    }
+  }
+
+  /// The number in ";pose 3", "! pose 3", "# pose 3", "'pose 3", "// pose 3", "  12:  !pose 3 ;"; 0: another line.
+  static int pose_of_remark(std::string_view line) {
+    const std::size_t word = line.find("pose ");
+    if (word == std::string_view::npos || word == 0) return 0;
+    const std::size_t first = line.find_first_not_of("0123456789: \t;!#'/");
+    return first == word ? std::atoi(std::string(line.substr(word + 5, 9)).c_str()) : 0;
+  }
+
+  std::string element_key(const ReadProgram& program, const std::string& name, std::optional<long> index) const {
+    return key(program, name) + '\n' + (index ? std::to_string(*index) : "");
+  }
+  static std::string inline_key(const ReadProgram& program, std::size_t point) {
+    return program.file->name + '\n' + std::to_string(point);
+  }
+
   Accounted points_of(const ReadProgram& program) {
-    Accounted result{{program.file->name, program.language->format, {}}, {}};
+    Accounted result{{program.file->name, program.language->format, {}}, {}, {}};
     const Reading& reading = program.reading;
     result.frames.resize(reading.points.size());
     std::vector<const Use*> inline_use(reading.points.size(), nullptr);
@@ -102,6 +140,9 @@ class Accountant {
       if (use.point) inline_use[*use.point] = &use;
     for (std::size_t i = 0; i < reading.points.size(); ++i) {
       const FoundPoint& point = reading.points[i];
+      const auto number = numbers_.find(inline_use[i] != nullptr ? inline_key(program, i)
+                                                                 : element_key(program, point.name, point.index));
+      result.measured.push_back(number == numbers_.end() ? 0 : number->second);
       Verdict verdict;
       std::string what = point.name, target;
       if (const Use* use = inline_use[i]) {
@@ -246,6 +287,7 @@ class Accountant {
   const ProgramRobot& robot_;
   FrameValues frames_;
   std::map<std::string, std::string> displaced_;  ///< scopes, and by what
+  std::map<std::string, int> numbers_;            ///< of poses, by element or place in a file
   std::map<std::string, Tally> tallies_;
   std::set<std::string> moving_;  ///< scopes with motions
 };

@@ -20,6 +20,8 @@ struct ReadProgram {
 struct Accounted {
   ProgramAccount account;                           ///< `point` of an entry is an index among the points of the reading
   std::vector<std::optional<PlacedFrames>> frames;  ///< one a point of the reading: of poses that are compensated
+  std::vector<int>
+      measured;  ///< one a point: number of the pose where a remark, as programs of `export` have it, says so
 };
 
 /// What becomes of every point and motion, by the uses of all programs.

@@ -40,6 +40,7 @@ const Grammar& krl_grammar() {
   static const char* external = "moves external axes alone";
   static const Grammar rules = {{'{', '[', true, true},
                                 true,
+                                1,
                                 {{"PTP"},
                                  {"SPTP"},
                                  {"LIN"},

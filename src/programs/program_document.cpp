@@ -45,6 +45,7 @@ class Document : public ProgramDocument {
       if (found < 0 || entry.treatment != Treatment::compensated) continue;
       entry.point = int(points_.size());
       add(program_.reading.points[std::size_t(found)], accounted.frames[std::size_t(found)]);
+      points_.back().measured = accounted.measured[std::size_t(found)];
     }
   }
 
@@ -155,7 +156,7 @@ class Document : public ProgramDocument {
   }
 
   void add(const FoundPoint& point, const std::optional<PlacedFrames>& frames) {
-    Point added{point.line, point.name, {}};
+    Point added{point.line, point.name};
     std::vector<double> values;
     if (frames) {
       const PoseForm& form = program_.language->pose();
@@ -229,6 +230,13 @@ std::vector<std::unique_ptr<ProgramDocument>> read_programs(const std::vector<Pr
 }
 
 bool is_program_format(const std::string& format) { return programs::language_of(format) != nullptr; }
+
+std::string program_format_names() {
+  std::string names;
+  for (const programs::Language& language : programs::languages())
+    if (language.format != "joint-trajectory") names += (names.empty() ? "" : ", ") + language.format;
+  return names;
+}
 
 std::string program_format_of_ending(std::string_view ending) {
   for (const programs::Language& language : programs::languages())

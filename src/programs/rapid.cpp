@@ -43,6 +43,7 @@ const Grammar& rapid_grammar() {
   static const char* external = "moves external axes alone";
   static const Grammar rules = {{'[', '{', false, false},
                                 true,
+                                1,
                                 {{"MOVEABSJ"},
                                  {"MOVEJ"},
                                  {"MOVEL"},

@@ -1,6 +1,7 @@
 #include "reading.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace posewright::programs {
 namespace {
@@ -42,6 +43,8 @@ void Collector::target(const Motion& motion, const Expression& to, Use use) {
     use.role = Role::standing;
   } else if (to.is(Kind::name)) {
     use.name = to.word;
+    if (to.items.size() == 1 && to.items[0].is(Kind::constant))
+      use.index = std::lround(std::clamp(to.items[0].value, -1e9, 1e9));
     if (to.component) unclear("moves to a part of " + to.word);
   } else if (to.is(Kind::list) || to.word == "p") {
     auto point = grammar_.as_point(to, source_);
@@ -85,6 +88,7 @@ bool Collector::define(std::string_view name, const Expression& value, int line)
       if (auto point = grammar_.as_point(item, source_)) {
         point->name = name;
         point->line = item.line;
+        point->index = grammar_.first_index + long(reading.points.size() - before);
         reading.points.push_back(*point);
       }
   return reading.points.size() > before;

@@ -37,9 +37,10 @@ struct FoundPoint {
   std::string name{};  ///< empty: it stands in a motion
   Form form = Form::joints;
   AxisValues axes{};
-  std::string why{};    ///< it is unclear
-  FramePair frames{};   ///< where the point itself names them
-  std::string label{};  ///< what people call it, where its name is a number
+  std::string why{};            ///< it is unclear
+  FramePair frames{};           ///< where the point itself names them
+  std::optional<long> index{};  ///< of an element of an array, as motions count them
+  std::string label{};          ///< what people call it, where its name is a number
 };
 
 /// What a motion, or another instruction, does with a point.
@@ -63,7 +64,8 @@ struct Use {
   std::optional<std::size_t> point{};  ///< that stands in the instruction itself
   std::string why{};                   ///< for roles other and unclear
   FramePair frames{};
-  bool moves = true;  ///< false: a name within an instruction that is listed by itself
+  std::optional<long> index{};  ///< of the element of an array, where it is a number
+  bool moves = true;            ///< false: a name within an instruction that is listed by itself
 };
 
 /// Where a remark goes, and how it is written there.
@@ -102,6 +104,7 @@ struct Motion {
 struct Grammar {
   ExpressionRules expressions;
   bool capitals = true;  ///< words are the same in capitals
+  long first_index = 0;  ///< of an array
   std::vector<Motion> motions;
   std::vector<std::string_view> offsets;   ///< functions of a point and what is added to it
   std::vector<std::string_view> standing;  ///< words for where the robot is

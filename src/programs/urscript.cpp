@@ -32,6 +32,7 @@ const Grammar& urscript_grammar() {
   static const Grammar rules = {
       {'[', '[', false, true},
       false,
+      0,
       {{"movej"},
        {"movel"},
        {"movep"},

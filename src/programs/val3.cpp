@@ -1,6 +1,7 @@
 // VAL 3: points are in the .dtx file, <Value key="0" j1="0" … j6="0"/>; the programs beside it (.pgx) move to them.
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "reading.hpp"
 
@@ -13,6 +14,7 @@ using Form = FoundPoint::Form;
 const Grammar& val3_grammar() {
   static const Grammar rules = {{'{', '[', false, false},
                                 false,
+                                0,
                                 {{"movej"}, {"movel"}, {"movec", Role::pose, 0, 2}},
                                 {"appro", "compose"},
                                 {"herej", "here"},
@@ -93,6 +95,7 @@ class Val3 {
     FoundPoint point{line, name, pose ? Form::pose : Form::joints};
     static const std::vector<std::string> of_pose = {"x", "y", "z", "rx", "ry", "rz"};
     for (const Attribute& a : attributes) {
+      if (a.name == "key") point.index = std::atol(source_.text.substr(a.begin, a.end - a.begin).c_str());
       const bool wanted = pose ? std::find(of_pose.begin(), of_pose.end(), a.name) != of_pose.end()
                                : a.name.size() == 2 && a.name[0] == 'j' && is_digit(a.name[1]);
       if (!wanted) continue;

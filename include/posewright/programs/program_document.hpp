@@ -76,8 +76,9 @@ class ProgramDocument {
  public:
   struct Point {
     int line = 0;
-    std::string name;            ///< as the program calls it; empty: it has none
-    std::vector<double> joints;  ///< SI, the robot's signs and zeros; empty: it is given as a pose
+    std::string name;              ///< as the program calls it; empty: it has none
+    std::vector<double> joints{};  ///< SI, the robot's signs and zeros; empty: it is given as a pose
+    int measured = 0;              ///< number of the pose, where a remark of the program says it; 0: none does
     Eigen::Isometry3d X_BaseTip = Eigen::Isometry3d::Identity();  ///< of a pose, in the robot's base
     bool is_pose() const { return joints.empty(); }
   };
@@ -106,6 +107,8 @@ std::vector<std::unique_ptr<ProgramDocument>> read_programs(const std::vector<Pr
 
 /// Whether a format is that of a program.
 bool is_program_format(const std::string& format);
+/// Their formats, for help and messages.
+std::string program_format_names();
 /// Format by the ending of a file's name; empty: it is no program's.
 std::string program_format_of_ending(std::string_view ending);
 

@@ -1,0 +1,63 @@
+"""Programs that `export` writes are judged by `evaluate` as the plan they were made from: read_back.py PROGRAM.
+
+A plan and a route of an arm, in all languages of programs. The route's program has home and points on the way, which are no poses.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+JOINTS = [("0 0 0.4", "0 0 1"), ("0.1 0 0.1", "0 1 0"), ("0.5 0 0", "0 1 0"), ("0.1 0 0.05", "1 0 0"), ("0.4 0 0", "0 1 0"), ("0.1 0 0", "1 0 0")]
+PROBLEM = """posewright: 1
+robot: {urdf: arm.urdf, base: l0, tip: l6}
+measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}
+variants: {all: {parameters: auto}}
+workspace: {collision: {self: false, obstacles: [{name: post, box: [0.1, 0.1, 2], at: [0.45, 0.3, 1]}, {name: other, box: [0.1, 0.1, 2], at: [0.4, -0.4, 1]}]}}
+design: {poses: 14, candidates: 60, method: greedy, restarts: 1}
+"""
+YASKAWA = "sign: [1, -1, 1, -1, 1, 1]\nzero_deg: [0, 5, 0, 0, 0, 0]\npulses_per_degree: [1435.1, 1435.1, 1300.5, 1024, 1024, 568.9]\ncoupling: 0\n"
+FORMATS = {"kuka-krl": ("ROUTE.src", []), "abb-rapid": ("ROUTE.mod", ["--coupling", "-1"]), "fanuc-tp": ("ROUTE.ls", ["--coupling", "1"]),
+           "urscript": ("ROUTE.script", []), "yaskawa-inform": ("ROUTE.JBI", ["--controller", "yaskawa.yaml"]), "staubli-val3": ("ROUTE", [])}
+
+
+def run(*words):
+    result = subprocess.run([PROGRAM, *words], cwd=FOLDER, capture_output=True, text=True)
+    assert result.returncode == 0, (words, result.stderr)
+    return result.stdout
+
+
+def scores(file, *words):
+    return json.loads(run("evaluate", "p.yaml", file, "--candidates", "40", "--json", *words))["scores"]
+
+
+def difference(a, b):
+    """Of the criteria's values, relative; efficiencies are those of a search."""
+    assert [x["criterion"] for x in a] == [x["criterion"] for x in b]
+    return max(abs(x["value"] - y["value"]) / abs(x["value"]) for x, y in zip(a, b))
+
+
+with tempfile.TemporaryDirectory() as name:
+    FOLDER = pathlib.Path(name)
+    links = "".join(f'<link name="l{k}"><collision><geometry><sphere radius="0.03"/></geometry></collision></link>' for k in range(7))
+    joints = "".join(f'<joint name="j{k + 1}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/><origin xyz="{o}"/><axis xyz="{a}"/>'
+                     '<limit lower="-2.2" upper="2.2" velocity="1" effort="1"/></joint>' for k, (o, a) in enumerate(JOINTS))
+    (FOLDER / "arm.urdf").write_text(f'<robot name="arm">{links}{joints}</robot>')
+    (FOLDER / "p.yaml").write_text(PROBLEM)
+    (FOLDER / "yaskawa.yaml").write_text(YASKAWA)
+    run("plan", "p.yaml", "-o", "plan.json", "--poses-csv", "-")
+    run("route", "plan.json", "--from-home", "-o", "route.json")
+    route = json.loads((FOLDER / "route.json").read_text())
+    via = sum(len(motion["points"]) - 2 for motion in route["motions"])
+    assert via > 0, "no point on the way"
+    wanted = scores("route.json")
+    for language, (file, words) in FORMATS.items():
+        run("export", "route.json", "--to", language, "-o", file, "--unchecked", *words)
+        made = next(p for p in ([FOLDER / file] if "." in file else (FOLDER / file).glob("**/*.dtx")))
+        got = scores(str(made.relative_to(FOLDER)), "--from", language, *words)
+        off = difference(wanted, got)
+        print(f"{language}: scores differ by {off:.1e}")
+        assert 0 < off < 1e-4, (wanted, got)
+    print(f"{len(route['poses'])} poses, {via} points on the way")

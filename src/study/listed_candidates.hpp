@@ -11,7 +11,7 @@ namespace posewright {
 /// A list with readings of the problem's instrument was measured: the robot was there, so limits and cell reject
 /// nothing and a note says which poses they would. Any other list is still to be measured: what no variant's workspace
 /// allows is rejected, counted by its reason and named in a note; a hair beyond a limit is the limit.
-/// @param prepared  with its variants
+/// @param study  with its variants
 /// @param list  read without limits
 /// Throws CannotDo if nothing is left.
 void take_listed_candidates(Study& study, const Problem& problem, const PoseList& list);

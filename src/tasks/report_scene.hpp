@@ -12,7 +12,7 @@ namespace posewright {
 /// Fills what the report draws: bodies, stations, targets, and the robot at every pose and, along a route, between
 /// them.
 /// @param poses  configuration of each pose of the plan by its id
-/// @param route  its file's text; empty: none
+/// @param route_file  empty: there is no route
 /// Throws InputError for a route that names poses or coordinates that are not there.
 void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file);

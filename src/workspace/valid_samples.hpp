@@ -14,7 +14,6 @@ namespace posewright {
 /// their own nor why a state is not valid.
 class SamplingSession {
  public:
-  /// @param values  of discrete coordinates: samplers leave them as they are
   SamplingSession(Random& random, std::size_t reasons);
   ~SamplingSession();
   SamplingSession(const SamplingSession&) = delete;
@@ -24,7 +23,7 @@ class SamplingSession {
   static SamplingSession* current();
 
   Random& random() { return random_; }
-  /// Discrete coordinates keep what they have here.
+  /// Values of discrete coordinates: samplers leave them as they are.
   std::vector<double> fixed;
 
   void drawn();

@@ -57,7 +57,7 @@ struct Route {
   double reading_seconds() const;
 };
 
-/// Schema posewright/route/1 (docs/route-file.md).
+/// Schema posewright/route/1 (docs/cell.md).
 std::string route_json(const Route& route, const std::vector<WrittenWith>& files = {});
 /// The table a person reads.
 std::string route_summary(const Route& route);

@@ -48,7 +48,10 @@ class ConfigurationSpace {
     /// @param slope  its derivative by J (r × m), J the block as block() writes it at q
     /// @param gradient  size of the axes; what it says of choices means nothing
     /// @return false if derivatives are not known here: BlockGradient then takes differences of blocks
-    virtual bool gradient(std::span<const double>, const BlockArray::RowMatrix&, std::span<double>) { return false; }
+    virtual bool gradient(std::span<const double> /*q*/, const BlockArray::RowMatrix& /*slope*/,
+                          std::span<double> /*gradient*/) {
+      return false;
+    }
   };
 
   /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.

@@ -8,13 +8,14 @@
 
 namespace posewright {
 
-/// Configurations of the problem's test poses and their weights (empty: all 1): as written, from a file, evenly through
-/// the workspace, or reached for points of a box or a file.
-/// @param seen  the problem with an instrument that reads the tip's pose
+/// Configurations of test poses and their weights (empty: all 1).
 struct TestConfigurations {
   std::vector<std::vector<double>> configurations;
   std::vector<double> weights;
 };
+/// The problem's test poses: as written, from a file, evenly through the workspace, or reached for points of a box or a
+/// file.
+/// @param seen  the problem with an instrument that reads the tip's pose
 TestConfigurations test_configurations(const Problem& seen, const IdentificationModel& model, std::uint64_t seed);
 
 }  // namespace posewright

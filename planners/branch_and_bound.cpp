@@ -99,7 +99,8 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
     // With reserve each set costs N factorisations.
     if (!(sets <= (task.criterion->of_information_alone() ? most_enumerated : 0.01 * most_enumerated)))
       throw CannotDo("criterion " + task.criterion->name() +
-                     " has no bound: all sets would have to be tried, and there are too many");
+                     " gives parts of the choice no bound: every set would have to be tried, and there are too many; "
+                     "other methods state how near the best their plan is");
     design.optimal = Enumeration(task, monitor, design).run();
   }
   design.stopped = !design.optimal;

@@ -1,7 +1,9 @@
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/reliance.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
 
@@ -40,6 +42,7 @@ Json certificate_json(const Plan& plan) {
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
                  {"method", c.workspace->method},
                  {"proved", c.workspace->proved},
+                 {"within", c.workspace->within},
                  {"limits", c.workspace->limits},
                  {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)},
                  {"boxes", c.workspace->boxes},
@@ -101,7 +104,10 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
 
 nlohmann::ordered_json conditions_json(const Conditions& conditions) {
   Json json = Json::object();
-  for (const auto& [name, choice] : conditions) json[name] = choice;
+  for (const auto& [name, choice] : conditions) {
+    const auto numbers = numbers_in(choice);
+    json[name] = numbers && numbers->size() == 1 ? Json(numbers->front()) : Json(choice);
+  }
   return json;
 }
 

@@ -40,20 +40,18 @@ std::string headline(const Plan& plan) {
   return text;
 }
 
-/// ", a, b and c": what comes after something else.
+/// " a, b and c".
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i + 1 < names.size() ? ", " : " and ") + names[i];
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? " " : i + 1 < names.size() ? ", " : " and ") + names[i];
   return text;
 }
 
-std::string workspace_text(const Certificate::Workspace& w, bool parallel) {
+std::string workspace_text(const Certificate::Workspace& w) {
   if (w.proved)
-    return fmt::format("Proved {}, between the candidates too: at least {} of the best.\n",
-                       parallel           ? "within the actuators' travel"
-                       : w.limits.empty() ? "over the joint limits"
-                                          : "within the limits of joints" + listed(w.limits),
-                       proved_percent(w.efficiency));
+    return fmt::format("Proved {}{}, between the candidates too: at least {} of the best.\n", w.within,
+                       w.limits.empty() ? "" : " and the limits of" + listed(w.limits), proved_percent(w.efficiency));
   const std::string why = w.loose_bound
                               ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)
                               : "no proof: " + w.why_not;
@@ -82,8 +80,7 @@ std::string certificate_text(const Plan& plan) {
                         plan.minimum_distance.empty() ? "" : " that keeps its poses apart",
                         plan.reserve ? "keeps more when its worst pose is lost: all others are ruled out"
                                      : "is better: every other one is ruled out");
-  const bool parallel = !plan.poses.empty() && !plan.poses.front().actuators.empty();
-  return c.workspace ? text + workspace_text(*c.workspace, parallel) : text;
+  return c.workspace ? text + workspace_text(*c.workspace) : text;
 }
 
 std::string variants_text(const Plan& plan) {

@@ -133,7 +133,8 @@ class SequenceReader {
     pose.station = label_of(json, "station", place_);
     if (json.contains("conditions"))
       for (const auto& [name, choice] : json["conditions"].items())
-        pose.conditions.emplace_back(name_of(name, place_), name_of(choice, place_));
+        pose.conditions.emplace_back(name_of(name, place_), choice.is_number() ? fmt::format("{}", choice.get<double>())
+                                                                               : name_of(choice, place_));
     if (!sequence_.poses.empty() &&
         !std::equal(pose.conditions.begin(), pose.conditions.end(), sequence_.poses.front().conditions.begin(),
                     sequence_.poses.front().conditions.end(),

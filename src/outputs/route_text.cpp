@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "nearest.hpp"
+#include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"

@@ -10,7 +10,6 @@ namespace posewright {
 nlohmann::ordered_json sight_json(const TargetSight& sight);
 /// Of a parallel robot, by name.
 nlohmann::ordered_json actuators_json(const PlannedPose& pose);
-nlohmann::ordered_json conditions_json(const Conditions& conditions);
 /// null if there is none
 nlohmann::ordered_json nearest_json(const std::optional<BodyDistance>& nearest);
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);

@@ -87,7 +87,8 @@ bool prove_by_enclosure(WorkspaceBound& result, const ConfigurationSpace& space,
   proof.boxes = most.boxes;
   if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
-    proof.why_not = most.stopped ? "stopped" : "parts of the workspace near which the robot cannot be enclosed";
+    proof.why_not =
+        most.stopped ? WorkspaceProof::cut_short : "parts of the workspace near which the robot cannot be enclosed";
     return true;
   }
   proof.max_ratio = std::max(1.0, (most.bound + extra) / result.degree);

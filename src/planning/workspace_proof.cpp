@@ -165,7 +165,7 @@ void take(const BoxSearchResult& most, const HarmonicForms& forms, const Configu
   proof.boxes = most.boxes;
   if (!most.complete) proof.ended = most.stopped ? "stopped by time" : "stopped there";
   if (!std::isfinite(most.bound)) {
-    proof.why_not = most.stopped     ? "stopped"
+    proof.why_not = most.stopped     ? WorkspaceProof::cut_short
                     : most.bound > 0 ? "an instrument that may stand within the arm's reach"
                                      : "limits that forbid every configuration";
     return;
@@ -187,7 +187,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
                      const WorkspaceBoundOptions& options, const Monitor& monitor) {
   WorkspaceProof& proof = result.proof;
   proof = {};
-  if (result.stopped || monitor.should_stop()) proof.why_not = "stopped";
+  if (result.stopped || monitor.should_stop()) proof.why_not = WorkspaceProof::cut_short;
   else if (options.proof.seconds == 0.0) proof.why_not = "not asked for";
   if (!proof.why_not.empty()) return;
   if (prove_by_enclosure(result, space, candidates, rows, options, monitor)) return;
@@ -203,7 +203,8 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   if (options.proof.seconds && !boxes_alone) own.end_within(*options.proof.seconds);
   const Functions functions = functions_of(approach, result.factor, options, own);
   if (!functions.back()->defined()) {
-    proof.why_not = own.should_stop() ? "stopped" : "the sensitivity is no polynomial of the joints' cosines and sines";
+    proof.why_not = own.should_stop() ? WorkspaceProof::cut_short
+                                      : "the sensitivity is no polynomial of the joints' cosines and sines";
     return;
   }
   if (options.proof.seconds && boxes_alone) own.end_within(*options.proof.seconds);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
@@ -87,7 +88,7 @@ Json change_json(const ListChange& change) {
                              {"configuration", values},
                              {"load_case", pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case)},
                              {"station", pose.station.empty() ? Json(nullptr) : Json(pose.station)}});
-    for (const auto& [name, choice] : pose.conditions) json["poses"].back()["conditions"][name] = choice;
+    if (!pose.conditions.empty()) json["poses"].back()["conditions"] = conditions_json(pose.conditions);
   }
   return json;
 }

@@ -122,7 +122,7 @@ Json pose_json(const PlannedPose& pose) {
   json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
   json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
   json["listed"] = pose.listed ? Json{{"id", pose.listed->id}, {"line", pose.listed->line}} : Json(nullptr);
-  for (const auto& [name, choice] : pose.conditions) json["conditions"][name] = choice;
+  if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
   return json;
 }
 

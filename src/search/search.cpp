@@ -401,11 +401,12 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
 
 void certify(Certificate& certificate, double phi, double degree) {
   if (!certificate.proved) return;
-  // Below 1e-9 the difference is that of two ways to compute one number.
+  // Below 1e-9 the difference is that of two ways to compute one number. A list may exceed the bound: it may repeat
+  // poses, or have some nearer to the limits than any that is proposed.
   const double short_of = certificate.bound - phi;
-  certificate.efficiency = short_of < 1e-9 ? 1.0 : std::exp(-short_of / degree);
+  certificate.efficiency = std::abs(short_of) < 1e-9 ? 1.0 : std::exp(-short_of / degree);
   if (certificate.workspace)
-    certificate.workspace->efficiency = std::min(1.0, std::exp((phi - certificate.workspace->bound) / degree));
+    certificate.workspace->efficiency = std::exp((phi - certificate.workspace->bound) / degree);
   if (certificate.workspace && certificate.workspace->loose_bound)
     certificate.workspace->loose_efficiency = std::exp((phi - *certificate.workspace->loose_bound) / degree);
 }

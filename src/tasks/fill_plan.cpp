@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "posewright/criterion/registry.hpp"
+#include "posewright/outputs/table.hpp"
 #include "posewright/problem/design_words.hpp"
 
 namespace posewright {
@@ -107,6 +108,28 @@ std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem
     if (margin > 0) margins.push_back({all.name, all.unit, margin, !asked});
   }
   return margins;
+}
+
+std::string proposed_within(const Workspace& workspace, const IdentificationModel& model) {
+  std::string text =
+      model.actuators().empty() ? "within the joint limits" : "within the platform's ranges and the actuators' travel";
+  std::string_view lead = " less ";
+  for (const std::string unit : {"rad", "m"}) {
+    double least = INFINITY, most = 0;
+    for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
+      const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
+      if (all.periodic || all.choice() || all.unit != unit) continue;
+      const double margin = std::min(inner.lower - all.lower, all.upper - inner.upper);
+      least = std::min(least, margin);
+      most = std::max(most, margin);
+    }
+    if (most <= 0) continue;
+    text += lead;
+    if (least < most) text += shown_value(least, unit) + " to ";
+    text += shown_value(most, unit);
+    lead = " and ";
+  }
+  return text;
 }
 
 CellNotes cell_notes(const Cell& cell) {

@@ -36,6 +36,8 @@ std::optional<BodyDistance> body_distance(const std::optional<Separation>& found
 std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
 /// What proposed configurations keep from the limits in force.
 std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem);
+/// "within the joint limits less 1.5 to 2 deg": all configurations that are proposed, in words.
+std::string proposed_within(const Workspace& workspace, const IdentificationModel& model);
 CellNotes cell_notes(const Cell& cell);
 
 }  // namespace posewright

@@ -200,6 +200,8 @@ class PlanSearch {
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     plan.certificate = found.certificate;
     certify(plan.certificate, phi, found.degree);
+    if (auto& whole = plan.certificate.workspace)
+      whole->within = proposed_within(*study_.first().workspace, *study_.first().model);
     // References of everything are none of the parameters'.
     if (!study_.first().everything_counts) fill_variants(plan, judgement, study_, found.references);
     fill_poses(plan, study_, chosen, found, judgement);

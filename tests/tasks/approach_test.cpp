@@ -94,6 +94,7 @@ TEST(Approach, EveryMotionOfARouteArrivesFromTheStatedSideByTheOverrun) {
   const std::string text = route_json(route);
   EXPECT_NO_THROW(checked_sequence(problem, parse_sequence(text, "route.json")));
   auto turned = parse_json(text);
+  EXPECT_TRUE(turned["poses"][3]["conditions"]["temperature"].is_number());
   auto& side = turned["poses"][3]["conditions"]["joint_a3.approach"];
   side = side == "rising" ? "falling" : "rising";
   try {

@@ -187,7 +187,7 @@ TEST_F(EnclosedProofs, NoPoseOfARandomPlatformIsBeyondTheBound) {
     if (stopped.why_not.empty()) {
       EXPECT_GE(stopped.max_ratio * 1e-2 * largest, largest * (1 - 1e-12));
     } else {
-      EXPECT_EQ(stopped.why_not, "stopped");
+      EXPECT_EQ(stopped.why_not, WorkspaceProof::cut_short);
     }
   }
   EXPECT_GT(judged, 0);

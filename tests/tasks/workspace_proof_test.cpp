@@ -36,14 +36,14 @@ using testing::HasSubstr;
 class WorkspaceProofs : public testing::Test {
  protected:
   Problem arm(const std::string& more = "", const std::string& parameters = "q1.offset, q2.offset, tool.x",
-              const std::string& workspace = "", const std::string& robot = "") {
+              const std::string& workspace = "", const std::string& robot = "", const std::string& margin = "0 deg") {
     folder_.write("arm.urdf", planar_arm_urdf);
     return read_problem(folder_.write("p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + robot +
                                                     "}\nmeasurement: {type: pose, components: [x, y], device: {type: "
                                                     "isotropic, "
                                                     "noise: {position: 0.1 mm, rotation: 1 deg}}" +
                                                     more + "}\nvariants:\n  only: {parameters: [" + parameters +
-                                                    "]}\nworkspace: {joints: {margin: 0 deg}" + workspace +
+                                                    "]}\nworkspace: {joints: {margin: " + margin + "}" + workspace +
                                                     "}\ndesign: {variant: only, poses: 6, candidates: 300}\n"));
   }
   /// The best of the places on a grid of both joints' limits is below what no plan exceeds, and not far.
@@ -71,7 +71,22 @@ TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBound) {
   ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
   expect_best_of_a_grid_below(problem, plan, 60, [](double, double) { return true; });
   EXPECT_LE(plan.log_det, plan.certificate.workspace->bound);
-  EXPECT_THAT(plan_summary(plan), HasSubstr("Proved over the joint limits"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the joint limits, between"));
+}
+
+TEST_F(WorkspaceProofs, TheSentenceNamesTheMarginWithoutWhichTheBoundDoesNotHold) {
+  const Problem problem = arm("", "q1.offset, q2.offset, tool.x", "", "", "60 deg");
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved) << plan.certificate.workspace->why_not;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the joint limits less 60 deg, between"));
+  const double inner = 2 - 60 * std::numbers::pi / 180 + 1e-9;
+  expect_best_of_a_grid_below(problem, plan, 98,
+                              [&](double q1, double q2) { return std::abs(q1) <= inner && std::abs(q2) <= inner; });
+  // Poses that turn the second joint to its limits have more.
+  PlanOptions options;
+  options.candidates_from = given_poses(problem, {{-2, -2}, {-2, 2}, {2, -2}, {2, 2}, {0, 1.5}, {0, -1.5}});
+  options.repeats = Repeats{Repeats::any_number};
+  EXPECT_GT(plan_problem(problem, options, Monitor{}).log_det, plan.certificate.workspace->bound);
 }
 
 TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBoundWhereTheJointsReadWorseThanTheInstrument) {
@@ -273,8 +288,8 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     WorkspaceBoundOptions options;
     options.proof.seconds = 0.25;
     prove_workspace(result, *space, 1000, rows, options, Monitor{});
-    // "stopped": a busy machine did not even interpolate it in time.
-    const bool stopped = result.proof.why_not == "stopped";
+    // Cut short: a busy machine did not even interpolate it in time.
+    const bool stopped = result.proof.why_not == WorkspaceProof::cut_short;
     if (stopped || (!kind.tight && result.proof.why_not.find("too high") != std::string::npos)) {
       ++refused;
       continue;
@@ -429,7 +444,7 @@ TEST_F(WorkspaceProofs, CountsTheToolBoxAndSaysSo) {
     const Plan plan = plan_problem(problem, {}, Monitor{});
     ASSERT_TRUE(plan.certificate.workspace && plan.certificate.workspace->proved)
         << plan.certificate.workspace->why_not;
-    EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the limits of joints and tool box"));
+    EXPECT_THAT(plan_summary(plan), HasSubstr("Proved within the joint limits and the limits of tool box"));
     expect_best_of_a_grid_below(problem, plan, 400, [](double q1, double q2) {
       const double x = std::cos(q1) + 0.8 * std::cos(q1 + q2), y = std::sin(q1) + 0.8 * std::sin(q1 + q2);
       return x >= 0.9 && x <= 1.2 && std::abs(y) <= 0.2;

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace posewright {
 
@@ -20,5 +22,8 @@ template <class T>
 nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
+
+/// Choices of a pose by name; a temperature is a number.
+nlohmann::ordered_json conditions_json(const std::vector<std::pair<std::string, std::string>>& conditions);
 
 }  // namespace posewright

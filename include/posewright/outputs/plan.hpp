@@ -93,7 +93,10 @@ struct Certificate {
     bool proved = false;                ///< no plan within the limits exceeds the bound; else a search says so
     std::string why_not;                ///< why it is not proved
     long boxes = 0;                     ///< that a proof took
-    std::vector<std::string> limits{};  ///< what a proof counts beside the joints' limits: "tool box"
+    std::vector<std::string> limits{};  ///< what a proof counts beside `within`: "tool box"
+    /// Where plans are that the bound is over: "within the joint limits less 2 deg", then what a proof counts beside
+    /// them.
+    std::string within{};
     /// A proof far below what the search says: it holds all the same.
     std::optional<double> loose_bound{};
     double loose_efficiency = 0.0;

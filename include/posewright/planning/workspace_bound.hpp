@@ -40,6 +40,8 @@ struct WorkspaceBoundOptions {
 
 /// Whether the largest d over the limits of the workspace is proved.
 struct WorkspaceProof {
+  /// The reason if it was stopped before it bounded every configuration.
+  static constexpr const char* cut_short = "its time ended first";
   std::string why_not;                ///< empty: it is proved
   double max_ratio = 1.0;             ///< no d within the limits exceeds it times h
   double bound = 0.0;                 ///< Φ(w) + h ln(max_ratio)

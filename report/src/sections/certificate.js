@@ -26,7 +26,7 @@ export function certificateSection(plan) {
         ['bound', number(w.bound, 8)],
         [`largest sensitivity ${w.proved ? 'that is possible' : 'found'}`, number(w.max_sensitivity_ratio, 6)],
         ['method', w.method],
-        ...(w.limits?.length > 0 ? [['counted beside the limits of joints', w.limits.join(', ')]] : []),
+        ...(w.limits?.length > 0 ? [['counted beside the limits of axes', w.limits.join(', ')]] : []),
         ...(w.proved ? [] : [['no proof because of', w.why_not_proved ?? 'an older program']]),
       ]
     : [];

@@ -94,11 +94,9 @@ export function proofMeaning(plan) {
 /** @param {any} plan */
 export function searched(plan) {
   const w = plan.certificate.workspace;
-  const limits = w?.limits ?? [];
-  const within =
-    limits.length > 0 ? `limits of ${['joints', ...limits.slice(0, -1)].join(', ')} and ${limits.at(-1)}` : 'joint limits';
+  const limits = w?.limits?.length > 0 ? ` and the limits of ${list(w.limits)}` : '';
   if (w?.proved)
-    return `Proved within the ${within}: over the whole workspace, between the candidates too, it reaches at least ${percentDown(w.efficiency, 1)} of the best.`;
+    return `Proved ${w.within}${limits}: between the candidates too, it reaches at least ${percentDown(w.efficiency, 1)} of the best.`;
   return w
     ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(Math.min(1, w.efficiency + 5e-4), 0)} of the best.`
     : '';

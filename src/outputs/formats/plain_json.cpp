@@ -1,6 +1,7 @@
 
 #include "../sight_json.hpp"
 #include "formats.hpp"
+#include "posewright/outputs/json_values.hpp"
 #include "posewright/support/json.hpp"
 #include "program.hpp"
 

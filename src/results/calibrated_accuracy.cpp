@@ -54,30 +54,34 @@ std::vector<std::string> improvement_cells(const AxisImprovement& a) {
 
 std::string axes_text(const Calibration& c) {
   if (c.axes.empty()) return "";
-  const bool required =
-      std::any_of(c.axes.begin(), c.axes.end(), [](const AxisImprovement& a) { return a.required.has_value(); });
   std::vector<std::string> header = joined({"error", "poses"}, improvement_columns());
   header.insert(header.end(), {"σ after", "mean after"});
   std::vector<Align> align(header.size(), Align::right);
   align[0] = align[1] = Align::left;
-  if (required) {
-    header.insert(header.end(), {"required", ""});
-    align.insert(align.end(), {Align::right, Align::left});
-  }
   Table table(header, align);
   for (const AxisImprovement& a : c.axes) {
     const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
     std::vector<std::string> row = joined({a.after.axis, a.poses}, improvement_cells(a));
     row.insert(row.end(), {shown(a.after.deviation), shown_to(a.after.mean, a.after.rms, a.after.unit)});
-    if (required)
-      row.insert(row.end(), {a.required ? shown(*a.required) : "", a.required ? (a.met() ? "met" : "NOT MET") : ""});
     table.row(std::move(row));
   }
   std::string text = fmt::format("\nErrors by axis, {} (before) and calibrated (after)\n",
                                  c.placed ? "with base, tool, targets and nuisance alone" : "nominal");
-  text += table.text();
-  if (required) text += "  required: of the largest error, the instrument's noise included\n";
-  return text;
+  return text + table.text();
+}
+
+std::string requirements_text(const Calibration& c) {
+  if (c.requirements.empty()) return "";
+  Table table({"tip", "poses", "largest error", "at pose", "by noise alone", "required", ""},
+              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::left});
+  for (const JudgedRequirement& r : c.requirements)
+    table.row({r.error.axis, r.poses, shown_value(r.error.largest, r.error.unit), std::to_string(r.error.pose),
+               shown_value(r.error.by_noise, r.error.unit), shown_value(r.required, r.error.unit),
+               r.met()               ? "met"
+               : r.hidden_by_noise() ? "hidden by the instrument's noise"
+                                     : "NOT MET"});
+  return "\nRequired of the tip, whose pose follows from all targets of a pose\n" + table.text() +
+         "  by noise alone: in 95 of 100 runs no error is larger\n";
 }
 
 std::string predicted_poses_text(const Calibration& c) {
@@ -168,9 +172,23 @@ Json axes_json(const Calibration& c) {
                     {"unit", a.after.unit},
                     {"count", a.after.count},
                     {"before", axis_json(a.before)},
-                    {"after", axis_json(a.after)},
-                    {"required", a.required ? Json(*a.required) : Json(nullptr)},
-                    {"met", a.required ? Json(a.met()) : Json(nullptr)}});
+                    {"after", axis_json(a.after)}});
+  return list;
+}
+
+Json requirements_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const JudgedRequirement& r : c.requirements)
+    list.push_back({{"poses", r.poses},
+                    {"axis", r.error.axis},
+                    {"unit", r.error.unit},
+                    {"count", r.error.count},
+                    {"largest", r.error.largest},
+                    {"largest_at_pose", r.error.pose},
+                    {"by_noise", r.error.by_noise},
+                    {"required", r.required},
+                    {"met", r.met()},
+                    {"hidden_by_noise", r.hidden_by_noise()}});
   return list;
 }
 

@@ -14,8 +14,8 @@ using Align = Table::Align;
 std::string verdict_of(const Calibration& c) {
   if (!c.fit.converged) return "not converged";
   if (c.verdict != Verdict::use_it) return verdict_word(c.verdict);
-  for (const AxisImprovement& a : c.axes)
-    if (!a.met()) return "a requirement is not met";
+  for (const JudgedRequirement& r : c.requirements)
+    if (r.refused()) return "a requirement is not met";
   return "";
 }
 

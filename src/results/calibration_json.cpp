@@ -192,6 +192,7 @@ Json figures_json(const Calibration& c) {
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},
           {"axes", axes_json(c)},
+          {"requirements", requirements_json(c)},
           {"in_steps", steps_json(c)},
           {"compensator", c.compensator ? compensator_json(*c.compensator) : Json(nullptr)},
           {"platform", c.platform ? platform_json(*c.platform) : Json(nullptr)},

@@ -16,12 +16,14 @@ std::string chance_text(double probability);
 /// Parts of text and JSON: errors by axis before and after, poses that were not fitted, the identification in steps,
 /// constants of a compensator. Text is empty if there is nothing of the kind.
 std::string axes_text(const Calibration& calibration);
+std::string requirements_text(const Calibration& calibration);
 /// RMS and largest error before and after and by how much they are better: names and cells of these columns.
 std::vector<std::string> improvement_columns();
 std::vector<std::string> improvement_cells(const AxisImprovement& improvement);
 std::string predicted_poses_text(const Calibration& calibration);
 std::string steps_text(const Calibration& calibration);
 nlohmann::ordered_json axes_json(const Calibration& calibration);
+nlohmann::ordered_json requirements_json(const Calibration& calibration);
 nlohmann::ordered_json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy);
 nlohmann::ordered_json steps_json(const Calibration& calibration);
 nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);

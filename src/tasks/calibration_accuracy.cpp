@@ -14,15 +14,29 @@ constexpr std::array<const char*, 6> required_axes = {"x", "y", "z", "rx", "ry",
 
 using Residuals = std::vector<Eigen::VectorXd>;
 
-std::optional<double> required_of(const RequirementSpec& require, const std::string& axis) {
-  const auto at = std::find(required_axes.begin(), required_axes.end(), axis);
-  return at == required_axes.end() ? std::nullopt : require.axes[std::size_t(at - required_axes.begin())];
+void add_axes(const char* which, const std::vector<AxisErrors>& before, const std::vector<AxisErrors>& after,
+              std::vector<AxisImprovement>& axes) {
+  for (std::size_t a = 0; a < std::min(before.size(), after.size()); ++a) axes.push_back({which, before[a], after[a]});
 }
 
-void add_axes(const char* which, const std::vector<AxisErrors>& before, const std::vector<AxisErrors>& after,
-              const RequirementSpec& require, std::vector<AxisImprovement>& axes) {
-  for (std::size_t a = 0; a < std::min(before.size(), after.size()); ++a)
-    axes.push_back({which, before[a], after[a], required_of(require, after[a].axis)});
+void judge_requirements(const char* which, const RequirementSpec& require, const std::vector<LargestTipError>& errors,
+                        std::vector<JudgedRequirement>& requirements) {
+  for (const LargestTipError& error : errors) {
+    const auto at = std::find(required_axes.begin(), required_axes.end(), error.axis);
+    if (const auto& required = require.axes[std::size_t(at - required_axes.begin())])
+      requirements.push_back({which, error, *required});
+  }
+}
+
+void note_unjudged(const RequirementSpec& require, Calibration& result) {
+  std::string open;
+  for (std::size_t k = 0; k < required_axes.size(); ++k)
+    if (require.axes[k] && std::none_of(result.requirements.begin(), result.requirements.end(),
+                                        [&](const JudgedRequirement& r) { return r.error.axis == required_axes[k]; }))
+      open += (open.empty() ? "" : ", ") + std::string(required_axes[k]);
+  if (!open.empty())
+    result.notes.push_back("required of the tip but not judged: " + open +
+                           "; the readings of a pose do not determine it");
 }
 
 std::vector<double> listed(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
@@ -52,6 +66,8 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
   const std::vector<double> nominal(model.parameters().size(), 0.0);
   const std::size_t placing = placing_columns(poses.columns).selected.size();
   result.placed = placing > 0 && placing < poses.columns.selected.size();
+  const bool required =
+      std::any_of(require.axes.begin(), require.axes.end(), [](const auto& a) { return a.has_value(); });
   Residuals all_before, beyond;
   for (const std::vector<MeasuredPose>* list : {&poses.fitted, &poses.held_back}) {
     if (list->empty()) continue;
@@ -69,10 +85,14 @@ void fill_accuracy(const CalibratedPoses& poses, const RequirementSpec& require,
     add("calibrated", after);
     if (list == &poses.held_back && result.interpolation && result.interpolation->gains())
       add("interpolated", result.interpolation->others);
-    add_axes(which, errors_by_axis(model, *list, before), errors_by_axis(model, *list, after), require, result.axes);
+    add_axes(which, errors_by_axis(model, *list, before), errors_by_axis(model, *list, after), result.axes);
+    if (required)
+      judge_requirements(which, require, tip_errors(model, *list, result.fit, result.correction, after),
+                         result.requirements);
     if (list == &poses.held_back) beyond = after;
     all_before.insert(all_before.end(), before.begin(), before.end());
   }
+  note_unjudged(require, result);
   fill_poses(poses, all_before, beyond, result);
 }
 

@@ -17,6 +17,7 @@
 #include "posewright/calibration/revisits.hpp"
 #include "posewright/calibration/score_tests.hpp"
 #include "posewright/calibration/smooth_effect.hpp"
+#include "posewright/calibration/tip_errors.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/placed_frames.hpp"
 #include "posewright/problem/problem.hpp"
@@ -76,11 +77,20 @@ struct ResidualSet {
 
 /// Errors along one axis, before and after.
 struct AxisImprovement {
-  std::string poses;                 ///< "fitted", "held back"
-  AxisErrors before, after;          ///< placed (nominal if nothing is to be placed), calibrated
-  std::optional<double> required{};  ///< the largest that `design: require` allows, SI
+  std::string poses;         ///< "fitted", "held back"
+  AxisErrors before, after;  ///< placed (nominal if nothing is to be placed), calibrated
+};
 
-  bool met() const { return !required || after.largest <= *required; }
+/// What `design: require` allows of one axis, and the tip's largest error.
+struct JudgedRequirement {
+  std::string poses;  ///< "fitted", "held back"
+  LargestTipError error;
+  double required = 0.0;  ///< SI
+
+  bool met() const { return error.largest <= required; }
+  /// A larger error than is allowed, and the instrument alone makes as large ones.
+  bool hidden_by_noise() const { return !met() && error.by_noise > required; }
+  bool refused() const { return !met() && !hidden_by_noise(); }
 };
 
 /// Of a pose that was not fitted.
@@ -130,6 +140,7 @@ struct Calibration {
   std::vector<ResidualSet> residuals;
   bool placed = false;                ///< there are residuals with base, tool and nuisance alone
   std::vector<AxisImprovement> axes;  ///< of fitted poses, then of those held back
+  std::vector<JudgedRequirement> requirements;
   std::vector<PoseResidual> pose_residuals;
   std::optional<StepwiseFit> in_steps;
   std::optional<CompensatorConstants> compensator;

@@ -42,7 +42,7 @@ function warnings(c) {
       smooth.probability < seldom &&
       !smooth.counted &&
       `Something smooth over the joints remains, ${quantity(smooth.size, 'm', 3)}: σ and intervals are too small.`,
-    c.axes.some((a) => a.met === false) && 'A required accuracy is not met.',
+    c.requirements?.some((r) => !r.met && !r.hidden_by_noise) && 'A required accuracy is not met.',
     c.weakest_combination,
     ...c.notes,
   ].filter(Boolean);

@@ -21,7 +21,8 @@ class Reader {
   Expression sum(int depth) {
     Expression left = product(depth);
     while (!cursor_.done()) {
-      const char sign = operator_here("+-:=<>");
+      // Of the languages here KRL alone joins frames by a colon; others end labels and cases with it.
+      const char sign = operator_here(rules_.labels ? "+-:=<>" : "+-=<>");
       if (sign == '\0') break;
       left = joined(sign, std::move(left), depth, [&] { return product(depth + 1); });
     }

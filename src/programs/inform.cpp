@@ -91,6 +91,13 @@ class Inform {
       if (move || step) {
         if (point_follows) unclear(word, cursor.now().line);
         word = now;
+        // MOVJ C00000 VJ=50.00 +MOVJ C00001 VJ=50.00
+        if (cursor.at > 0 && cursor.before().is('+', text_)) {
+          found_.uses.push_back({cursor.now().line, word, Role::unclear, "", {}, "moves another robot"});
+          point_follows = false;
+          role = Role::pose;
+          continue;
+        }
         point_follows = true;
         role = step ? Role::step : shifted_ ? Role::offset : Role::pose;
         continue;

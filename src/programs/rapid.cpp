@@ -223,6 +223,13 @@ class Rapid {
     }
   }
 
+  /// Arguments behind the tool: a signal and its value of MoveLDO, a procedure of MoveLSync.
+  static std::size_t behind_tool(const std::string& word) {
+    for (const char* ending : {"DO", "AO", "GO"})
+      if (word.starts_with("MOVE") && word.ends_with(ending)) return 2;
+    return word.starts_with("MOVE") && word.ends_with("SYNC") ? 1 : 0;
+  }
+
   /// Arguments up to the semicolon; \Switch:=value is none of them.
   void instruction(const Motion* motion) {
     const std::string word(cursor_.text());
@@ -248,8 +255,9 @@ class Rapid {
       }
       if (cursor_.at == start) cursor_.skip();
     }
-    // The tool is the last argument.
-    if (!arguments.empty() && arguments.back().is(Kind::name)) found_.frames.tool.name = upper(arguments.back().word);
+    const std::size_t behind = behind_tool(upper(word)) + 1;
+    if (arguments.size() >= behind && arguments[arguments.size() - behind].is(Kind::name))
+      found_.frames.tool.name = upper(arguments[arguments.size() - behind].word);
     if (motion != nullptr) found_.move(*motion, word, arguments, line);
     else found_.pass(word, arguments, line, Role::passed);
   }

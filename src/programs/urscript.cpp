@@ -92,14 +92,18 @@ class Urscript {
     cursor_.skip();
     if (const Motion* motion = found_.motion(word)) {
       std::vector<Expression> arguments = called.is(Kind::call) ? called.items : std::vector<Expression>();
-      // movel(pose=p1, …)
+      // movel(pose=p1, …), movej(q=q1)
       for (Expression& argument : arguments)
-        if (argument.is(Kind::other) && argument.items.size() == 2 && argument.items[0].word == "pose")
+        if (argument.is(Kind::other) && argument.items.size() == 2 && is_point_keyword(argument.items[0].word))
           argument = Expression(argument.items[1]);
       found_.move(*motion, word, arguments, line);
     } else if (called.is(Kind::call)) {
       found_.pass(word, called.items, line, own_.contains(word) ? Role::passed : Role::operand);
     }
+  }
+
+  static bool is_point_keyword(const std::string& word) {
+    return word == "q" || word == "pose" || word == "pose_via" || word == "pose_to";
   }
 
   bool assignment() {

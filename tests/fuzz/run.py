@@ -44,8 +44,10 @@ def lists():
 
 def programs():
     """A first byte for the language, then a program of it."""
-    golden = [("kuka-krl/*.src", "kuka-krl/*.dat"), ("*.mod",), ("*.LS",), ("*.script",), ("*.JBI",), ("val3/*/*.dtx", "val3/*/*.pgx"), ("joint_trajectory*.yaml",)]
-    return [bytes([k]) + text for k, patterns in enumerate(golden) for text in files(*(f"tests/outputs/golden/{p}" for p in patterns))]
+    folders = [("krl", "kuka-krl/*.src", "kuka-krl/*.dat"), ("rapid", "*.mod"), ("tp", "*.LS"), ("urscript", "*.script"), ("inform", "*.JBI"),
+               ("val3", "val3/*/*.dtx", "val3/*/*.pgx"), ("trajectory", "joint_trajectory*.yaml")]
+    return [bytes([k]) + text for k, (corpus, *golden) in enumerate(folders)
+            for text in files(f"tests/programs/corpus/{corpus}/**/*.[!a]*", *(f"tests/outputs/golden/{pattern}" for pattern in golden))]
 
 
 SEEDS = {

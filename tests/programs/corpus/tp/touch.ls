@@ -1,0 +1,39 @@
+/PROG  TOUCH
+/ATTR
+OWNER		= MNEDITOR;
+COMMENT		= "";
+LINE_COUNT	= 5;
+TCD:  STACK_SIZE	= 0;
+DEFAULT_GROUP	= 1,*,*,*,*;
+/MN
+   1:L P[1] 100mm/sec FINE Skip,LBL[1],PR[3]=LPOS    ;
+   2:  IF (DI[1]=ON),JMP LBL[2]    ;
+   3:J @P[2] 10% FINE    ;
+   4:L P[3] R[5]mm/sec CNT R[6] COORD[1] PTH    ;
+   5:S P[4] 100mm/sec CNT100    ;
+/POS
+P[1]{
+   GP1:
+	UF : 1, UT : 1,		CONFIG : 'N U T, 0, 0, 0',
+	X =   600.000  mm,	Y =   100.000  mm,	Z =   500.000  mm,
+	W =   180.000 deg,	P =     0.000 deg,	R =     0.000 deg
+};
+P[2]{
+   GP1:
+	UF : 0, UT : 1,	
+	J1=    10.000 deg,	J2=   -20.000 deg,	J3=    30.000 deg,
+	J4=     0.000 deg,	J5=   -45.000 deg,	J6=     5.000 deg
+};
+P[3]{
+   GP1:
+	UF : 1, UT : 1,		CONFIG : 'N U T, 0, 0, 0',
+	X =   600.000  mm,	Y =   100.000  mm,	Z =   500.000  mm,
+	W =   180.000 deg,	P =     0.000 deg,	R =     0.000 deg
+};
+P[4]{
+   GP1:
+	UF : 1, UT : 1,		CONFIG : 'N U T, 0, 0, 0',
+	X =   600.000  mm,	Y =   100.000  mm,	Z =   500.000  mm,
+	W =   180.000 deg,	P =     0.000 deg,	R =     0.000 deg
+};
+/END

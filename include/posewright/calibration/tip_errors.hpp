@@ -23,7 +23,7 @@ struct LargestTipError {
 /// instruments that see neither.
 /// @param residuals  measured less predicted at `correction`
 std::vector<LargestTipError> tip_errors(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
-                                 const Fit& fit, const std::vector<double>& correction,
-                                 const std::vector<Eigen::VectorXd>& residuals);
+                                        const Fit& fit, const std::vector<double>& correction,
+                                        const std::vector<Eigen::VectorXd>& residuals);
 
 }  // namespace posewright

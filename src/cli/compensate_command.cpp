@@ -42,6 +42,7 @@ po::options_description compensate_command_options() {
       ("base", po::value<Words>(), "the same of the frame that they are in")                                   //
       ("world", text("POSE"), "the controller's world in the robot's base: x y z roll pitch yaw, mm and deg")  //
       ("flange", text("POSE"), "the controller's flange in the robot's tip, the same way")                     //
+      ("line-deviation", text("MM"), "largest distance of the tool from lines between poses of programs")      //
       ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")          //
       ("with-base", "poses in the measurement frame: where the base was found to stand counts")                //
       ("without-tool", "the tool's correction is that of what was measured and does not count")                //
@@ -260,7 +261,21 @@ Compensation compensate_files(const Words& files, const Problem& problem, Docume
   for (std::size_t i = 0; i < documents.size(); ++i)
     if (const ProgramAccount* account = documents[i]->account()) result.add_account(*account, result.lists[i]);
   result.settle_motions();
+  check_lines(problem, options, result);
   return result;
+}
+
+/// Whether all lines stay as straight as asked; notes name those that do not.
+bool keep_lines(Compensation& result, double allowed) {
+  bool kept = true;
+  for (const LineDeviation& line : result.lines) {
+    if (line.largest <= allowed) continue;
+    kept = false;
+    result.notes.push_back(
+        fmt::format("{}:{}: the tool would leave the line by {:.4f} mm; --line-deviation allows {:.4f}", line.file,
+                    line.line, line.largest * 1e3, allowed * 1e3));
+  }
+  return kept;
 }
 
 void show_compensation(const CommonOptions& common, const Problem& problem, const Compensation& result,
@@ -304,7 +319,9 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   std::vector<std::unique_ptr<PoseDocument>> documents;
   Compensation result = compensate_files(files, problem, reading, options, common, documents);
   result.notes.insert(result.notes.end(), robot.notes.begin(), robot.notes.end());
-  const bool good = result.is_whole() || values.count("partial") > 0;
+  const auto allowed = number_between(values, "line-deviation", 0, 1000);
+  const bool straight = !allowed || keep_lines(result, *allowed * 1e-3);
+  const bool good = straight && (result.is_whole() || values.count("partial") > 0);
   std::vector<fs::path> written;
   if (good) {
     std::vector<FileToWrite> all = robot.files;

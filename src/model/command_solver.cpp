@@ -104,6 +104,11 @@ bool CommandSolver::target(std::span<const double> q, Eigen::Isometry3d& X) cons
   return nominal_->linearise(at, {}, X, none, nullptr);
 }
 
+bool CommandSolver::reached(std::span<const double> q, Eigen::Isometry3d& X) const {
+  static thread_local Twists none;
+  return calibrated_->linearise(point(q), {}, X, none, nullptr);
+}
+
 /// Pose, error and columns at w.u; false if the robot cannot be there.
 bool CommandSolver::evaluate(Work& w) const {
   if (is_parallel()) {

@@ -72,7 +72,10 @@ class Accountant {
     }
     std::vector<Accounted> accounts;
     for (const ReadProgram& program : programs_) accounts.push_back(points_of(program));
-    for (std::size_t i = 0; i < programs_.size(); ++i) add_motions(programs_[i], accounts[i].account);
+    for (std::size_t i = 0; i < programs_.size(); ++i) {
+      add_motions(programs_[i], accounts[i].account);
+      add_lines(programs_[i], accounts[i].account);
+    }
     return accounts;
   }
 
@@ -92,6 +95,20 @@ class Accountant {
       if (use.role == Role::pose &&
           std::find(tally.frames.begin(), tally.frames.end(), use.frames) == tally.frames.end())
         tally.frames.push_back(use.frames);
+    }
+  }
+
+  /// Straight motions to poses from the point of the motion above.
+  void add_lines(const ReadProgram& program, ProgramAccount& account) const {
+    std::string before;
+    for (const Use& use : program.reading.uses) {
+      if (!use.moves || use.role == Role::operand || use.role == Role::changed || use.role == Role::passed) continue;
+      std::string now;
+      if (use.role == Role::pose)
+        now = use.point ? inline_key(program, *use.point) : element_key(program, use.name, use.index);
+      if (const auto at = placed_.find(now); use.straight && !before.empty() && at != placed_.end())
+        account.lines.push_back({use.line, before, now, at->second.X_TipTool});
+      before = now;
     }
   }
 
@@ -140,8 +157,9 @@ class Accountant {
       if (use.point) inline_use[*use.point] = &use;
     for (std::size_t i = 0; i < reading.points.size(); ++i) {
       const FoundPoint& point = reading.points[i];
-      const auto number = numbers_.find(inline_use[i] != nullptr ? inline_key(program, i)
-                                                                 : element_key(program, point.name, point.index));
+      const std::string element =
+          inline_use[i] != nullptr ? inline_key(program, i) : element_key(program, point.name, point.index);
+      const auto number = numbers_.find(element);
       result.measured.push_back(number == numbers_.end() ? 0 : number->second);
       Verdict verdict;
       std::string what = point.name, target;
@@ -160,7 +178,8 @@ class Accountant {
         if (!point.label.empty()) what += " " + point.label;
       }
       result.account.entries.push_back(
-          {point.line, what.empty() ? "point" : what, verdict.treatment, verdict.why, int(i), target});
+          {point.line, what.empty() ? "point" : what, verdict.treatment, verdict.why, int(i), target, element});
+      if (result.frames[i]) placed_.insert({element, *result.frames[i]});
     }
     return result;
   }
@@ -287,6 +306,7 @@ class Accountant {
   const ProgramRobot& robot_;
   FrameValues frames_;
   std::map<std::string, std::string> displaced_;  ///< scopes, and by what
+  std::map<std::string, PlacedFrames> placed_;    ///< of poses, by element
   std::map<std::string, int> numbers_;            ///< of poses, by element or place in a file
   std::map<std::string, Tally> tallies_;
   std::set<std::string> moving_;  ///< scopes with motions

@@ -36,11 +36,14 @@ std::optional<FoundPoint> krl_point(const Expression& list, const Source&) {
   return point;
 }
 
+bool is_straight_krl(const std::string& word) { return word == "LIN" || word == "SLIN"; }
+
 const Grammar& krl_grammar() {
   static const char* external = "moves external axes alone";
   static const Grammar rules = {{'{', '[', true, true},
                                 true,
                                 1,
+                                is_straight_krl,
                                 {{"PTP"},
                                  {"SPTP"},
                                  {"LIN"},

@@ -39,11 +39,19 @@ std::optional<FoundPoint> rapid_point(const Expression& list, const Source& sour
   return point;
 }
 
+bool is_straight(const std::string& word) {
+  for (const char* begin :
+       {"MOVEL", "TRIGGL", "ARCL", "ARCMOVEL", "SEARCHL", "SPOTL", "SPOTML", "PAINTL", "DISPL", "GLUEL", "CAPL"})
+    if (word.starts_with(begin)) return true;
+  return false;
+}
+
 const Grammar& rapid_grammar() {
   static const char* external = "moves external axes alone";
   static const Grammar rules = {{'[', '{', false, false},
                                 true,
                                 1,
+                                is_straight,
                                 {{"MOVEABSJ"},
                                  {"MOVEJ"},
                                  {"MOVEL"},

@@ -24,6 +24,7 @@ const Motion* Collector::motion(std::string_view word) const {
 void Collector::move(const Motion& motion, std::string_view word, const std::vector<Expression>& arguments, int line) {
   Use use{line, std::string(word), motion.role};
   use.frames = frames;
+  use.straight = grammar_.is_straight != nullptr && grammar_.is_straight(upper(word));
   if (motion.role == Role::other) {
     use.why = motion.why;
     reading.uses.push_back(use);

@@ -65,6 +65,7 @@ struct Use {
   std::string why{};                   ///< for roles other and unclear
   FramePair frames{};
   std::optional<long> index{};  ///< of the element of an array, where it is a number
+  bool straight = false;        ///< the tool moves along a line
   bool moves = true;            ///< false: a name within an instruction that is listed by itself
 };
 
@@ -105,6 +106,8 @@ struct Grammar {
   ExpressionRules expressions;
   bool capitals = true;  ///< words are the same in capitals
   long first_index = 0;  ///< of an array
+  bool (*is_straight)(const std::string& word) =
+      nullptr;  ///< a motion in capitals moves the tool along a line; null: none
   std::vector<Motion> motions;
   std::vector<std::string_view> offsets;   ///< functions of a point and what is added to it
   std::vector<std::string_view> standing;  ///< words for where the robot is

@@ -120,6 +120,7 @@ class Tp {
       if (moves) --wanted;
       Use use{line, moves ? first : "operand", moves ? Role::pose : Role::operand};
       use.name = at->name;
+      use.straight = first == "L";
       if (at->is_register || at->name.empty()) {
         if (!moves) continue;
         use.role = Role::unclear;

@@ -33,6 +33,7 @@ const Grammar& urscript_grammar() {
       {'[', '[', false, true},
       false,
       0,
+      nullptr,
       {{"movej"},
        {"movel"},
        {"movep"},

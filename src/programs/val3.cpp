@@ -15,6 +15,7 @@ const Grammar& val3_grammar() {
   static const Grammar rules = {{'{', '[', false, false},
                                 false,
                                 0,
+                                nullptr,
                                 {{"movej"}, {"movel"}, {"movec", Role::pose, 0, 2}},
                                 {"appro", "compose"},
                                 {"herej", "here"},

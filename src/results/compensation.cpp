@@ -135,6 +135,12 @@ std::string compensation_text(const Compensation& c) {
     text += changes.text();
   }
   for (const ProgramAccount& program : c.programs) text += account_text(program);
+  if (!c.lines.empty()) {
+    const LineDeviation& worst = *std::ranges::max_element(c.lines, {}, &LineDeviation::largest);
+    text += fmt::format("\n{} straight {} between poses: the tool leaves the line by at most {} mm ({}:{})\n",
+                        c.lines.size(), c.lines.size() == 1 ? "motion" : "motions", length_in_mm(worst.largest),
+                        worst.file, worst.line);
+  }
   if (c.failures.empty()) return text;
   text += fmt::format("\nNot compensated: {}\n", c.failures.size());
   for (std::size_t i = 0; i < std::min(most_failures, c.failures.size()); ++i)
@@ -169,6 +175,9 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
   for (const CompensatedList& list : c.lists) json["lists"].push_back(commanded_list_json(list, c));
   json["programs"] = Json::array();
   for (const ProgramAccount& program : c.programs) json["programs"].push_back(account_json(program));
+  json["lines"] = Json::array();
+  for (const LineDeviation& line : c.lines)
+    json["lines"].push_back({{"file", line.file}, {"line", line.line}, {"largest", finite_or_null(line.largest)}});
   json["notes"] = c.notes;
   return json;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -93,6 +94,8 @@ class Compensator {
     result_.coordinates = solver_->coordinates();
     for (const Coordinate& c : solver_->commanded()) result_.axes.push_back({c.name, c.unit});
   }
+
+  const CommandSolver& solver() const { return *solver_; }
 
   Compensation run(const std::vector<PoseList>& lists, const Monitor& monitor) {
     for (const PoseList& list : lists) result_.lists.push_back(solved(list, monitor));
@@ -279,6 +282,120 @@ ArmInverse nominal_inverse(const Problem& problem) {
   const auto* chain = dynamic_cast<const SerialChain*>(tip.get());
   if (chain == nullptr) throw CannotDo("this robot has no inverse in closed form: it is no arm of six joints");
   return ArmInverse(chain->description());
+}
+
+namespace {
+
+/// Places between the ends of a line that are looked at.
+constexpr int line_places = 15;
+
+/// One end of a line.
+struct LineEnd {
+  ArmInverse::Joints commanded{};
+  std::vector<double> listed;  ///< configuration
+};
+
+class LineCheck {
+ public:
+  LineCheck(const CommandSolver& solver, ArmInverse inverse) : solver_(solver), inverse_(std::move(inverse)) {}
+
+  /// Largest distance of the calibrated robot's tool from the line that was meant.
+  double deviation(const LineEnd& from, const LineEnd& to, const Eigen::Isometry3d& X_TipTool) const {
+    Eigen::Isometry3d X_from, X_to, X;
+    if (!solver_.target(from.listed, X_from) || !solver_.target(to.listed, X_to)) return 0;
+    const Eigen::Vector3d p = (X_from * X_TipTool).translation(), q = (X_to * X_TipTool).translation();
+    const Eigen::Isometry3d first = inverse_.tip(from.commanded) * X_TipTool,
+                            last = inverse_.tip(to.commanded) * X_TipTool;
+    const Eigen::Quaterniond turned(first.linear()), towards(last.linear());
+    ArmInverse::Joints joints = from.commanded;
+    double largest = 0;
+    for (int k = 1; k <= line_places; ++k) {
+      const double s = double(k) / (line_places + 1);
+      const Eigen::Isometry3d tool =
+          Eigen::Translation3d(first.translation() + s * (last.translation() - first.translation())) *
+          turned.slerp(s, towards);
+      if (!follow(tool * X_TipTool.inverse(), joints)) return std::numeric_limits<double>::infinity();
+      std::vector<double> configuration = from.listed;
+      std::copy(joints.begin(), joints.end(), configuration.begin());
+      if (!solver_.reached(configuration, X)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, distance((X * X_TipTool).translation(), p, q));
+    }
+    return largest;
+  }
+
+ private:
+  static double distance(const Eigen::Vector3d& x, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+    const Eigen::Vector3d along = q - p;
+    const double length = along.squaredNorm();
+    const double s = length > 0 ? std::clamp((x - p).dot(along) / length, 0.0, 1.0) : 0.0;
+    return (x - p - s * along).norm();
+  }
+
+  /// The joints at a pose that are nearest to the last ones; false if none are near.
+  bool follow(const Eigen::Isometry3d& X, ArmInverse::Joints& joints) const {
+    static constexpr double most_turn = 1.5;  // rad between two places
+    std::vector<ArmBranch> branches;
+    inverse_.solve(X, branches);
+    double nearest = most_turn;
+    ArmInverse::Joints found = joints;
+    for (const ArmBranch& branch : branches) {
+      ArmInverse::Joints near = joints;
+      double turn = 0;
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        const double change = std::remainder(branch.q[i] - joints[i], 2 * std::numbers::pi);
+        near[i] += change;
+        turn = std::max(turn, std::abs(change));
+      }
+      if (turn >= nearest) continue;
+      nearest = turn;
+      found = near;
+    }
+    joints = found;
+    return nearest < most_turn;
+  }
+
+  const CommandSolver& solver_;
+  ArmInverse inverse_;
+};
+
+/// Compensated points of programs, by element.
+std::map<std::string, LineEnd> line_ends(const Compensation& result) {
+  std::map<std::string, LineEnd> ends;
+  for (const ProgramAccount& program : result.programs)
+    for (const CompensatedList& list : result.lists)
+      for (const ProgramEntry& entry : program.entries) {
+        if (list.file != program.file || entry.point < 0 || entry.treatment != Treatment::compensated) continue;
+        const auto p = std::size_t(entry.point);
+        const auto commanded = list.configuration(p);
+        LineEnd end{{}, {commanded.begin(), commanded.end()}};
+        for (std::size_t i = 0; i < end.commanded.size(); ++i) {
+          end.commanded[i] = commanded[i];
+          end.listed[i] -= list.changes[p * result.axes.size() + i];
+        }
+        ends.insert_or_assign(entry.element, std::move(end));
+      }
+  return ends;
+}
+
+}  // namespace
+
+void check_lines(const Problem& problem, const CompensateOptions& options, Compensation& result) {
+  const auto is_empty = [](const ProgramAccount& program) { return program.lines.empty(); };
+  if (std::ranges::all_of(result.programs, is_empty)) return;
+  const Compensator compensator(problem, options);
+  const LineCheck check(compensator.solver(), nominal_inverse(problem));
+  const std::map<std::string, LineEnd> ends = line_ends(result);
+  std::vector<const LineMotion*> motions;
+  for (const ProgramAccount& program : result.programs)
+    for (const LineMotion& motion : program.lines) {
+      if (!ends.contains(motion.from) || !ends.contains(motion.to)) continue;
+      motions.push_back(&motion);
+      result.lines.push_back({program.file, motion.line});
+    }
+  parallel_for(motions.size(), thread_count(options.threads), [&](std::size_t i, int) {
+    const LineMotion& motion = *motions[i];
+    result.lines[i].largest = check.deviation(ends.at(motion.from), ends.at(motion.to), motion.X_TipTool);
+  });
 }
 
 std::size_t Compensation::open_lines() const {

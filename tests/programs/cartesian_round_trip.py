@@ -228,6 +228,46 @@ def check(language, tool, base, folder):
     assert checked > 0.9 * len(joints) and worst < 1e-6, (checked, worst)
 
 
+def slerp(A, B, s):
+    R = A.T @ B
+    angle = math.acos(max(-1, min(1, (np.trace(R) - 1) / 2)))
+    return A @ turn(vee(R) / max(1e-300, math.sin(angle)), s * angle) if angle > 1e-9 else A
+
+
+def check_lines(tool, base, folder):
+    """How far the tool leaves lines, by transforms here; the limit is kept or nothing is written."""
+    language, T = Krl(), frame(zyx(*tool[3:]), np.array(tool[:3]) / 1e3)
+    first = flange(np.array([0.3, -0.9, 1.5, 0.4, 0.7, 0.2]))
+    poses = []
+    for k in range(6):
+        X = frame(zyx(4 * k, -3 * k, 0), (0, 0.08 * k, 0.02 * k * (-1) ** k)) @ first
+        poses.append((X, joints_at(X, poses[-1][1] if poses else np.array([0.3, -0.9, 1.5, 0.4, 0.7, 0.2]))))
+    (folder / "line.src").write_text(language.program([language.write(X, q, tool, base) for X, q in poses], tool, base))
+    words = [PROGRAM, "compensate", "cal.yaml", "line.src", "-o", "line_out.src", "--json", "--force"]
+    result = json.loads(subprocess.run(words, cwd=folder, capture_output=True, text=True, check=True).stdout)
+    written = [X for X, _ in language.read((folder / "line_out.src").read_text(), tool, base)]
+    assert len(result["lines"]) == len(poses) - 1
+    worst = 0
+    for k, stated in enumerate(result["lines"]):
+        A, B, u, largest = written[k] @ T, written[k + 1] @ T, joints_at(written[k], poses[k][1]), 0
+        p, q = ((poses[k + i][0] @ T)[:3, 3] for i in (0, 1))
+        for s in np.arange(1, 16) / 16:
+            u = joints_at(frame(slerp(A[:3, :3], B[:3, :3], s), A[:3, 3] + s * (B - A)[:3, 3]) @ np.linalg.inv(T), u)
+            x = (flange(u, real=True) @ T)[:3, 3] - p
+            largest = max(largest, np.linalg.norm(x - (q - p) * (x @ (q - p)) / ((q - p) @ (q - p))))
+        # The file has digits of 0.1 um.
+        assert abs(stated["largest"] - largest) < 3e-7, (stated, largest)
+        worst = max(worst, stated["largest"])
+    assert worst > 1e-6
+    for limit, code in ((worst * 1.1, 0), (worst * 0.9, 1)):
+        (folder / "line_out.src").unlink()
+        run = subprocess.run([*words, "--line-deviation", str(limit * 1e3)], cwd=folder, capture_output=True, text=True)
+        assert run.returncode == code and (folder / "line_out.src").exists() == (code == 0), run.stderr
+        (folder / "line_out.src").touch()
+    assert "the tool would leave the line by" in run.stderr
+    print(f"lines: {len(poses) - 1}, the tool leaves them by at most {worst * 1e6:.1f} um, as computed here")
+
+
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     files(folder)
@@ -235,3 +275,4 @@ with tempfile.TemporaryDirectory() as name:
     check(Krl(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
     check(Rapid(), (120.5, -30, 210, *q), (900, -200, 350, 0.99, 0.1, 0.05, -0.08), folder)
     check(Tp(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
+    check_lines((120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)

@@ -75,6 +75,8 @@ class CommandSolver {
 
   /// Where the nominal robot has its tip at q, measurement frame; false if q is out of reach.
   bool target(std::span<const double> q, Eigen::Isometry3d& X_MeasureTip) const;
+  /// Where the calibrated arm has it when q is commanded.
+  bool reached(std::span<const double> q, Eigen::Isometry3d& X_MeasureTip) const;
 
  private:
   struct Work;

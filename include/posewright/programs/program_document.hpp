@@ -24,15 +24,24 @@ struct ProgramEntry {
   int line = 0;
   std::string what;  ///< the instruction and its point, or the point
   Treatment treatment = Treatment::left;
-  std::string why;       ///< empty: it is compensated
-  int point = -1;        ///< index among the document's points; -1: none
-  std::string target{};  ///< the same for a point that has a name and for motions to it; not for people
+  std::string why;        ///< empty: it is compensated
+  int point = -1;         ///< index among the document's points; -1: none
+  std::string target{};   ///< the same for a point that has a name and for motions to it; not for people
+  std::string element{};  ///< of this point alone
+};
+
+/// A straight motion of the tool from one point to the next.
+struct LineMotion {
+  int line = 0;
+  std::string from, to;  ///< elements of points
+  Eigen::Isometry3d X_TipTool = Eigen::Isometry3d::Identity();
 };
 
 /// Every motion and every point of a program, in the order of the file.
 struct ProgramAccount {
   std::string file, format;
   std::vector<ProgramEntry> entries;
+  std::vector<LineMotion> lines{};  ///< that lead to poses
   std::size_t count(Treatment treatment) const;
 };
 

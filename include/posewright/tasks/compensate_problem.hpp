@@ -56,6 +56,13 @@ struct TipErrorSummary {
   double rotation_rms = 0.0, rotation_largest = 0.0;  ///< rad
 };
 
+/// How far the tool of the calibrated robot leaves the line between two compensated points.
+struct LineDeviation {
+  std::string file;
+  int line = 0;
+  double largest = 0.0;  ///< m; infinite: the nominal robot cannot drive it without another status
+};
+
 struct Compensation {
   std::string variant;
   bool position_only = false, parallel = false;
@@ -66,6 +73,7 @@ struct Compensation {
   std::vector<NotCompensated> failures;
   std::vector<CompensatedList> lists;
   std::vector<ProgramAccount> programs;  ///< of the files that are programs
+  std::vector<LineDeviation> lines;      ///< of straight motions to poses, in the order of the files
   std::vector<std::string> notes;
 
   /// Takes a program's account over; points of the list that are not compensated say why.
@@ -85,6 +93,11 @@ std::vector<Coordinate> compensation_coordinates(const Problem& problem);
 
 /// Inverse kinematics of the nominal arm. Throws CannotDo for other kinds of robots.
 ArmInverse nominal_inverse(const Problem& problem);
+
+/// Looks at points between the ends of straight motions: the nominal robot moves the tool along the line between the
+/// poses that are commanded; `lines` of the result is how far the calibrated one leaves the line between those that
+/// were meant.
+void check_lines(const Problem& problem, const CompensateOptions& options, Compensation& result);
 
 /// Commands for the robot of a problem with parameters (apply_parameters()), so that it stands where the nominal one
 /// would. Poses are independent of each other: any number of threads has the same result.

@@ -1,5 +1,6 @@
-// Programs as people write them, by the makers' manuals: every motion and point has the treatment that stands beside
-// it in the .account file, "line what: C|L|N|?" for compensated, left, not compensated, not understood.
+// Programs in the style in which people write them, from general knowledge of the languages. Accounts were written by
+// the program and read line by line: every motion and point keeps the treatment that is in the .account file, "line
+// what: C|L|N|?" for compensated, left, not compensated, not understood.
 
 #include <gtest/gtest.h>
 

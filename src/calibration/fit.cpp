@@ -25,6 +25,9 @@ constexpr double refusal = 0.01;
 // The noise and the estimate agree when another round changes it by less than this.
 constexpr int noise_rounds = 200;
 constexpr double settled_noise = 1e-9;
+// Sizes of tolerances: so little changes no estimate.
+constexpr double settled_components = 1e-2;
+constexpr int most_component_rounds = 10;
 // Pivots of unit columns below this mean that double precision cannot tell a column from the others.
 constexpr double rank_tolerance = 1e-11;
 // Stands for the squares where a pose is out of reach.
@@ -109,6 +112,32 @@ double noise_of(const StackedReadings& stacked, const Eigen::MatrixXd& root, con
   return freedom > 0 ? std::sqrt(squares.sum() / freedom) : 0.0;
 }
 
+double largest_log_ratio(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a.array().log() - b.array().log()).abs().maxCoeff();
+}
+
+/// Takes the sizes of assumed tolerances from the readings; false if they stay as they are.
+bool take_components(StackedReadings& stacked, const Eigen::VectorXd& x, Fit& result) {
+  ComponentProblem problem;
+  if (stacked.known().empty() || !stacked.components_at(x, problem)) return false;
+  const VarianceComponents found = restricted_components(problem);
+  result.contradicted.clear();
+  for (const int j : found.contradicted)
+    if (std::ranges::find(stacked.known(), j) != stacked.known().end()) result.contradicted.push_back(j);
+  if (largest_log_ratio(found.spread, stacked.spreads()) < settled_components) return false;
+  stacked.set_spreads(found.spread);
+  return true;
+}
+
+/// Components and estimate in turn, until both agree.
+void settle_components(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, Fit& result) {
+  for (int round = 0; options.components && round < most_component_rounds; ++round) {
+    if (!take_components(stacked, x, result)) break;
+    stacked.weigh(x, options.weighting);
+    result.converged = minimise(stacked, options, x, result.evaluations);
+  }
+}
+
 /// Takes the noise from the residuals and estimates again, until both agree: it says how much tolerances weigh.
 double settle_noise(StackedReadings& stacked, const FitOptions& options, Eigen::VectorXd& x, Fit& result) {
   double noise = result.scale;
@@ -116,8 +145,9 @@ double settle_noise(StackedReadings& stacked, const FitOptions& options, Eigen::
     const double before = noise;
     noise = noise_of(stacked, root_of_readings(stacked, x), stacked.group_squares(x), noise);
     if (stacked.known().empty() || !(noise > 0)) break;
-    if (round > 0 && std::abs(noise - before) < settled_noise * noise) break;
     stacked.set_noise_factor(noise);
+    const bool moved = options.components && round < most_component_rounds && take_components(stacked, x, result);
+    if (round > 0 && !moved && std::abs(noise - before) < settled_noise * noise) break;
     stacked.weigh(x, options.weighting);
     result.converged = minimise(stacked, options, x, result.evaluations);
   }
@@ -148,6 +178,7 @@ void fill_statistics(StackedReadings& stacked, const FitOptions& options, Eigen:
       // Against the tolerances the readings are as good as stated after all.
       stacked.set_noise_factor(1.0);
       result.converged = minimise(stacked, options, x, result.evaluations);
+      settle_components(stacked, options, x, result);
     }
     factor = result.noise_factor = std::max(1.0, factor);
   }
@@ -166,6 +197,7 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
         const FitOptions& options) {
   StackedReadings stacked(model, columns, poses, options.prior, options.start);
   stacked.limit(options.limits);
+  stacked.set_spreads(spreads_of(columns, options.spreads));
   if (stacked.counted() < stacked.columns())
     throw CannotDo(std::to_string(stacked.readings()) + " readings cannot determine " +
                    std::to_string(stacked.columns()) + " parameters");
@@ -183,15 +215,20 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
     result.converged = minimise(stacked, options, x, result.evaluations);
     if (round > 0 && stacked.residual(x, f) && before - f.squaredNorm() < settled_squares) break;
   }
+  if (options.weighting == Weighting::weighted) settle_components(stacked, options, x, result);
   if (options.weighting == Weighting::robust) {
     result.converged = settle_weights(stacked, options, RobustShape::huber, x, result.evaluations) && result.converged;
     const double central = robust_scale(stacked.group_squares(x), stacked.group_sizes(), 0).central;
     if (!stacked.known().empty() && central > 0) stacked.set_noise_factor(central);
+    settle_components(stacked, options, x, result);
     result.converged = settle_weights(stacked, options, RobustShape::tukey, x, result.evaluations) && result.converged;
     result.weights = weights_of_targets(stacked, x);
   }
   fill_statistics(stacked, options, x, result);
   result.correction = stacked.correction_of(x);
+  result.spreads.assign(model.parameters().size(), 1.0);
+  for (std::size_t j = 0; j < columns.selected.size(); ++j)
+    result.spreads[std::size_t(columns.selected[j])] = stacked.spreads()[Eigen::Index(j)];
   result.change = x.cwiseProduct(stacked.tolerances());
   return result;
 }

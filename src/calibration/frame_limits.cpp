@@ -32,7 +32,8 @@ Eigen::MatrixXd covariance_of_data(const VariantColumns& columns, Prior prior, c
   const double noise = result.scale_known ? result.noise_factor : std::max(result.scale, 1e-12);
   Eigen::MatrixXd information = result.root.transpose() * result.root / (noise * noise);
   for (std::size_t j = 0; j < columns.parameters.size(); ++j)
-    if (counts(columns.parameters[j], prior)) information(Eigen::Index(j), Eigen::Index(j)) += 1.0;
+    if (counts(columns.parameters[j], prior))
+      information(Eigen::Index(j), Eigen::Index(j)) += std::pow(result.spreads[std::size_t(columns.selected[j])], -2);
   const Eigen::VectorXd unit = information.diagonal().cwiseSqrt().cwiseMax(1e-150).cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(
       Eigen::MatrixXd(unit.asDiagonal() * information * unit.asDiagonal()));

@@ -58,6 +58,8 @@ StepwiseFit fit_in_steps(const IdentificationModel& model, const VariantColumns&
     for (const Stage& stage : stages) {
       FitOptions step = options;
       step.start = result.correction;
+      step.components = false;
+      step.spreads = joint.spreads;
       const Fit fitted = fit(model, stage.columns, poses, step);
       result.correction = fitted.correction;
       if (result.rounds == 0)

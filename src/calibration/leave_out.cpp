@@ -120,6 +120,9 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
     else if (!predict_others(model, place, place_options, rest, others, placed, none)) continue;
     FitOptions all = options;
     all.start = whole.correction;
+    // One pose hardly tells how large the tolerances of all parameters are.
+    all.components = false;
+    all.spreads = whole.spreads;
     if (!predict_others(model, columns, all, rest, others, estimated, result.why_not))
       estimated.resize(placed.size(), std::numeric_limits<double>::infinity());
     monitor.report({"leaving poses out", double(g + 1), double(groups), {}, {}, {}});

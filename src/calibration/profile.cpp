@@ -43,6 +43,7 @@ class Profile::State {
     const Eigen::VectorXd unit = stacked_.tolerances().cwiseInverse();
     covariance = unit.asDiagonal() * fit.covariance * unit.asDiagonal();
     stacked_.limit(options.limits);
+    stacked_.set_spreads(spreads_of(columns_, fit.spreads));
     stacked_.correlate(options.effect);
     stacked_.weigh(estimate, options.weighting);
     stacked_.set_noise_factor(fit.scale_known ? fit.noise_factor : fit.scale);

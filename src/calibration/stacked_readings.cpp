@@ -23,6 +23,13 @@ bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, co
   return model.predict_and_linearise(pose.q, correction, selected, out, y);
 }
 
+Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<double>& spreads) {
+  Eigen::VectorXd own = Eigen::VectorXd::Ones(Eigen::Index(columns.selected.size()));
+  for (std::size_t j = 0; j < columns.selected.size() && !spreads.empty(); ++j)
+    own[Eigen::Index(j)] = spreads[std::size_t(columns.selected[j])];
+  return own;
+}
+
 FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,
                        const std::vector<MeasuredPose>& poses, const std::vector<double>& correction, const Fit& fit) {
   VariantColumns columns;
@@ -74,6 +81,7 @@ StackedReadings::StackedReadings(const IdentificationModel& model, const Variant
     : model_(model), columns_(columns), poses_(poses), correction_(start) {
   correction_.resize(model.parameters().size(), 0.0);
   tolerances_ = tolerances_of(columns);
+  spreads_.setOnes(tolerances_.size());
   for (std::size_t j = 0; j < columns.parameters.size(); ++j)
     if (counts(columns.parameters[j], prior)) known_.push_back(int(j));
   const int per_target = model.rows_per_target();
@@ -104,9 +112,32 @@ void StackedReadings::limit(const std::vector<WeakLimit>& limits) {
 Eigen::MatrixXd StackedReadings::prior_rows() const {
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(rows() - readings_, columns());
   Eigen::Index row = 0;
-  for (const int j : known_) prior(row++, j) = -1.0;
+  for (const int j : known_) prior(row++, j) = -1.0 / spreads_[j];
   for (const Limit& limit : limits_) prior(row++, limit.column) = -limit.weight;
   return prior;
+}
+
+bool StackedReadings::components_at(const Eigen::VectorXd& x, ComponentProblem& problem) {
+  Eigen::VectorXd f;
+  Eigen::MatrixXd J;
+  if (!residual(x, f) || !jacobian(x, J)) return false;
+  problem.J = -J.topRows(readings_);
+  problem.y = f.head(readings_) + problem.J * x;
+  problem.precision = problem.about = Eigen::VectorXd::Zero(columns());
+  problem.group.assign(std::size_t(columns()), -1);
+  std::map<std::pair<std::string, bool>, int> groups;
+  for (const int j : known_) {
+    const Parameter& p = columns_.parameters[std::size_t(j)];
+    problem.precision[j] = 1.0;
+    if (p.tolerance_stated) continue;
+    const bool zero = model_.parameters()[std::size_t(columns_.selected[std::size_t(j)])].name.ends_with(".offset");
+    problem.group[std::size_t(j)] = groups.emplace(std::pair(p.unit, zero), int(groups.size())).first->second;
+  }
+  for (const Limit& limit : limits_) {
+    problem.precision[limit.column] += limit.weight * limit.weight;
+    problem.about[limit.column] = limit.about;
+  }
+  return true;
 }
 
 Eigen::VectorXd StackedReadings::start() const {
@@ -197,7 +228,7 @@ bool StackedReadings::residual(const Eigen::VectorXd& x, Eigen::VectorXd& f) {
     for (Eigen::Index i = 0; i < part_.size(); ++i, ++row) f[row] = part_[i] * root_weight(int(row));
   }
   if (!independent_.empty()) independent_.apply(f.head(readings_));
-  for (const int j : known_) f[row++] = -x[j];
+  for (const int j : known_) f[row++] = -x[j] / spreads_[j];
   for (const Limit& limit : limits_) f[row++] = -limit.weight * (x[limit.column] - limit.about);
   return f.allFinite();
 }

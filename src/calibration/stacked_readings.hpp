@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "restricted_likelihood.hpp"
 
 namespace posewright {
 
@@ -12,6 +13,9 @@ std::vector<int> indices_read(const Eigen::VectorXd& y);
 /// model.predict_and_linearise() with the covariance of what was read at this pose.
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y);
+
+/// How many times the tolerances of these columns count, of those of all parameters; empty: once.
+Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<double>& spreads);
 
 /// What a fit read as one linear problem, whitened: columns of `selected`, residuals.
 struct FittedRows {
@@ -52,6 +56,13 @@ class StackedReadings {
  public:
   StackedReadings(const IdentificationModel& model, const VariantColumns& columns,
                   const std::vector<MeasuredPose>& poses, Prior prior, const std::vector<double>& start = {});
+
+  /// Counts the tolerance of each column so many times from now on; size columns().
+  void set_spreads(const Eigen::VectorXd& spreads) { spreads_ = spreads; }
+  const Eigen::VectorXd& spreads() const { return spreads_; }
+  /// The whitened readings as linear at x, with what tolerances and limits say; columns of assumed tolerances in groups
+  /// of one unit, zeros of joints apart. False as residual().
+  bool components_at(const Eigen::VectorXd& x, ComponentProblem& problem);
 
   /// From now on the sum of squares holds these terms, too.
   void limit(const std::vector<WeakLimit>& limits);
@@ -114,6 +125,7 @@ class StackedReadings {
   };
   std::vector<int> known_;
   std::vector<Limit> limits_;
+  Eigen::VectorXd spreads_;  ///< of each column, in units of tolerance
   double noise_factor_ = 1.0;
   Eigen::VectorXd tolerances_;
   std::vector<std::vector<int>> read_;             ///< per pose: which readings are there

@@ -78,6 +78,7 @@ Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
           {"prior", !p.estimated || !p.prior   ? "none"
                     : p.label.tolerance_stated ? "stated"
                                                : "assumed"},
+          {"tolerance_times", p.spread},
           {"value", p.value},
           {"sigma", estimate(p.sigma)},
           {"interval", interval ? Json({finite_or_null(p.lower), finite_or_null(p.upper)}) : Json(nullptr)},

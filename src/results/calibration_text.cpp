@@ -42,7 +42,7 @@ bool assumed(const CalibratedParameter& p) { return p.estimated && p.prior && !p
 
 std::string tolerance_text(const CalibratedParameter& p) {
   if (!p.prior) return "free";
-  return shown_value(p.label.tolerance, p.label.unit) + (assumed(p) ? " assumed" : "");
+  return shown_value(p.label.tolerance * p.spread, p.label.unit) + (assumed(p) ? " assumed" : "");
 }
 
 std::string orientations_text(const Calibration& c) {
@@ -80,7 +80,10 @@ std::string parameters_text(const Calibration& c) {
   }
   std::string text = table.text() + orientations_text(c);
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
-    text += "assumed: nobody wrote this tolerance; it counts as knowledge of the parameter (--no-prior: it does not)\n";
+    text +=
+        "assumed: nobody wrote this tolerance; its kind is assumed, its size is what the readings show of parameters "
+        "of "
+        "that kind (--no-prior: it does not count)\n";
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.profiled; }))
     text +=
         "profile: the interval ends where the sum of squares, all other parameters estimated anew, has risen by what "

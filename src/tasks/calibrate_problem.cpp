@@ -61,6 +61,7 @@ class CalibrationRun {
     fit_options.prior = result_.prior;
     VariantColumns all = select_columns(*model_, problem_, spec_);
     if (!campaigns_.empty()) all = with_campaign_bases(*model_, all);
+    fit_options.components = result_.prior != Prior::none;
     fit_options.limits = frame_limits(*model_, all, result_.prior);
     place(all, fit_options);
     choose_columns(all);
@@ -347,6 +348,7 @@ class CalibrationRun {
       p.label = columns_.parameters[j];
       p.value = p.label.nominal + result_.fit.change[k];
       p.prior = counts(p.label, result_.prior);
+      p.spread = result_.fit.spreads[std::size_t(columns_.selected[j])];
       p.sigma = std::sqrt(result_.fit.covariance(k, k));
       p.half_width = stretch() * p.sigma;
       p.lower = p.value - p.half_width;
@@ -356,9 +358,12 @@ class CalibrationRun {
         p.lower = p.label.nominal + profile->lower;
         p.upper = p.label.nominal + profile->upper;
       }
-      p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share : 1.0);
+      p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share * p.spread : 1.0);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
+    for (const int j : result_.fit.contradicted)
+      result_.notes.push_back("the readings contradict the stated tolerance of " +
+                              columns_.parameters[std::size_t(j)].name + ": it is kept as it was stated");
     // Bases of other campaigns are the instrument's, and none of the robot's values.
     const auto robot = make_model(problem_, spec_);
     const std::vector<double> own(result_.correction.begin(),

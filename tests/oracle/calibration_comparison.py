@@ -60,6 +60,7 @@ def estimated_names(run, check):
         if p["estimated"]:
             check.note("tolerance", 0 if p["prior"] == should else np.inf)
             counts += [p["name"]] if should != "none" else []
+        check.note("tolerance", 0 if p["tolerance_times"] >= 1 and (p["prior"] == "assumed" or p["tolerance_times"] == 1) else np.inf)
     return estimated, [p["name"] for p in estimated], counts
 
 
@@ -86,9 +87,9 @@ def compare_parameters(run, estimate, stated, check):
     width = stats.t.ppf(0.975, result["freedom"]) if run.weights == "ols" else stats.norm.ppf(0.975)
     for p in stated:
         if p["interval"] is not None:
-            # In units of σ: an end may stand at zero.
+            # In units of σ: an end may stand at zero. Those by profile have linear ones beside them.
             ends = p["value"] + np.array([-1, 1]) * width * p["sigma"]
-            check.note("interval", (ends - np.array(p["interval"])) / p["sigma"])
+            check.note("interval", (ends - np.array(p["linear_interval"])) / p["sigma"])
     order = [estimate.names.index(name) for name in result["covariance"]["columns"]]
     kept = [k for k in range(len(order)) if plain[order[k]]]
     mine = estimate.covariance[np.ix_(order, order)][np.ix_(kept, kept)]
@@ -143,7 +144,9 @@ def compare_tests(run, estimate, first, check):
         check.test("lack of fit", judgement.lack_of_fit(estimate, run.lines, run.poses), tests["lack_of_fit"])
     check.close("freedom", estimate.freedom() + 1, run.result["freedom"] + 1)
     if run.weights == "wls":
-        check.close("χ²", first.chi_square(), run.result["chi_square"])
+        # Where the stated noise is refused, assumed tolerances count otherwise beside the noise that counts than beside that one.
+        if run.result["noise_factor"] == 1 or all(p["tolerance_times"] == 1 for p in run.result["parameters"]):
+            check.close("χ²", first.chi_square(), run.result["chi_square"])
         check.close("p of χ²", judgement.both_sides_of_chi_square(run.result["chi_square"], first.freedom()),
                     tests["chi_square"]["probability"])
 
@@ -207,6 +210,8 @@ def compare(run, brute_force):
     """All that can be judged of a run; None where parameters are so nearly dependent that differences cannot tell."""
     check = Check()
     stated, names, counts = estimated_names(run, check)
+    # How many times assumed tolerances count is the program's: the readings told it, all together.
+    run.arm.times = {p["name"]: p["tolerance_times"] for p in stated}
     poses, z = run.fitted()
     check.note("model / m", run.arm.differs_from_arm(poses.Q[0], {n: v for n, v in run.truth.items() if not n.startswith("station")}))
     # From where the robot was drawn: base, tool and targets; everything else from its nominal value.

@@ -16,7 +16,7 @@ class Estimate:
     def __init__(self, arm, variant, names, poses, z, counts=(), weights="wls", factor=1.0, start=None):
         self.arm, self.variant, self.names, self.poses, self.z, self.weights = arm, variant, list(names), poses, z, weights
         self.read = ~np.isnan(z)
-        self.units = np.array([arm.tolerance(name, variant)[0] for name in self.names])
+        self.units = np.array([arm.tolerance(name, variant)[0] * getattr(arm, "times", {}).get(name, 1.0) for name in self.names])
         self.counted = np.array([name in counts for name in self.names], bool)
         self.factor = factor
         self.nominal = arm.nominal(variant)

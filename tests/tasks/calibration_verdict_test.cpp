@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
@@ -46,6 +48,20 @@ TEST(Verdict, ResidualsThatNoRobotHasAreRefusedAndRightOnesAreNot) {
     const Calibration c = calibrated_case("conventions/problem.yaml", std::string("conventions/") + wrong + ".csv");
     EXPECT_EQ(c.verdict, Verdict::do_not_use) << wrong;
     EXPECT_THAT(c.refusals, Contains(HasSubstr("no robot's errors do that"))) << wrong;
+  }
+}
+
+TEST(Verdict, AZeroThatIsFortyTolerancesOffIsFoundWithinItsInterval) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  const Calibration c = calibrated_case("assumed_prior/problem.yaml", "assumed_prior/two_degrees.csv");
+  EXPECT_EQ(c.verdict, Verdict::use_it);
+  EXPECT_EQ(c.fit.noise_factor, 1.0) << "the noise is as stated; the tolerance was at fault";
+  for (const CalibratedParameter& p : c.parameters) {
+    if (!p.estimated || !p.label.name.ends_with(".offset")) continue;
+    const bool off = p.label.name == "joint_4.offset";
+    const double truth = off ? 2.0 * std::numbers::pi / 180 : 0.0;
+    EXPECT_NEAR(p.value, truth, p.half_width) << p.label.name;
+    EXPECT_EQ(p.spread > 10, off) << p.label.name << ": one zero that is off does not widen the others";
   }
 }
 

@@ -37,6 +37,12 @@ struct FitOptions {
   /// Corrections of all parameters to start from; those that are not estimated keep them. Empty: all zero.
   std::vector<double> start{};
   std::vector<WeakLimit> limits{};  ///< see frame_limits()
+  /// Assumed tolerances that count are a shape only: how large they are, the readings tell, group by group (lengths,
+  /// angles, zeros of joints, …), by restricted maximum likelihood; a parameter beyond its group has a size of its own.
+  bool components = false;
+  /// Of every parameter of the model: how many times its tolerance counts to begin with, or as it is without
+  /// `components`. Empty: once.
+  std::vector<double> spreads{};
   /// Weighted fits: readings are correlated from pose to pose by this effect, too (generalised least squares). Null:
   /// none.
   std::shared_ptr<const UnmodelledEffect> effect{};
@@ -60,6 +66,8 @@ struct Fit {
   /// Weighted: what the stated noise was multiplied by because the residuals refuse it (less than 1 % chance); else 1.
   /// The covariance counts it, and where tolerances count so do the estimates.
   double noise_factor = 1.0;
+  std::vector<double> spreads;    ///< of every parameter: how many times its tolerance counted; FitOptions::spreads
+  std::vector<int> contradicted;  ///< columns whose stated tolerance the readings refuse, with `components`
   /// R of the readings' Jacobian J = Q R with columns in units of tolerance, noise as stated: what the data alone tell.
   Eigen::MatrixXd root;
   std::vector<Eigen::VectorXd> residuals;    ///< per pose: measured less predicted, SI; NaN if not read

@@ -59,6 +59,7 @@ struct CalibratedParameter {
   Parameter label;  ///< nominal value: before
   bool estimated = true;
   bool prior = false;                ///< its tolerance counted
+  double spread = 1.0;               ///< so many times, where it is assumed and the readings told its size
   double value = 0.0, sigma = 0.0;   ///< SI
   double lower = 0.0, upper = 0.0;   ///< 95 % interval; infinite: no end on that side
   bool profiled = false;             ///< the interval is by profile, see Profile

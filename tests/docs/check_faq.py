@@ -107,10 +107,6 @@ class Answers:
         return (f"\"At least {share} % as informative as any plan of {poses} of these {candidates} candidates\" ([the first hour](getting-started.md)) is a proof by "
                 f"the equivalence theorem: no set of {poses} of these candidates, ever found or not, has more than 1/{float(share) / 100:.4f} times")
 
-    def workspace(self):
-        share = re.search(r"Over the whole workspace: (\d+) %", self.first_hour())[1]
-        return f"\"Over the whole workspace: {share} %\""
-
     def default_noise(self):
         self.first_hour()
         along, growth, across, more = re.search(r"([\d.]+) um \+ ([\d.]+) um/m along the beam, ([\d.]+) um \+ ([\d.]+) um/m across",
@@ -148,7 +144,7 @@ class Answers:
                 f"in place of {drawn['criterion']['log_det']:.3f}, and the same certified {100 * long['certificate']['candidates']['efficiency']:.2f} %")
 
     def said(self):
-        names = ("version how_many how_much_worse as_many_as_it_takes random_poses scaling certificate workspace default_noise twice_the_noise "
+        names = ("version how_many how_much_worse as_many_as_it_takes random_poses scaling certificate default_noise twice_the_noise "
                  "base_known a_pose_fails rejected other_nominal_model")
         return {name: getattr(self, name)() for name in names.split()}
 

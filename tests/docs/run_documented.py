@@ -126,7 +126,7 @@ def run_page(root, page, path):
 
 
 # Numbers of the first hour that say what is meant, and are no result.
-DEFINITIONS = ["Debian 12", "for 20 robots drawn", "KR 270", "its 95 % interval", "first of the 200 virtual robots"]
+DEFINITIONS = ["Debian 12 or 13", "Debian 12", "for 20 robots drawn", "KR 270", "its 95 % interval", "first of the 200 virtual robots"]
 
 
 def first_hour_complaints(text, outputs, written):

@@ -117,7 +117,8 @@ Eigen::Isometry3d fixed_place(const po::variables_map& values, const std::string
 DocumentOptions document_options(const po::variables_map& values) {
   DocumentOptions options;
   options.format = text_of(values, "from");
-  if (!options.format.empty() && !is_program_format(options.format)) find_readable_format(options.format);
+  if (!options.format.empty() && !is_program_format(options.format))
+    find_readable_format(options.format, program_format_names());
   if (const std::string name = text_of(values, "controller"); !name.empty())
     options.controller = controller_settings(name);
   if (const auto coupling = number_between(values, "coupling", -10, 10)) options.coupling = *coupling;

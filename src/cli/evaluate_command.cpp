@@ -65,7 +65,7 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   evaluate.drop = whole_number(values, "drop", 1, 1000000);
   evaluate.add = whole_number(values, "add", 1, 1000000);
   const std::string from = text_of(values, "from");
-  if (!from.empty() && !is_program_format(from)) find_readable_format(from);
+  if (!from.empty() && !is_program_format(from)) find_readable_format(from, program_format_names());
   evaluate.plan.variant = text_of(values, "variant");
   evaluate.plan.truth = text_of(values, "truth");
   evaluate.plan.criterion = text_of(values, "criterion");

@@ -83,7 +83,8 @@ const std::vector<PoseFormat>& pose_formats();
 /// Throws InputError naming all formats.
 const PoseFormat& find_pose_format(const std::string& name);
 /// The same of those that can be read.
-const PoseFormat& find_readable_format(const std::string& name);
+/// @param others  names that the caller knows beside them, for the message
+const PoseFormat& find_readable_format(const std::string& name, const std::string& others = "");
 std::string readable_format_names();
 
 /// What the format's writer makes. Throws CannotDo if the format is for joints and the plan's coordinates are those

@@ -45,7 +45,7 @@ const std::vector<PoseFormat>& pose_formats() {
 
 namespace {
 
-const PoseFormat& find(const std::string& name, bool readable) {
+const PoseFormat& find(const std::string& name, bool readable, const std::string& others = "") {
   std::string names;
   std::vector<std::string> words;
   for (const PoseFormat& format : pose_formats()) {
@@ -57,13 +57,15 @@ const PoseFormat& find(const std::string& name, bool readable) {
   throw InputError({},
                    fmt::format("{} is not a format that is {}{}", formats::in_quotes(name),
                                readable ? "read" : "written", meant_instead(name, words)),
-                   "allowed: " + names);
+                   "allowed: " + names + (others.empty() ? "" : ", " + others));
 }
 
 }  // namespace
 
 const PoseFormat& find_pose_format(const std::string& name) { return find(name, false); }
-const PoseFormat& find_readable_format(const std::string& name) { return find(name, true); }
+const PoseFormat& find_readable_format(const std::string& name, const std::string& others) {
+  return find(name, true, others);
+}
 
 std::string readable_format_names() {
   std::string names;

@@ -38,16 +38,7 @@ void OriginEditor::set(const std::string& joint, const NewOrigin& origin) {
   else change_origin(*tag, origin);
 }
 
-std::string OriginEditor::text() {
-  std::stable_sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
-  std::string result;
-  std::size_t done = 0;
-  for (const Edit& edit : edits_) {
-    result.append(text_, done, edit.begin - done).append(edit.text);
-    done = edit.end;
-  }
-  return result.append(text_, done);
-}
+std::string OriginEditor::text() const { return with_edits(text_, edits_); }
 
 void OriginEditor::insert_origin(std::size_t at, const NewOrigin& origin) {
   const std::size_t next = std::min(text_.find_first_not_of(" \t\r\n", at), text_.size());

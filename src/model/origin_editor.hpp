@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/support/text_edit.hpp"
 #include "xml_tags.hpp"
 
 namespace posewright {
@@ -27,15 +28,9 @@ class OriginEditor {
 
   /// Throws InputError for a joint that is not there.
   void set(const std::string& joint, const NewOrigin& origin);
-  std::string text();
+  std::string text() const;
 
  private:
-  /// A stretch of the text and what stands there instead.
-  struct Edit {
-    std::size_t begin, end;
-    std::string text;
-  };
-
   void insert_origin(std::size_t at, const NewOrigin& origin);
   void change_origin(const XmlTag& tag, const NewOrigin& origin);
 
@@ -43,7 +38,7 @@ class OriginEditor {
   std::string file_;
   std::vector<XmlTag> tags_;
   std::map<std::string, std::size_t> joint_;
-  std::vector<Edit> edits_;
+  std::vector<TextEdit> edits_;
 };
 
 }  // namespace posewright

@@ -9,27 +9,11 @@
 #include "axis_counter.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/text_edit.hpp"
 
 namespace posewright {
 namespace programs {
 namespace {
-
-/// A place of the text with what stands there instead.
-struct Edit {
-  std::size_t begin, end;
-  std::string text;
-};
-
-std::string with_edits(const std::string& text, std::vector<Edit> edits) {
-  std::stable_sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
-  std::string result;
-  std::size_t done = 0;
-  for (const Edit& edit : edits) {
-    result.append(text, done, edit.begin - done).append(edit.text);
-    done = edit.end;
-  }
-  return result.append(text, done);
-}
 
 class Document : public ProgramDocument {
  public:
@@ -68,7 +52,7 @@ class Document : public ProgramDocument {
   }
 
   std::string text(const std::vector<std::optional<Values>>& values, const std::string& remark) const override {
-    std::vector<Edit> edits;
+    std::vector<TextEdit> edits;
     for (std::size_t p = 0; p < values.size(); ++p) {
       if (!values[p]) continue;
       const std::vector<double> axes = values_of(p, values[p]->stand.joints);
@@ -84,7 +68,7 @@ class Document : public ProgramDocument {
   }
 
  private:
-  static Edit edit(const TextNumber& at, std::string text) { return {at.begin, at.end, std::move(text)}; }
+  static TextEdit edit(const TextNumber& at, std::string text) { return {at.begin, at.end, std::move(text)}; }
 
   const TextNumber* value_of(const FoundPoint& point, const std::string& name) const {
     const bool exact = program_.language->pose != nullptr && point.form == FoundPoint::Form::pose;
@@ -138,7 +122,7 @@ class Document : public ProgramDocument {
     return statuses;
   }
 
-  void edit_pose(std::vector<Edit>& edits, std::size_t p, const Values& values) const {
+  void edit_pose(std::vector<TextEdit>& edits, std::size_t p, const Values& values) const {
     const PoseForm& form = program_.language->pose();
     const PlacedFrames& frames = *frames_[p];
     const std::vector<double> pose = form.written(frames.X_BaseUser.inverse() * values.X_BaseTip * frames.X_TipTool);
@@ -171,7 +155,7 @@ class Document : public ProgramDocument {
     frames_.push_back(frames);
   }
 
-  void add_remark(std::vector<Edit>& edits, const std::string& remark) const {
+  void add_remark(std::vector<TextEdit>& edits, const std::string& remark) const {
     const auto& place = program_.reading.remark;
     if (!place || remark.empty()) return;
     const std::size_t end = text_.find('\n');

@@ -6,6 +6,7 @@
 #include "posewright/calibration/placement.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
+#include "robust_weights.hpp"
 #include "stacked_readings.hpp"
 
 namespace posewright {
@@ -36,12 +37,6 @@ std::vector<double> sizes_of(const IdentificationModel& model, const std::vector
   return sizes;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Once the poses are sorted into kept and left out.
 class Trimming {
  public:
@@ -69,7 +64,7 @@ class Trimming {
 
   /// Leaves out what is far off; false if nothing changes.
   bool trim(const std::vector<double>& sizes) {
-    const double middle = median_of(sizes);
+    const double middle = median(sizes);
     const std::vector<char> before = out_;
     for (std::size_t k = 0; k < poses_.size(); ++k)
       out_[k] = sizes[k] > beyond_tolerances * explained_[k] && sizes[k] > beyond_median * middle ? 1 : 0;

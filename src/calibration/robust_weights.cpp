@@ -14,12 +14,6 @@ constexpr double huber_bend = 1.345, tukey_end = 4.685;
 // Below this no residual is an outlier: fits of exact data have nothing to weigh.
 constexpr double smallest_scale = 1e-9;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Norms in units of what a group of that size has in the middle for unit noise.
 double central_scale(const Eigen::VectorXd& squares, const Eigen::VectorXd& sizes) {
   std::vector<double> relative;
@@ -39,6 +33,12 @@ double weight(double u, RobustShape shape) {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& squares, const Eigen::VectorXd& sizes, RobustShape shape) {
   const double scale = central_scale(squares, sizes);

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace posewright {
+
+/// The value in the middle, the upper one of two; there is one at least.
+double median(std::vector<double> values);
 
 enum class RobustShape { huber, tukey };
 

@@ -19,6 +19,11 @@ struct Verdict {
   std::string why;
 };
 
+/// Whether the instruction moves the robot, to whatever.
+bool is_motion(const Use& use) {
+  return use.role != Role::operand && use.role != Role::changed && use.role != Role::passed;
+}
+
 Verdict left(std::string why) { return {Treatment::left, std::move(why)}; }
 Verdict not_understood(std::string why) { return {Treatment::not_understood, std::move(why)}; }
 
@@ -87,8 +92,7 @@ class Accountant {
 
   void count_uses(const ReadProgram& program) {
     for (const Use& use : program.reading.uses) {
-      if (use.role != Role::operand && use.role != Role::changed && use.role != Role::passed)
-        moving_.insert(scope_of(program));
+      if (is_motion(use)) moving_.insert(scope_of(program));
       if (use.name.empty()) continue;
       Tally& tally = tallies_[key(program, use.name)];
       tally.first.try_emplace(use.role, &use);
@@ -102,7 +106,7 @@ class Accountant {
   void add_lines(const ReadProgram& program, ProgramAccount& account) const {
     std::string before;
     for (const Use& use : program.reading.uses) {
-      if (!use.moves || use.role == Role::operand || use.role == Role::changed || use.role == Role::passed) continue;
+      if (!use.moves || !is_motion(use)) continue;
       std::string now;
       if (use.role == Role::pose)
         now = use.point ? inline_key(program, *use.point) : element_key(program, use.name, use.index);
@@ -255,8 +259,7 @@ class Accountant {
 
   void add_motions(const ReadProgram& program, ProgramAccount& account) const {
     for (const Use& use : program.reading.uses) {
-      if (!use.moves || use.point || use.role == Role::operand || use.role == Role::changed || use.role == Role::passed)
-        continue;
+      if (!use.moves || use.point || !is_motion(use)) continue;
       const Verdict verdict = of_motion(program, use);
       account.entries.push_back({use.line, use.name.empty() ? use.instruction : use.instruction + " " + use.name,
                                  verdict.treatment, verdict.why, -1,

@@ -99,11 +99,20 @@ std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double>
   return cell.collision == nullptr ? std::nullopt : body_distance(cell.collision->nearest(q));
 }
 
+namespace {
+
+/// What proposed configurations keep from the nearer end.
+double margin_of(const Coordinate& in_force, const Coordinate& proposed) {
+  return std::min(proposed.lower - in_force.lower, in_force.upper - proposed.upper);
+}
+
+}  // namespace
+
 std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem) {
   std::vector<LimitMargin> margins;
   for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
     const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
-    const double margin = std::min(inner.lower - all.lower, all.upper - inner.upper);
+    const double margin = margin_of(all, inner);
     const auto& asked = all.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
     if (margin > 0) margins.push_back({all.name, all.unit, margin, !asked});
   }
@@ -119,7 +128,7 @@ std::string proposed_within(const Workspace& workspace, const IdentificationMode
     for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
       const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
       if (all.periodic || all.choice() || all.unit != unit) continue;
-      const double margin = std::min(inner.lower - all.lower, all.upper - inner.upper);
+      const double margin = margin_of(all, inner);
       least = std::min(least, margin);
       most = std::max(most, margin);
     }

@@ -174,25 +174,26 @@ class Tp {
     found_.points.push_back(point);
   }
 
-  /// NAME = number of the first group; others are of other mechanisms.
+  /// NAME = number of the arm's group, GPn.NAME of the others, which are other mechanisms.
   void values(FoundPoint& point, std::size_t begin, std::size_t end) {
     const std::vector<Token> tokens = tokens_of(text_, {"", "'", "_", false}, begin, end);
     TokenCursor cursor(text_, tokens);
+    std::string group;
     for (; !cursor.done(); cursor.skip()) {
       if (!cursor.is_word()) continue;
       const std::string word = upper(cursor.text());
-      if (word.starts_with("GP") && word != "GP1" && word.size() > 2 && is_digit(word[2])) break;
-      if (cursor.ahead(1).is(':', text_) && (word == "UF" || word == "UT" || word == "CONFIG")) {
+      if (word.starts_with("GP") && word.size() > 2 && is_digit(word[2])) group = word == "GP1" ? "" : word + ".";
+      if (group.empty() && cursor.ahead(1).is(':', text_) && (word == "UF" || word == "UT" || word == "CONFIG")) {
         head_of_pose(point, word, cursor.ahead(2));
         continue;
       }
       if (!cursor.ahead(1).is('=', text_)) continue;
       cursor.skip();
       cursor.skip();
-      if (word == "X") point.form = Form::pose;
+      if (group.empty() && word == "X") point.form = Form::pose;
       const Expression value = read_expression(cursor, {});
       if (value.is(Expression::Kind::constant)) {
-        point.axes.emplace_back(word, TextNumber{value.begin, value.end, value.value});
+        point.axes.emplace_back(group + word, TextNumber{value.begin, value.end, value.value});
       } else {
         point.form = Form::unclear;
         point.why = word + " has no value";

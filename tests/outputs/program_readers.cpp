@@ -191,18 +191,25 @@ Program read_tp(const std::string& listing) {
   std::string positions;
   for (++i; i + 1 < lines.size(); ++i) positions += lines[i] + "\n";
   std::map<int, std::vector<double>> points;
-  const std::regex block(R"(P\[([0-9]+)\]\{\n   GP1:\n\tUF : [0-9]+, UT : [0-9]+,\n((?:\t[^\n]*\n){2})\};\n)");
+  const std::regex block(
+      R"(P\[([0-9]+)\]\{\n   GP1:\n\tUF : [0-9]+, UT : [0-9]+,\n((?:\t[^\n]*\n){2,3})(?:   GP2:\n\tUF : [0-9]+, UT : [0-9]+,\n(\t[^\n]*\n))?\};\n)");
   std::size_t read = 0;
   for (std::sregex_iterator it(positions.begin(), positions.end(), block), end; it != end; ++it) {
-    const std::string body = (*it)[2].str();
+    const std::string arm = (*it)[2].str(), positioner = (*it)[3].str();
     read += std::size_t(it->length());
     std::vector<double> q;
-    const std::regex axis("J([1-6])= +" + number + " deg");
-    for (std::sregex_iterator a(body.begin(), body.end(), axis); a != end; ++a) {
-      if (std::stoul((*a)[1].str()) != q.size() + 1) throw std::runtime_error("axes out of order");
-      q.push_back(std::strtod((*a)[2].str().c_str(), nullptr));
-    }
+    const auto take = [&](const std::string& body, const char* letter, const char* units) {
+      const std::regex axis(std::string(letter) + "([1-9])= +" + number + " (" + units + ")");
+      std::size_t axes = 0;
+      for (std::sregex_iterator a(body.begin(), body.end(), axis); a != end; ++a) {
+        if (std::stoul((*a)[1].str()) != ++axes) throw std::runtime_error("axes out of order");
+        q.push_back(std::strtod((*a)[2].str().c_str(), nullptr));
+      }
+    };
+    take(arm, "J", "deg");
     if (q.size() != 6) throw std::runtime_error("not six axes");
+    take(arm, "E", "deg|mm");
+    take(positioner, "J", "deg|mm");
     points[std::stoi((*it)[1].str())] = q;
   }
   if (read != positions.size()) throw std::runtime_error("positions not understood");

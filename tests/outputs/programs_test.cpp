@@ -232,6 +232,26 @@ TEST(RobotPrograms, ExternalAxesStandWhereTheControllerHasThem) {
   }
 }
 
+TEST(RobotPrograms, OfFanucHoldRailAndPositionerWithTheirUnits) {
+  PoseSequence sequence = random_sequence(9, 3, 4);
+  sequence.units.front() = "m";
+  ExportOptions options;
+  options.coupling = 0;
+  EXPECT_THROW(find_pose_format("fanuc-tp").write(sequence, options), CannotDo);
+  options.controller = parse_controller_settings("axes: [E1, J1, J2, J3, J4, J5, J6, GP2.J1, GP2.J2]", "r.yaml");
+  const std::string listing = find_pose_format("fanuc-tp").write(sequence, options).files[0].bytes;
+  EXPECT_THAT(listing, HasSubstr("DEFAULT_GROUP\t= 1,1,*,*,*;"));
+  EXPECT_THAT(listing, HasSubstr(" mm\r\n   GP2:\r\n\tUF : 0, UT : 1,\r\n\tJ1="));
+  const Program program = readers::read_tp(listing);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& q = sequence.poses[k].values;
+    ASSERT_EQ(program.moves[k].size(), 9U);
+    EXPECT_NEAR(program.moves[k][6], q[0] * 1000, 1e-4);
+    for (std::size_t i = 0; i < 8; ++i)
+      EXPECT_NEAR(program.moves[k][i < 6 ? i : i + 1] * std::numbers::pi / 180, q[i + 1], tolerance);
+  }
+}
+
 TEST(RobotPrograms, MoveWithTheToolThatIsNamed) {
   ExportOptions options;
   options.coupling = 0;

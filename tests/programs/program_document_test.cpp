@@ -152,6 +152,21 @@ TEST(TpProgram, LeavesIncrementsAndOffsetsAndMarksTheFile) {
   EXPECT_THAT(after, HasSubstr("P[4]{\n   GP1:\n\tUF : 0, UT : 1,\n\tJ1= 0.000 deg,\tJ2= 0.000 deg,\tJ3= 5.000 deg"));
 }
 
+TEST(TpProgram, LeavesRailAndPositionerWhereTheyAre) {
+  const std::string others =
+      ",\n\tE1= 500.000  mm\n   GP2:\n\tUF : 0, UT : 1,\n\tJ1= 30.000 deg,\tJ2= 90.000 deg\n};\n/END\n";
+  const std::string text =
+      "/PROG  G\n/ATTR\nLINE_COUNT\t= 1;\n/MN\n   1:J P[1] 20% FINE    ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : "
+      "1,\n\tJ1= "
+      "0.000 deg,\tJ2= 10.000 deg,\tJ3= 20.000 deg,\n\tJ4= 0.000 deg,\tJ5= 30.000 deg,\tJ6= 0.000 deg" +
+      others;
+  const auto document = std::move(read({{"fanuc-tp", text, "g.ls"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("5 J P[1]: C", "7 P[1]: C"));
+  const std::string after = moved(*document);
+  EXPECT_THAT(after, HasSubstr(others));
+  EXPECT_THAT(after, Not(HasSubstr("J1= 0.000 deg")));
+}
+
 TEST(UrscriptProgram, ComputesConstantsAndSaysWhatItCannot) {
   const std::string text =
       "def prog():\n  q1 = [0.25, -0.5, 0.5, 0, 0.6, 0]\n  movej([0.15, -0.5, 0.5, 0, 0.6, 0], a=1.4, v=1.05)\n"

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "formats.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
@@ -16,7 +18,8 @@ const ProgramRules tp_rules = {
     .format = "fanuc-tp",
     .longest_name = 36,
     .capitals = true,
-    .axes = {"J1", "J2", "J3", "J4", "J5", "J6"},
+    // Axes that move with the arm's group, and those of a positioner, a group of its own.
+    .axes = {"J1", "J2", "J3", "J4", "J5", "J6", "E1", "E2", "E3", "GP2.J1", "GP2.J2", "GP2.J3"},
     .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "the controller's J3 is J3 - F*J2 of a URDF: F is 1 for nearly all FANUC arms, -1 for the "
@@ -62,15 +65,37 @@ std::vector<std::string> main_lines(const RobotProgram& program, const ExportOpt
   return lines;
 }
 
+constexpr std::string_view second_group = "GP2.";
+
+bool has_second_group(const RobotProgram& program) {
+  return std::ranges::any_of(program.axes, [](const std::string& axis) { return axis.starts_with(second_group); });
+}
+
+/// "J1= … deg,\tJ2= … deg" of one group, three in a line.
+std::string group_text(const RobotProgram& program, const std::vector<double>& values, bool second) {
+  std::string text;
+  std::size_t count = 0;
+  for (const std::string& axis : tp_rules.axes) {
+    const auto at = std::size_t(std::ranges::find(program.axes, axis) - program.axes.begin());
+    if (at == program.axes.size() || axis.starts_with(second_group) != second) continue;
+    text += fmt::format("{}{}={:>{}} {}",
+                        count == 0       ? "\t"
+                        : count % 3 == 0 ? ",\n\t"
+                                         : ",\t",
+                        second ? axis.substr(second_group.size()) : axis, fixed(values[at], program.decimals),
+                        program.decimals + 7, program.slides[at] ? "mm" : "deg");
+    ++count;
+  }
+  return text + "\n";
+}
+
 std::string position(const RobotProgram& program, std::size_t k, int frame, int tool) {
-  std::vector<std::string> cells;
-  for (const std::string& axis : tp_rules.axes)
-    for (std::size_t i = 0; i < program.axes.size(); ++i)
-      if (program.axes[i] == axis)
-        cells.push_back(fmt::format("{}={:>{}} deg", axis, fixed(program.points[k].axes[i], program.decimals),
-                                    program.decimals + 7));
-  return fmt::format("P[{}]{{\n   GP1:\n\tUF : {}, UT : {},\n\t{},\t{},\t{},\n\t{},\t{},\t{}\n}};\n", k + 1, frame,
-                     tool, cells[0], cells[1], cells[2], cells[3], cells[4], cells[5]);
+  const std::vector<double>& values = program.points[k].axes;
+  std::string text = fmt::format("P[{}]{{\n   GP1:\n\tUF : {}, UT : {},\n", k + 1, frame, tool);
+  text += group_text(program, values, false);
+  if (has_second_group(program))
+    text += fmt::format("   GP2:\n\tUF : {}, UT : {},\n", frame, tool) + group_text(program, values, true);
+  return text + "};\n";
 }
 
 Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
@@ -81,9 +106,9 @@ Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
       "CREATE\t\t= DATE 26-01-01  TIME 12:00:00;\nMODIFIED\t= DATE 26-01-01  TIME 12:00:00;\nFILE_NAME\t= ;\n"
       "VERSION\t\t= 0;\nLINE_COUNT\t= {};\nMEMORY_SIZE\t= 0;\nPROTECT\t\t= READ_WRITE;\n"
       "TCD:  STACK_SIZE\t= 0,\n      TASK_PRIORITY\t= 50,\n      TIME_SLICE\t= 0,\n      BUSY_LAMP_OFF\t= 0,\n"
-      "      ABORT_REQUEST\t= 0,\n      PAUSE_REQUEST\t= 0;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n"
+      "      ABORT_REQUEST\t= 0,\n      PAUSE_REQUEST\t= 0;\nDEFAULT_GROUP\t= 1,{},*,*,*;\n"
       "CONTROL_CODE\t= 00000000 00000000;\n/MN\n",
-      program.name, lines.size());
+      program.name, lines.size(), has_second_group(program) ? "1" : "*");
   for (std::size_t i = 0; i < lines.size(); ++i) text += fmt::format("{:>4}:{}\n", i + 1, lines[i]);
   text += "/POS\n";
   for (std::size_t k = 0; k < program.points.size(); ++k)
@@ -99,7 +124,7 @@ PoseFormat fanuc_tp() {
           "FANUC TP listing",
           "FANUC controllers with ASCII upload, or maketp",
           ".LS",
-          "six turning joints; --coupling",
+          "six joints (external axes with axes); --coupling",
           {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload", "base", "coupling",
            "controller"},
           true,

@@ -142,6 +142,7 @@ RobotProgram make_program(const PoseSequence& all, const ExportOptions& options,
   program.name = program_name(options.name, rules);
   const Axes axes(sequence, options, rules);
   program.axes = axes.names();
+  for (const std::string& unit : sequence.units) program.slides.push_back(unit == "m");
   program.speed = options.speed.value_or(default_speed);
   program.settle = options.settle.value_or(sequence.settle > 0 ? sequence.settle : default_settle);
   program.wait = options.wait;

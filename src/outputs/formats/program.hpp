@@ -42,6 +42,7 @@ struct ProgramStep {
 struct RobotProgram {
   std::string name;
   std::vector<std::string> axes;  ///< of each value of a point
+  std::vector<bool> slides;       ///< which of them are in mm
   std::vector<ProgramPoint> points;
   std::vector<ProgramStep> steps;
   double speed = 10.0;         ///< percent

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "formats.hpp"
 #include "number_rows.hpp"
 #include "posewright/outputs/format_text.hpp"
@@ -10,11 +12,22 @@
 namespace posewright::formats {
 namespace {
 
+/// J1, J2, …; "[mm]" behind those that slide, which are external axes, E1, E2, …, of an arm with six that turn.
+std::string header(const std::vector<std::string>& units) {
+  const bool arm = std::ranges::count(units, "rad") == 6;
+  std::string text;
+  int joint = 0, external = 0;
+  for (const std::string& unit : units) {
+    const bool slides = unit != "rad";
+    text += fmt::format("{}{}{}{}", text.empty() ? "" : ",", slides && arm ? "E" : "J",
+                        slides && arm ? ++external : ++joint, slides ? " [mm]" : "");
+  }
+  return text + "\n";
+}
+
 Exported write_robodk_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = to_measure(all);
-  std::string text;
-  for (std::size_t i = 0; i < sequence.names.size(); ++i) text += fmt::format("{}J{}", i > 0 ? "," : "", i + 1);
-  text += "\n";
+  std::string text = header(sequence.units);
   for (const SequencePose& pose : sequence.poses)
     for (std::size_t i = 0; i < pose.values.size(); ++i)
       text += shortest(to_degrees_or_millimetres(pose.values[i], sequence.units[i])) +

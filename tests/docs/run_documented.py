@@ -22,6 +22,8 @@ SLOW = {
     "posewright stations examples/cell/problem.yaml": "--candidates 20 --restarts 1 --full 0",
     "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix": QUICK,
     "posewright evaluate examples/": QUICK,
+    "posewright evaluate problem.yaml poses.yaml": QUICK,
+    "posewright plan problem.yaml --poses 24 --fixed": "--time-limit 3",
     "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000": "--draws 200",
     "posewright simulate examples/telescope/problem.yaml plan.json": "--draws 20",
     "posewright simulate examples/telescope/problem.yaml rigid.json": "--draws 20",

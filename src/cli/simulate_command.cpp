@@ -39,9 +39,9 @@ po::options_description simulate_command_options() {
       ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                                        //
       ("validation", text("k"), "random places to check if there are no test poses (50)")                             //
       ("candidates", text("n"),
-       help_with_default("configurations that choose the parameters of auto", default_candidates).c_str())  //
-      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())                      //
-      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")                        //
+       "configurations that choose the parameters of auto (as plan)")                   //
+      ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())  //
+      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")    //
       ("force", "replace a file that posewright did not write");
   options.add(task_options()).add(problem_options());
   return options;
@@ -102,7 +102,7 @@ SimulateOptions options_of(const po::variables_map& values, const CommonOptions&
   experiment.seed = common.seed;
   experiment.threads = common.threads;
   simulate.validation = whole_number(values, "validation", 1, 1000000).value_or(simulate.validation);
-  simulate.candidates = whole_number(values, "candidates", 1, 10000000).value_or(simulate.candidates);
+  simulate.candidates = whole_number(values, "candidates", 1, 10000000);
   return simulate;
 }
 

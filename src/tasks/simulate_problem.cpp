@@ -78,7 +78,7 @@ class SimulationRun {
   Variant variant(const Problem& problem, const VariantSpec& spec) const {
     VariantOptions wanted;
     wanted.variant = spec.name;
-    wanted.candidates = options_.candidates;
+    wanted.candidates = options_.candidates.value_or(problem.design.candidates.value);
     wanted.seed = options_.experiment.seed;
     wanted.threads = options_.experiment.threads;
     return make_variant(problem, wanted, monitor_);

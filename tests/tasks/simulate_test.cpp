@@ -103,6 +103,18 @@ TEST(Simulate, VariantsOfOtherCataloguesAreComparedByReadingsAlone) {
   EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 18)), options, Monitor{}), CannotDo);
 }
 
+TEST(Simulate, TakesTheFilesCandidatesForAutomaticParameters) {
+  Problem problem = example("kr270/problem.yaml");
+  problem.design.candidates.value = 2;
+  SimulateOptions options = quick("automatic", 2);
+  const auto parameters = [&] {
+    return simulate_problem(problem, given_poses(problem, list_of(problem, 18)), options, Monitor{}).parameters.size();
+  };
+  EXPECT_LT(parameters(), 18U) << "two poses cannot identify as many";
+  options.candidates = 200;
+  EXPECT_EQ(parameters(), 33U);
+}
+
 TEST(Simulate, RefusesWhatDoesNotDetermineTheParameters) {
   const Problem problem = example("kr270/problem.yaml");
   EXPECT_THROW(simulate_problem(problem, given_poses(problem, list_of(problem, 3)), quick("geometric", 5), Monitor{}),

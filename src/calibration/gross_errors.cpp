@@ -12,7 +12,7 @@
 namespace posewright {
 namespace {
 
-constexpr double beyond_tolerances = 10.0, beyond_median = 5.0, fitting = 3.0;
+constexpr double beyond_median = 5.0, fitting = 3.0;
 constexpr std::size_t least_poses = 5;
 constexpr int most_trims = 5;
 
@@ -67,7 +67,7 @@ class Trimming {
     const double middle = median(sizes);
     const std::vector<char> before = out_;
     for (std::size_t k = 0; k < poses_.size(); ++k)
-      out_[k] = sizes[k] > beyond_tolerances * explained_[k] && sizes[k] > beyond_median * middle ? 1 : 0;
+      out_[k] = ResidualSize{sizes[k], explained_[k]}.beyond_robots() && sizes[k] > beyond_median * middle ? 1 : 0;
     return out_ != before;
   }
 
@@ -125,6 +125,20 @@ std::vector<double> explained_sizes(const IdentificationModel& model, const Vari
     sizes.push_back(std::sqrt(1.0 + (blocks.block(k) * tolerances_of(all).asDiagonal()).squaredNorm() / count));
   }
   return sizes;
+}
+
+ResidualSize residual_size(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+  const std::vector<double> sizes = sizes_of(model, correction, poses);
+  const std::vector<double> explained = explained_sizes(model, columns, poses, correction);
+  double squares = 0, explained_squares = 0, count = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const auto read = double(poses[k].y.array().isFinite().count());
+    squares += read * sizes[k] * sizes[k];
+    explained_squares += read * explained[k] * explained[k];
+    count += read;
+  }
+  return {std::sqrt(squares / count), std::sqrt(explained_squares / count)};
 }
 
 std::vector<GrossPose> gross_poses(const IdentificationModel& model, const VariantColumns& columns,

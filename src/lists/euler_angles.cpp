@@ -1,19 +1,8 @@
 #include "euler_angles.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace posewright {
-
-Eigen::Matrix3d EulerAngles::rotation(const Eigen::Vector3d& angles) const {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(angles[Eigen::Index(k)], Eigen::Vector3d::Unit(axes[k])).toRotationMatrix();
-    R = moving ? Eigen::Matrix3d(R * turn) : Eigen::Matrix3d(turn * R);
-  }
-  return R;
-}
 
 std::vector<EulerAngles> euler_angles_of(const std::vector<std::string>& columns) {
   const auto has = [&](const std::string& name) {
@@ -22,11 +11,9 @@ std::vector<EulerAngles> euler_angles_of(const std::vector<std::string>& columns
   std::vector<EulerAngles> found;
   for (const bool moving : {false, true})
     for (int code = 0; code < 27; ++code) {
-      EulerAngles angles{moving, {code / 9, code / 3 % 3, code % 3}, {}};
+      EulerAngles angles{{moving, {code / 9, code / 3 % 3, code % 3}}, {}};
       if (angles.axes[0] == angles.axes[1] || angles.axes[1] == angles.axes[2]) continue;
-      std::string name = moving ? "pose.moving_" : "pose.fixed_";
-      for (const int axis : angles.axes) name += "xyz"[axis];
-      for (std::size_t k = 0; k < 3; ++k) angles.columns[k] = name + "." + std::to_string(k + 1);
+      for (std::size_t k = 0; k < 3; ++k) angles.columns[k] = "pose." + angles.name() + "." + std::to_string(k + 1);
       if (std::all_of(angles.columns.begin(), angles.columns.end(), has)) found.push_back(std::move(angles));
     }
   return found;

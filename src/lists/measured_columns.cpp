@@ -59,6 +59,11 @@ void MeasuredColumns::find_orientation() {
     throw InputError(header(), "has an orientation twice, " + ways[0] + " and " + ways[1], "one of them");
 }
 
+OrientationForm MeasuredColumns::orientation() const {
+  if (euler_) return {OrientationForm::angles, *euler_};
+  return {quaternions_ ? OrientationForm::quaternion : OrientationForm::vector};
+}
+
 void MeasuredColumns::find_readings() {
   int found = 0;
   std::string names;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "euler_angles.hpp"
+#include "posewright/calibration/orientation_form.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/problem.hpp"
@@ -27,6 +28,7 @@ class MeasuredColumns {
   Eigen::Vector3d point(int row, const std::string& name) const;
   /// The cell of a column, empty if there is none.
   std::string text(int row, const std::string& column) const;
+  OrientationForm orientation() const;
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -202,6 +202,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();
+  data.orientation = columns.orientation();
   ReadingAverages averaging(model, problem.measurement.repeats, data);
   SuspiciousRows suspicious(model);
   const std::optional<PlatformPoints> platform = platform_points(problem, model);

@@ -64,24 +64,6 @@ Eigen::Vector2d by_lens(const Eigen::Vector3d& p, const Lens& lens, int k) {
   }
 }
 
-}  // namespace
-
-namespace {
-
-/// Line of sight (z = 1) whose image is the pixel, by Newton's iteration from where it would be without distortion;
-/// what is beyond the reach of the lens's polynomial stays there.
-Eigen::Vector3d line_of_sight(const Lens& lens, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector3d straight((pixel.x() - lens[2]) / lens[0], (pixel.y() - lens[3]) / lens[1], 1);
-  Eigen::Vector3d p = straight;
-  Eigen::Vector2d found;
-  for (int step = 0; step < 20; ++step) {
-    project(p.data(), lens.data(), found.data());
-    p.head<2>() += by_point(p, lens).leftCols<2>().fullPivLu().solve(pixel - found);
-  }
-  project(p.data(), lens.data(), found.data());
-  return p.allFinite() && (found - pixel).norm() < 1e-6 ? p : straight;
-}
-
 Lens lens_of(const CameraMeasurement& camera) {
   Lens lens = {camera.fx, camera.fy, camera.cx, camera.cy};
   for (std::size_t k = 0; k < 5; ++k) lens[4 + k] = camera.distortion[k];
@@ -90,13 +72,27 @@ Lens lens_of(const CameraMeasurement& camera) {
 
 }  // namespace
 
+Eigen::Vector3d line_of_sight(const CameraMeasurement& camera, const Eigen::Vector2d& pixel) {
+  const Lens lens = lens_of(camera);
+  const Eigen::Vector3d straight((pixel.x() - lens[2]) / lens[0], (pixel.y() - lens[3]) / lens[1], 1);
+  Eigen::Vector3d p = straight;
+  Eigen::Vector2d found;
+  for (int step = 0; step < 20; ++step) {
+    project(p.data(), lens.data(), found.data());
+    if ((found - pixel).norm() < 1e-9) return p;
+    p.head<2>() += by_point(p, lens).leftCols<2>().fullPivLu().solve(pixel - found);
+  }
+  project(p.data(), lens.data(), found.data());
+  return p.allFinite() && (found - pixel).norm() < 1e-6 ? p : straight;
+}
+
 InstrumentView view_of(const CameraMeasurement& camera) {
   InstrumentView view;
   view.image = InstrumentView::Image{camera.width, camera.height, {}};
   for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(camera.width, 0), Eigen::Vector2d(camera.width, camera.height),
         Eigen::Vector2d(0, camera.height)})
-    view.image->corners.push_back(line_of_sight(lens_of(camera), corner));
+    view.image->corners.push_back(line_of_sight(camera, corner));
   view.has_places = true;
   view.places = {{{"camera", camera.camera}, "camera", "the camera"}};
   view.places_on_tip = camera.on_hand;

@@ -8,6 +8,10 @@ namespace posewright {
 
 InstrumentView view_of(const CameraMeasurement& camera);
 
+/// Line of sight (z = 1) whose image is the pixel, by Newton's iteration from where it would be without distortion;
+/// what is beyond the reach of the lens's polynomial stays there.
+Eigen::Vector3d line_of_sight(const CameraMeasurement& camera, const Eigen::Vector2d& pixel);
+
 /// A camera and a board of known points, one on the tip, the other fixed. Rows: point by point, image coordinates u, v
 /// (px). Own parameters: camera.{x,…,rz} and board.{x,…,rz}, displacements of their frames in what carries them (the
 /// hand-eye transform and where the fixed one stands), camera.{fx, fy, cx, cy, k1, k2, p1, p2, k3}.

@@ -12,6 +12,7 @@
 #include "calibration_verdict.hpp"
 #include "effects_left_out.hpp"
 #include "posewright/blocks/identifiability.hpp"
+#include "posewright/calibration/conventions.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/gross_errors.hpp"
@@ -69,6 +70,7 @@ class CalibrationRun {
     fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
     place_again(fit_options);
     refuse_gross_poses(fit_options);
+    refuse_conventions();
     if (options_.estimate_alone) {
       result_.fit = fit(*model_, columns_, fitted_, fit_options);
       return estimate_alone(fit_options);
@@ -141,6 +143,7 @@ class CalibrationRun {
     held_back_ = std::move(data.held_back);
     validation_ = std::move(data.validation);
     repeated_ = std::move(data.repeated);
+    orientation_ = data.orientation;
     if (!data.images.empty()) judge_platform(data.images);
   }
 
@@ -216,6 +219,19 @@ class CalibrationRun {
         "gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: was a target "
         "lost, or the wrong row written? Leave it out, or use --weights robust{}",
         gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
+  }
+
+  /// Parameters would bend the robot to a convention that the file does not keep.
+  void refuse_conventions() const {
+    if (!residual_size(*model_, columns_, fitted_, placed_).beyond_robots()) return;
+    const ConventionSearch search = find_conventions(problem_, *model_, fitted_, orientation_);
+    if (search.found.empty()) return;
+    std::string list;
+    for (const Convention& convention : search.found)
+      list += fmt::format("{}{} if {}: {}", list.empty() ? "" : "; or ", shown_value(convention.left, "m"),
+                          convention.condition, convention.remedy);
+    throw CannotDo(fmt::format("base and tool alone leave {}, no robot's errors do that, and {}",
+                               shown_value(search.left, "m"), list));
   }
 
   void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }
@@ -414,6 +430,7 @@ class CalibrationRun {
   std::vector<double> placed_;
   ProfiledColumns profiled_;
   std::vector<RepeatedReadings> repeated_;
+  OrientationForm orientation_{};
   Calibration result_;
 };
 

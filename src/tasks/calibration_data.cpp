@@ -67,6 +67,7 @@ CalibrationData read_calibration_data(const Problem& problem, const CalibrateOpt
   for (std::size_t f = 0; f < files.size(); ++f) {
     MeasuredData data = f == 0 && options.text ? parse_measured_data(*options.text, files[f], problem, model)
                                                : read_measured_data(files[f], problem, model);
+    if (f == 0) all.orientation = data.orientation;
     const std::string before = several ? files[f].string() + ": " : "";
     for (const std::string& note : data.notes) result.notes.push_back(before + note);
     note_repeats(data, problem.measurement.repeats, before, result.notes);

@@ -16,6 +16,7 @@ struct CalibrationData {
   std::vector<MeasuredPose> validation;         ///< those held back that come from a file of their own
   std::vector<RepeatedReadings> repeated;
   std::vector<PlatformImage> images;
+  OrientationForm orientation{};  ///< of the first file
 };
 
 /// Names of the campaigns: the files' without folder and ending, numbered where two are alike; empty: one file.

@@ -14,20 +14,6 @@ namespace {
 
 // Share of a step of one σ that the linear model misses: beyond it σ means nothing.
 constexpr double hopeless_curvature = 10.0;
-// Residuals so many times what noise and all tolerances explain are no robot's.
-constexpr double unexplained = 10.0;
-
-/// Over all poses.
-double explained_size(const CalibratedPoses& poses, const Calibration& c) {
-  double squares = 0, count = 0;
-  const std::vector<double> sizes = explained_sizes(poses.model, poses.columns, poses.fitted, c.fit.correction);
-  for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const auto read = double(poses.fitted[k].y.array().isFinite().count());
-    squares += read * sizes[k] * sizes[k];
-    count += read;
-  }
-  return std::sqrt(squares / count);
-}
 
 std::string remedy_of(const Calibration& c) {
   return std::string("measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
@@ -42,13 +28,14 @@ std::string not_converged(const Calibration& c) {
 }
 
 void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
-  const double explained = explained_size(poses, c);
-  if (!(c.fit.scale > unexplained * explained)) return;
+  ResidualSize size = residual_size(poses.model, poses.columns, poses.fitted, c.fit.correction);
+  size.found = c.fit.scale;  // counts the parameters
+  if (!size.beyond_robots()) return;
   c.refusals.push_back(
       fmt::format("residuals are {:.3g} times the stated noise, noise and tolerances explain {:.3g} times: no robot's "
                   "errors do that. "
                   "Are units, signs and zeros of the joints, the order of rows, targets and angles right?",
-                  c.fit.scale, explained));
+                  size.found, size.explained));
 }
 
 /// An estimate that nothing can test.

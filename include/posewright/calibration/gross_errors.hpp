@@ -12,6 +12,16 @@ namespace posewright {
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
 
+/// Root mean square of whitened residuals over all readings, and of what noise and all tolerances explain of them.
+struct ResidualSize {
+  double found = 0.0, explained = 0.0;
+  /// Beyond ten times: no error of a robot gives them.
+  bool beyond_robots() const { return found > 10.0 * explained; }
+};
+/// @param columns  those that are estimated, whose tolerances may be stated
+ResidualSize residual_size(const IdentificationModel& model, const VariantColumns& columns,
+                           const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
+
 /// A pose whose readings no error of the robot gives.
 struct GrossPose {
   int id = 0;

@@ -6,6 +6,7 @@
 
 #include "posewright/calibration/fit.hpp"
 #include "posewright/calibration/lack_of_fit.hpp"
+#include "posewright/calibration/orientation_form.hpp"
 #include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/problem/problem.hpp"
 
@@ -22,6 +23,7 @@ struct MeasuredData {
   std::vector<double> spread;              ///< standard deviation of each reading within a pose; empty without repeats
   std::vector<RepeatedReadings> repeated;  ///< poses of more than one row
   std::vector<PlatformImage> images;       ///< of a six-legged platform whose joint centres are read, too; row by row
+  OrientationForm orientation{};           ///< as the columns have it
   std::vector<std::string> notes;          ///< what the user must know of how it was read
 };
 

@@ -63,11 +63,7 @@ double ApartTable::measure(const Scene& scene, const BodyPair& pair, const Level
   const Eigen::Isometry3d X_b = frames[std::size_t(b.frame)] * b.X_FrameBody;
   // What has more was told by larger cells, or costs more than the steps it saves.
   const double most = reaches_told * level.reach;
-  const double least = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
-  if (least > most) return least;
-  const double hulls = distance_of_hulls(*a.solid, X_a, *b.solid, X_b, pair.clearance + most) - pair.clearance;
-  if (hulls > near_enough) return hulls;
-  return distance(*a.solid, X_a, *b.solid, X_b, pair.clearance + most) - pair.clearance;
+  return spare_of(scene, pair, X_a, X_b, {most, near_enough, most});
 }
 
 double ApartTable::spare_at_least(const Scene& scene, const BodyPair& pair, std::span<const double> q,

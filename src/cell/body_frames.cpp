@@ -78,6 +78,7 @@ class ChainFrames : public BodyFrames {
     for (std::size_t k = 0; k < chain_.joints.size(); ++k)
       if (const std::string& name = chain_.joints[k].name; name == owner || parameter.starts_with(name + ".coupling."))
         return int(k) + 1;
+    if (owner == "base") return 0;
     return owner == "tool" ? count_ : 1;
   }
 

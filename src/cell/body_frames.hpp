@@ -32,7 +32,7 @@ class BodyFrames {
   virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
   /// After which change of a coordinate all frames are where they were, rad; 0: none.
   virtual double period(std::size_t) const { return 0.0; }
-  /// Frames from which on a parameter of that name acts: k means k, k + 1, …; count() where it moves none.
+  /// Frames from which on a parameter of that name acts: k means k, k + 1, …; 0: the base, count(): none.
   virtual int acts_from(const std::string& parameter) const = 0;
 
  protected:

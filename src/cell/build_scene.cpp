@@ -19,6 +19,8 @@ constexpr std::uint64_t contact_seed = 271828;
 // Whether a pair is never near is not asked at any price; limits written with fewer digits reach a little further.
 constexpr long most_steps = 2000;
 constexpr double beyond_limits = 1e-3;
+// Standard deviations of the tolerances that links keep from each other whatever is asked for.
+constexpr double least_sigmas = 3;
 // Kept by what is near by design, m: less is contact.
 constexpr double least_reduced = 1e-3;
 
@@ -76,16 +78,16 @@ class SceneBuilder {
       for (const auto& [a, b] : read_srdf_pairs(srdf->value, problem_.at(srdf->line))) ignored_.insert(ordered(a, b));
   }
 
-  /// What a pair of the robot's own bodies keeps: named, or of all, or (tool against arm) as from obstacles.
+  /// What a pair of the robot's own bodies keeps: named, or of all, or as from obstacles.
   double self_clearance(const Body& a, const Body& b) const {
     for (const CollisionSpec::PairClearance& pair : spec_.pair_clearances)
       if (ordered(pair.first.value, pair.second.value) == ordered(a.name, b.name)) return pair.clearance;
-    return spec_.self_clearance.value_or(a.tool || b.tool ? spec_.clearance : 0.0);
+    return spec_.self_clearance.value_or(spec_.clearance);
   }
 
   void add_pair(int a, int b, int reason, double clearance) {
     if (scene_.bodies[std::size_t(a)].frame > scene_.bodies[std::size_t(b)].frame) std::swap(a, b);
-    scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, clearance, {}});
+    scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, clearance, 0.0, {}});
     const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
     double reach = 0, axis_reach = 0;
     const Eigen::Vector3d axis = second.frame > 0 ? scene_.frames->axis(second.frame) : Eigen::Vector3d::UnitZ();
@@ -134,13 +136,24 @@ class SceneBuilder {
     }
   }
 
+  /// Whether both are links or tool.
+  bool is_own(const BodyPair& pair) const {
+    return !scene_.bodies[std::size_t(pair.a)].obstacle && !scene_.bodies[std::size_t(pair.b)].obstacle;
+  }
+
   void add_margins() {
-    if (!(problem_.workspace.uncalibrated > 0)) return;
+    const double sigmas = problem_.workspace.uncalibrated;
+    const auto concerns = [&](const BodyPair& pair) { return sigmas > 0 || is_own(pair); };
+    if (std::none_of(scene_.pairs.begin(), scene_.pairs.end(), concerns)) return;
     const UncalibratedError error(problem_, model_, *scene_.frames);
     for (BodyPair& pair : scene_.pairs) {
-      const double margin = error.of(scene_.bodies[std::size_t(pair.a)], scene_.bodies[std::size_t(pair.b)]);
-      pair.clearance += margin;
+      if (!concerns(pair)) continue;
+      const double sigma = error.of(scene_.bodies[std::size_t(pair.a)], scene_.bodies[std::size_t(pair.b)]);
+      const double margin = sigmas * sigma;
       scene_.margin = std::max(scene_.margin, margin);
+      if (is_own(pair)) pair.least = least_sigmas * sigma;
+      pair.clearance = motion_resolution + std::max(pair.asked + margin, pair.least);
+      pair.asked = std::max(pair.asked, pair.least);
     }
   }
 
@@ -162,7 +175,7 @@ class SceneBuilder {
         const BodyPair& pair = scene_.pairs[p];
         const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
         const bool known = largest[p] >= 2 * pair.asked && touching[p] < i - misses;
-        if (a.obstacle || b.obstacle || known) continue;
+        if (!is_own(pair) || known) continue;
         const double found = distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
                                       X[std::size_t(b.frame)] * b.X_FrameBody, 2 * pair.asked + motion_resolution);
         largest[p] = std::max(largest[p], found);
@@ -174,12 +187,13 @@ class SceneBuilder {
     for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
       BodyPair& pair = scene_.pairs[p];
       const Body &a = scene_.bodies[std::size_t(pair.a)], &b = scene_.bodies[std::size_t(pair.b)];
-      if (a.obstacle || b.obstacle) continue;
+      if (!is_own(pair)) continue;
       const NamePair names = ordered(a.name, b.name);
       if (touching[p] >= always_share * always_samples) always.insert(names);
       else if (largest[p] < 2 * pair.asked) {
-        // 1 mm at least, if they ever are so far apart.
-        const double kept = std::min(pair.asked, std::max(0.5 * largest[p], std::min(least_reduced, 0.8 * largest[p])));
+        // 1 mm and what tolerances move at least, if they ever are so far apart.
+        const double least = std::min(std::max(least_reduced, pair.least), 0.8 * largest[p]);
+        const double kept = std::min(pair.asked, std::max(0.5 * largest[p], least));
         pair.clearance = kept + (kept > motion_resolution ? motion_resolution : 0.0);
         const auto at = reduced.emplace(names, kept).first;
         at->second = std::min(at->second, kept);
@@ -197,9 +211,6 @@ class SceneBuilder {
     scene_.reduced = known.reduced;
     std::map<std::pair<int, int>, const BodyPair*> pairs;
     for (const BodyPair& pair : known.pairs) pairs[{pair.a, pair.b}] = &pair;
-    const auto is_own = [&](const BodyPair& pair) {
-      return !scene_.bodies[std::size_t(pair.a)].obstacle && !scene_.bodies[std::size_t(pair.b)].obstacle;
-    };
     std::erase_if(scene_.pairs, [&](const BodyPair& p) { return is_own(p) && pairs.count({p.a, p.b}) == 0; });
     for (BodyPair& pair : scene_.pairs) {
       if (!is_own(pair)) continue;

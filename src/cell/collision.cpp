@@ -45,18 +45,6 @@ double distance_of(const Scene& scene, const BodyPair& pair, const Poses& X, dou
                   *scene.bodies[std::size_t(pair.b)].solid, X[std::size_t(pair.b)], cap);
 }
 
-/// How much a pair has beyond its clearance, at least: exact where it is negative, so that the sign is the verdict.
-/// @param more  m beyond the clearance that is worth knowing
-double spare_of(const Scene& scene, const BodyPair& pair, const Poses& X, double more) {
-  const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
-  const Eigen::Isometry3d &X_a = X[std::size_t(pair.a)], &X_b = X[std::size_t(pair.b)];
-  const double apart = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
-  if (apart > more / 2 || (apart > 0 && more == 0)) return apart;
-  const double hulls = distance_of_hulls(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
-  if (hulls > more / 4 && hulls > 0) return hulls;
-  return distance_of(scene, pair, X, pair.clearance + more / 4) - pair.clearance;
-}
-
 const Body& body_above(const Scene& scene, const BodyPair& pair) { return scene.bodies[std::size_t(pair.b)]; }
 
 /// Whether a pair is a body of the robot and a half space that stands still.
@@ -78,7 +66,10 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
       if (memory.is_too_near(pair, place, pose, q)) return &pair;
       if (pair.table != nullptr && pair.table->spare_at_least(scene, pair, q, certain) > 0) continue;
       if (X == nullptr) X = &place_bodies(scene, q, pose);
-      const double spare = spare_of(scene, pair, *X, memory.is_near(pair, place, pose, q) ? look_ahead : 0.0);
+      // How much more than its clearance it has is worth knowing if the next state is near.
+      const double more = memory.is_near(pair, place, pose, q) ? look_ahead : 0.0;
+      const double spare =
+          spare_of(scene, pair, (*X)[std::size_t(pair.a)], (*X)[std::size_t(pair.b)], {more / 2, more / 4, more / 4});
       memory.keep(place, q, spare);
       if (spare < 0) return &pair;
     }
@@ -89,16 +80,11 @@ const BodyPair* first_violation(const Scene& scene, std::span<const double> q) {
 /// The nearest pair of one or many states.
 class SmallestDistance {
  public:
-  explicit SmallestDistance(const Scene& scene) : scene_(scene), frames_(std::size_t(scene.frames->count())) {
-    for (const BodyPair& pair : scene.pairs)
-      if (is_of_interest(scene, pair)) pairs_.push_back(&pair);
-    if (!pairs_.empty()) return;
-    for (const BodyPair& pair : scene.pairs) pairs_.push_back(&pair);
-  }
+  explicit SmallestDistance(const Scene& scene) : scene_(scene), frames_(std::size_t(scene.frames->count())) {}
 
   void look_at(std::span<const double> q, int pose) {
     place(q, pose);
-    for (const BodyPair* pair : pairs_) look_at(*pair);
+    for (const BodyPair& pair : scene_.pairs) look_at(pair);
   }
 
   /// States as far apart as the pair in question can move without coming nearer than the smallest distance so far, and
@@ -115,12 +101,12 @@ class SmallestDistance {
     for (const double t : first_looks) look_at(at(t), pose);
     const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
     const Eigen::VectorXd change = (b - a).cwiseAbs();
-    for (const BodyPair* pair : pairs_) {
-      const double rate = pair->travel[std::size_t(pose)].dot(change);
+    for (const BodyPair& pair : scene_.pairs) {
+      const double rate = pair.travel[std::size_t(pose)].dot(change);
       if (!(rate > 0)) continue;
       for (double t = 0; t < 1;) {
         place(at(t), pose);
-        t += (look_at(*pair) - smallest_ + motion_resolution) / rate;
+        t += (look_at(pair) - smallest_ + motion_resolution) / rate;
       }
     }
   }
@@ -137,12 +123,6 @@ class SmallestDistance {
   }
 
  private:
-  /// Links that only must not touch, as those of a wrist, are always near and say nothing.
-  static bool is_of_interest(const Scene& scene, const BodyPair& pair) {
-    const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
-    return pair.asked > 0 || a.obstacle || b.obstacle || a.tool || b.tool;
-  }
-
   const Body& first() const { return scene_.bodies[std::size_t(nearest_->a)]; }
   const Body& second() const { return scene_.bodies[std::size_t(nearest_->b)]; }
 
@@ -167,7 +147,6 @@ class SmallestDistance {
 
   const Scene& scene_;
   Poses frames_;
-  std::vector<const BodyPair*> pairs_;
   double smallest_ = most_distance;
   const BodyPair* nearest_ = nullptr;
   Eigen::Isometry3d X_a_, X_b_;  // of its bodies where they are nearest

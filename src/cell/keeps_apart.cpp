@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "posewright/support/dense.hpp"
 #include "scene.hpp"
 
@@ -8,6 +10,18 @@ namespace {
 constexpr double least_step = 0.0005;
 
 }  // namespace
+
+double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3d& X_a, const Eigen::Isometry3d& X_b,
+                const EnoughSpare& enough) {
+  const Solid &a = *scene.bodies[std::size_t(pair.a)].solid, &b = *scene.bodies[std::size_t(pair.b)].solid;
+  const double boxes = distance_at_least(a, X_a, b, X_b) - pair.clearance;
+  if (boxes > enough.of_boxes) return boxes;
+  const double most = pair.clearance + std::max(look_ahead, enough.of_surfaces);
+  if (are_convex(a, b)) return distance(a, X_a, b, X_b, most) - pair.clearance;
+  const double hulls = distance_of_hulls(a, X_a, b, X_b, most) - pair.clearance;
+  if (hulls > enough.of_hulls) return hulls;
+  return distance(a, X_a, b, X_b, pair.clearance + enough.of_surfaces) - pair.clearance;
+}
 
 bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
                  std::span<const double> to, long most_steps) {
@@ -30,11 +44,7 @@ bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<c
     scene.frames->poses(q, pose, frames);
     const Eigen::Isometry3d X_a = frames[std::size_t(a.frame)] * a.X_FrameBody;
     const Eigen::Isometry3d X_b = frames[std::size_t(b.frame)] * b.X_FrameBody;
-    double spare = distance_at_least(*a.solid, X_a, *b.solid, X_b) - pair.clearance;
-    if (!(spare > look_ahead))
-      spare = distance_of_hulls(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
-    if (!(spare > near_enough))
-      spare = distance(*a.solid, X_a, *b.solid, X_b, pair.clearance + look_ahead) - pair.clearance;
+    const double spare = spare_of(scene, pair, X_a, X_b, {look_ahead, near_enough, look_ahead});
     if (spare < 0) return false;
     t += (spare + motion_resolution) / rate;
   }

@@ -46,6 +46,7 @@ struct BodyPair {
   int reason = 0;
   double clearance = 0.0;               ///< m, margins included
   double asked = 0.0;                   ///< m, without margins
+  double least = 0.0;                   ///< m, by which the tolerances may move the two relative to each other
   std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
   bool never_near = false;              ///< keeps its clearance wherever the robot may stand: need not be looked at
   std::shared_ptr<const ApartTable> table{};  ///< of a pair that few coordinates move; null: none
@@ -62,6 +63,16 @@ struct Scene {
   double margin = 0.0;       ///< m, largest that was added for a robot that is not calibrated yet
   std::uint64_t number = 0;  ///< of this scene among all that the program made: what a thread remembers is of one
 };
+
+/// Which spare room (m) is enough, so that the next way to find it, which takes longer and finds more, is left out.
+struct EnoughSpare {
+  double of_boxes, of_hulls;
+  double of_surfaces;  ///< most that is found of meshes
+};
+
+/// How much a pair has beyond its clearance, at least: exact where it is negative, so that the sign is the verdict.
+double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3d& X_a, const Eigen::Isometry3d& X_b,
+                const EnoughSpare& enough);
 
 /// Whether a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it
 /// is d apart, it cannot come too near before it has moved by what d has to spare.
@@ -91,8 +102,8 @@ struct BodyShape {
 /// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);
 
-/// How far a robot that is built within the tolerances of the planned variant may be from where it is thought, `sigmas`
-/// standard deviations: largest over the workspace for a pair's bodies relative to each other.
+/// How far a robot that is built within the tolerances of the planned variant may be from where it is thought, one
+/// standard deviation: largest over the workspace for a pair's bodies relative to each other.
 class UncalibratedError {
  public:
   UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames);
@@ -103,7 +114,6 @@ class UncalibratedError {
   std::vector<std::vector<Eigen::Isometry3d>> poses_;             // per sample
   std::vector<std::vector<Eigen::Matrix<double, 6, 1>>> twists_;  // per sample and parameter, one tolerance long
   std::vector<int> acts_from_;                                    // per parameter
-  double sigmas_ = 0.0;
 };
 
 }  // namespace posewright

@@ -29,6 +29,8 @@ using Geometry = fcl::CollisionGeometryd;
 
 // What the iteration for the distance of two hulls may be off by, and more, m.
 constexpr double hull_tolerance = 1e-5;
+// How far a corner may be above a triangle of a mesh that counts as convex, m.
+constexpr double flat = 1e-7;
 
 double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geometry& b, const Eigen::Isometry3d& X_b,
                     double cap) {
@@ -76,11 +78,13 @@ std::shared_ptr<Mesh> surface_of(const std::vector<Eigen::Vector3d>& vertices,
 class FclSolid : public Solid {
  public:
   const Geometry& geometry() const { return *geometry_; }
-  /// What stands for the solid beside a mesh: triangles where all its faces are flat. The distance of two triangles is
-  /// known in closed form; that of a triangle and a shape is an iteration that takes some twenty times as long.
-  virtual const Geometry& beside_mesh() const { return *geometry_; }
+  /// What stands for the solid beside a surface: triangles where all its faces are flat. The distance of two triangles
+  /// is known in closed form; that of a triangle and a shape is an iteration that takes some twenty times as long.
+  virtual const Geometry& beside_surface() const { return *geometry_; }
   /// Convex, with the solid in it: of a mesh its hull, else itself. Null for a mesh whose points lie in one plane.
   virtual const Geometry* hull() const { return geometry_.get(); }
+  /// Whether it is more than its triangles' hull: a mesh that is not convex.
+  bool is_surface() const { return hull() != geometry_.get(); }
   const Eigen::Vector3d& middle() const { return middle_; }
   const Eigen::Vector3d& half_extent() const { return half_extent_; }
   double at_least(const Eigen::Vector3d& p) const override {
@@ -119,7 +123,7 @@ class BoxSolid : public FclSolid {
       }
     faces_ = surface_of(corners_, faces);
   }
-  const Geometry& beside_mesh() const override { return *faces_; }
+  const Geometry& beside_surface() const override { return *faces_; }
   bool holds(const Eigen::Vector3d& p) const override { return (p.cwiseAbs() - half_).maxCoeff() <= 0; }
 
  private:
@@ -175,7 +179,8 @@ class MeshSolid : public FclSolid {
   explicit MeshSolid(TriangleMesh mesh) : mesh_(std::move(mesh)) {
     std::erase_if(mesh_.triangles, [&](const auto& t) { return normal_of(t).norm() <= 1e-14; });
     if (mesh_.triangles.empty()) throw std::invalid_argument("no triangle has an area");
-    geometry_ = surface_of(mesh_.vertices, mesh_.triangles);
+    surface_ = surface_of(mesh_.vertices, mesh_.triangles);
+    geometry_ = surface_;
     put_hull_around();
     put_box_around();
     Eigen::AlignedBox3d box;
@@ -184,8 +189,11 @@ class MeshSolid : public FclSolid {
     for (const auto& v : mesh_.vertices) radius_ = std::max(radius_, (v - centre_).norm());
     closed_ = is_closed();
     find_parts();
+    if (closed_ && hull_ != nullptr && is_convex()) geometry_ = hull_;
+    else planes_.clear();
   }
 
+  const Geometry& beside_surface() const override { return *surface_; }
   const Geometry* hull() const override { return hull_.get(); }
 
   /// A point of each part whose triangles hang together: where surfaces do not meet, all of the part is where it is.
@@ -194,6 +202,9 @@ class MeshSolid : public FclSolid {
   /// By the solid angle that the triangles span (van Oosterom & Strackee 1983): ±4π inside a closed surface, 0 outside.
   bool holds(const Eigen::Vector3d& p) const override {
     if (!closed_ || (p - centre_).norm() > radius_) return false;
+    if (!planes_.empty())
+      return std::all_of(planes_.begin(), planes_.end(),
+                         [&](const auto& plane) { return plane.signedDistance(p) <= 0; });
     double angle = 0;
     for (const auto& t : mesh_.triangles) {
       const Eigen::Vector3d a = vertex(t[0]) - p, b = vertex(t[1]) - p, c = vertex(t[2]) - p;
@@ -270,9 +281,21 @@ class MeshSolid : public FclSolid {
     });
   }
 
+  /// Whether no corner is above a triangle: such a mesh is its hull, for which a few steps of an iteration do.
+  bool is_convex() {
+    for (const auto& t : mesh_.triangles) {
+      const Eigen::Vector3d normal = normal_of(t).normalized();
+      planes_.emplace_back(normal, vertex(t[0]));
+      const auto above = [&](const Eigen::Vector3d& corner) { return normal.dot(corner - vertex(t[0])) > flat; };
+      if (std::any_of(corners_.begin(), corners_.end(), above)) return false;
+    }
+    return true;
+  }
+
   TriangleMesh mesh_;
   std::vector<Eigen::Vector3d> parts_;
-  std::shared_ptr<Geometry> hull_;
+  std::vector<Eigen::Hyperplane<double, 3>> planes_;  // of the triangles where the mesh is convex, outward
+  std::shared_ptr<Geometry> surface_, hull_;
   bool closed_ = false;
 };
 
@@ -330,11 +353,11 @@ double gap_between_boxes(const Eigen::Vector3d& g, const Eigen::Vector3d& h, con
   return gap;
 }
 
-bool has_mesh(const FclSolid& a, const FclSolid& b) { return a.hull() != &a.geometry() || b.hull() != &b.geometry(); }
+bool has_surface(const FclSolid& a, const FclSolid& b) { return a.is_surface() || b.is_surface(); }
 
 /// What stands for two solids when their distance is asked for.
 std::pair<const Geometry*, const Geometry*> geometries(const FclSolid& a, const FclSolid& b) {
-  if (has_mesh(a, b)) return {&a.beside_mesh(), &b.beside_mesh()};
+  if (has_surface(a, b)) return {&a.beside_surface(), &b.beside_surface()};
   return {&a.geometry(), &b.geometry()};
 }
 
@@ -383,6 +406,13 @@ double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
   return std::max(0.0, fcl_distance(*first, X_a, *second, X_b, cap + hull_tolerance) - hull_tolerance);
 }
 
+bool are_convex(const Solid& a, const Solid& b) {
+  const auto convex = [](const Solid& solid) {
+    return solid.plane() || !static_cast<const FclSolid&>(solid).is_surface();
+  };
+  return convex(a) && convex(b);
+}
+
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                 double cap) {
   if (distance_at_least(a, X_a, b, X_b) >= cap) return cap;
@@ -392,7 +422,7 @@ double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, co
   if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
   if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
   const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
-  if (has_mesh(first, second) && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
+  if (has_surface(first, second) && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
   const auto [one, other] = geometries(first, second);
   const double found = fcl_distance(*one, X_a, *other, X_b, cap);
   if (found <= 0) return 0.0;
@@ -454,8 +484,7 @@ bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3
   if (solid.holds(X.inverse() * from)) return true;
   const fcl::Capsuled beam(std::max(radius, 1e-5), std::max(length, 1e-9));
   const Geometry* hull = body.hull();
-  if (hull != nullptr && hull != &body.geometry() &&
-      fcl_distance(*hull, X, beam, X_beam, 2 * hull_tolerance) > hull_tolerance)
+  if (hull != nullptr && body.is_surface() && fcl_distance(*hull, X, beam, X_beam, 2 * hull_tolerance) > hull_tolerance)
     return false;
   return fcl_distance(body.geometry(), X, beam, X_beam, 1e-6) <= 0;
 }

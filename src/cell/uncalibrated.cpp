@@ -35,8 +35,7 @@ std::unique_ptr<IdentificationModel> bare_robot(Problem problem) {
 }  // namespace
 
 UncalibratedError::UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames)
-    : frames_(frames), sigmas_(problem.workspace.uncalibrated) {
-  if (!(sigmas_ > 0)) return;
+    : frames_(frames) {
   const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
   const std::unique_ptr<IdentificationModel> arm = bare_robot(problem);
   Random random(tolerance_seed, 0);
@@ -69,20 +68,22 @@ UncalibratedError::UncalibratedError(const Problem& problem, const Identificatio
 }
 
 double UncalibratedError::of(const Body& a, const Body& b) const {
+  // Where the robot stands moves its links off obstacles, not off each other.
+  const int fixed_to = a.obstacle ? -1 : a.frame;
   double largest = 0;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Eigen::Isometry3d X = poses_[i][std::size_t(b.frame)] * b.X_FrameBody;
     const Eigen::Vector3d centre = X * b.solid->centre();
     double variance = 0;
     for (std::size_t c = 0; c < acts_from_.size(); ++c) {
-      if (acts_from_[c] <= a.frame || acts_from_[c] > b.frame) continue;
+      if (acts_from_[c] <= fixed_to || acts_from_[c] > b.frame) continue;
       const Eigen::Vector3d v = twists_[i][c].head<3>(), w = twists_[i][c].tail<3>();
       const double moved = (v + w.cross(centre)).norm() + w.norm() * b.solid->radius();
       variance += moved * moved;
     }
     largest = std::max(largest, std::sqrt(variance));
   }
-  return sigmas_ * largest;
+  return largest;
 }
 
 }  // namespace posewright

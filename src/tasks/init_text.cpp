@@ -173,7 +173,7 @@ std::string cell_text(const InitFacts& facts, const InitRobot& robot, const Init
       "workspace:\n  joints: {margin: \"3 deg\"}            # kept from both ends of the joints\n";
   if (place.cell) {
     text +=
-        "  collision:                           # the robot with itself and with what stands around it\n"
+        "  collision:                           # links among themselves and with what stands around\n"
         "    clearance: \"30 mm\"\n"
         "    hulls: true                        # meshes as their convex hulls: faster, a little larger\n";
     if (const std::optional<double> floor = floor_of(facts, robot))

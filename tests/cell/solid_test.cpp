@@ -252,6 +252,36 @@ TEST(Distance, OfABracketIsThatOfTheNearerOfItsTwoBoxesAndItsHullIsNoFarther) {
   EXPECT_GT(in_the_corner, 20);
 }
 
+TEST(Distance, OfAConvexMeshIsThatOfItsTriangles) {
+  Random random(9, 0);
+  TriangleMesh points;
+  for (int i = 0; i < 300; ++i)
+    points.vertices.emplace_back(0.3 * random.normal(), 0.2 * random.normal(), 0.1 * random.normal());
+  const TriangleMesh convex = convex_hull(points);
+  // A speck in its middle: no longer convex, as far from everything as before.
+  TriangleMesh surface = convex;
+  const TriangleMesh speck = box_mesh({0.001, 0.001, 0.001});
+  surface.vertices.insert(surface.vertices.end(), speck.vertices.begin(), speck.vertices.end());
+  for (const auto& t : speck.triangles) surface.triangles.push_back({t[0] + 300, t[1] + 300, t[2] + 300});
+  const SolidPointer hull = mesh(convex), triangles = mesh(surface);
+  EXPECT_TRUE(are_convex(*hull, *box(1, 1, 1)));
+  EXPECT_FALSE(are_convex(*hull, *triangles));
+  int touching = 0;
+  for (const SolidPointer& other : {hull, box(0.4, 0.3, 0.2), mesh(box_mesh({0.3, 0.5, 0.2}))})
+    for (int i = 0; i < 200; ++i) {
+      const Isometry3d X = random_pose(random, 0.5), Y = random_pose(random, 0.5);
+      const double d = distance(*hull, X, *other, Y, 3);
+      EXPECT_NEAR(d, distance(*triangles, X, *other, Y, 3), 1e-6);
+      touching += d <= 0;
+    }
+  EXPECT_GT(touching, 100);
+  EXPECT_LT(touching, 500);
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d p(random.uniform(-1, 1), random.uniform(-0.7, 0.7), random.uniform(-0.4, 0.4));
+    EXPECT_EQ(hull->holds(p), triangles->holds(p)) << p.transpose();
+  }
+}
+
 TEST(ConvexHull, FillsWhatTheMeshLeavesOpen) {
   const TriangleMesh l = bracket();
   EXPECT_GT(distance(*mesh(l), at(0, 0, 0), *sphere(0.01), at(-0.3, 0.4, 0), 1), 0.2);

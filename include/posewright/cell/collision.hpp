@@ -60,8 +60,7 @@ class Collision {
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
   double slack(std::span<const double> q, double cap) const;
 
-  /// The two bodies that are nearest to each other, of those that are checked; none if nothing is. Links that only must
-  /// not touch each other count only if there is nothing else.
+  /// The two bodies that are nearest to each other, of all pairs that are checked; none if nothing is.
   std::optional<Separation> nearest(std::span<const double> q) const;
   /// The same without the points where they are nearest, which take as long again.
   std::optional<Separation> nearest_bodies(std::span<const double> q) const;

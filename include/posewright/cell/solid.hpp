@@ -64,6 +64,9 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                          double cap);
 
+/// Whether the distance of two solids takes no longer than that of their hulls.
+bool are_convex(const Solid& a, const Solid& b);
+
 /// Whether a solid comes nearer than `radius` to the segment.
 bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
             double radius);

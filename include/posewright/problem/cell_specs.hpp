@@ -62,7 +62,7 @@ struct ObstacleFileSpec {
 struct CollisionSpec {
   bool self = true;
   double clearance = 0.0;  ///< m, kept from obstacles
-  /// m, kept between links and between tool and links; not given: 0 and `clearance`.
+  /// m, kept between links and between tool and links; not given: `clearance`.
   std::optional<double> self_clearance;
   /// The same of two bodies by their names.
   struct PairClearance {

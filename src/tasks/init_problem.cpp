@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "init_text.hpp"
 #include "posewright/cell/cell.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/problem/units.hpp"
+#include "posewright/support/random.hpp"
 #include "posewright/support/text.hpp"
 #include "posewright/tasks/observe_problem.hpp"
+#include "posewright/workspace/motion_space.hpp"
+#include "without_roadmap.hpp"
 
 namespace posewright {
 namespace {
@@ -17,7 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int tried_configurations = 60;
-constexpr double to_grid = 20;  // places are on a grid of 50 mm
+constexpr std::size_t drawn_homes = 300;
+constexpr std::uint64_t home_seed = 1618;
+constexpr double most_room = 0.3;  // m from the nearest body: more makes no home better
+constexpr double to_grid = 20;     // places are on a grid of 50 mm
 
 /// Where it may stand, best first; one if it is given. Shares of the reach.
 std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& robot) {
@@ -38,9 +46,9 @@ std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& rob
   return result;
 }
 
-/// Whether a plan can be made of it: throws as observe_problem().
+/// Whether a plan can be made of it: throws as observe_problem(). The ways from home take longer than all the rest.
 void try_out(const std::string& text, const fs::path& file, const InitFacts& facts, const Monitor& monitor) {
-  const Problem problem = parse_problem(text, file, facts.packages);
+  const Problem problem = without_roadmap(parse_problem(text, file, facts.packages));
   ObserveOptions options;
   if (problem.design.variant) options.variant = problem.design.variant->value;
   options.candidates = tried_configurations;
@@ -49,18 +57,62 @@ void try_out(const std::string& text, const fs::path& file, const InitFacts& fac
   if (!found.front().practical) throw CannotDo("what is planned for cannot be identified");
 }
 
-/// Looks at the bodies of the robot, if its meshes are there; why not, else nothing. A tracker that stands far away is
-/// inside none of them.
+/// A place that is inside none of the robot's bodies.
+InitPlace far_away(const InitRobot& robot) { return {{3 * robot.reach, 0, 3 * robot.reach}, true, {}, {}}; }
+
+/// Looks at the bodies of the robot, if its meshes are there; why not, else nothing.
 std::string look_at_bodies(InitFacts facts, InitRobot& robot, const fs::path& file) {
   facts.camera = false;
   facts.no_floor = true;
-  const InitPlace far_away{{3 * robot.reach, 0, 0}, true, {}};
   try {
-    add_bodies(robot, parse_problem(init_text(facts, robot, far_away), file, facts.packages));
+    add_bodies(robot, parse_problem(init_text(facts, robot, far_away(robot)), file, facts.packages));
   } catch (const InputError& error) {
     return error.what();
   }
   return {};
+}
+
+double rounded(double value, const Coordinate& c) {
+  const double step = c.unit == "rad" ? std::numbers::pi / 180 : 1e-3;
+  return std::round(value / step) * step;
+}
+
+/// The joints at zero, in the middle, or where some random states have most room; empty if none of them is free.
+std::vector<double> free_home(const MotionSpace& space, const Collision& collision) {
+  std::vector<std::vector<double>> tried(2 + drawn_homes);
+  Random random(home_seed, 0);
+  for (const Coordinate& c : space.proposed()) {
+    tried[0].push_back(rounded(std::clamp(0.0, c.lower, c.upper), c));
+    tried[1].push_back(rounded(0.5 * (c.lower + c.upper), c));
+    for (std::size_t i = 2; i < tried.size(); ++i) tried[i].push_back(rounded(random.uniform(c.lower, c.upper), c));
+  }
+  std::vector<double> best;
+  double room = -1;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (!space.is_free(tried[i])) continue;
+    if (i < 2) return tried[i];
+    if (const double here = collision.slack(space.whole(tried[i]), most_room); here > room) {
+      room = here;
+      best = tried[i];
+    }
+  }
+  return best;
+}
+
+/// A free home for the arm above its floor; empty, with a note, where motions cannot be planned.
+std::vector<double> find_home(InitFacts facts, const InitRobot& robot, const fs::path& file,
+                              std::vector<std::string>& notes) {
+  facts.camera = false;
+  try {
+    const Problem problem = parse_problem(init_text(facts, robot, far_away(robot)), file, facts.packages);
+    const std::shared_ptr<const Cell> cell = make_cell(problem);
+    std::vector<double> home = free_home(MotionSpace(problem, cell), *cell->collision);
+    if (home.empty()) notes.emplace_back("no home was found that is free: which poses can be reached is not checked");
+    return home;
+  } catch (const InputError& error) {
+    notes.push_back("which poses can be reached is not checked: " + std::string(error.what()));
+    return {};
+  }
 }
 
 }  // namespace
@@ -97,6 +149,7 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
   place.no_cell = look_at_bodies(facts, robot, file);
   place.cell = place.no_cell.empty();
   if (!place.cell) result.notes.push_back("no collision is checked: " + place.no_cell);
+  if (place.cell) place.home = find_home(facts, robot, file, result.notes);
   const std::vector<Eigen::Vector3d> candidates = places(facts, robot);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     place.position = candidates[i];

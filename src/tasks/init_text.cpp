@@ -167,10 +167,44 @@ std::string sight_text(const InitFacts& facts) {
       length(std::round(nearest * 100) / 100), length(std::round(farthest * 100) / 100));
 }
 
+/// The home that motions begin at.
+std::string motion_text(const InitRobot& robot, const InitPlace& place) {
+  if (place.home.empty()) return {};
+  std::string home;
+  for (std::size_t i = 0; i < place.home.size(); ++i) {
+    const Coordinate& c = robot.chain.coordinates[i];
+    home += fmt::format("{}{}: {}", i == 0 ? "" : ", ", quoted(c.name),
+                        c.unit == "rad" ? fmt::format("\"{:g} deg\"", std::round(place.home[i] * in_degrees) + 0.0)
+                                        : length(place.home[i]));
+  }
+  return fmt::format(
+      "  motion:\n"
+      "    reachable: true                    # only poses that a free motion connects with home\n"
+      "    home: {{{}}}\n",
+      home);
+}
+
+/// Limits of the joints that can turn more than once.
+std::string joints_text(const InitRobot& robot) {
+  constexpr double half_turn = std::numbers::pi;
+  std::string limits;
+  for (const Coordinate& c : robot.chain.coordinates)
+    if (c.unit == "rad" && c.lower <= -half_turn && c.upper >= half_turn && c.upper - c.lower > 2.01 * half_turn)
+      limits += fmt::format("{}{}: [\"-180 deg\", \"180 deg\"]", limits.empty() ? "" : ", ", quoted(c.name));
+  if (limits.empty()) return "  joints: {margin: \"3 deg\"}            # kept from both ends of the joints\n";
+  return fmt::format(
+      "  joints:\n"
+      "    margin: \"3 deg\"                    # kept from both ends of the joints\n"
+      "    # One turn of joints that have more: poses on another one are as good, but cables wind and ways get long.\n"
+      "    limits: {{{}}}\n",
+      limits);
+}
+
 std::string cell_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
   std::string text =
       "\n# 3. Cell: what a pose must keep off, and what the instrument must see.\n"
-      "workspace:\n  joints: {margin: \"3 deg\"}            # kept from both ends of the joints\n";
+      "workspace:\n" +
+      joints_text(robot);
   if (place.cell) {
     text +=
         "  collision:                           # links among themselves and with what stands around\n"
@@ -184,6 +218,7 @@ std::string cell_text(const InitFacts& facts, const InitRobot& robot, const Init
   } else {
     text += fmt::format("  # No collision is checked: {}.\n", place.no_cell);
   }
+  text += motion_text(robot, place);
   if (facts.camera)
     text +=
         "  readable_for: 20                     # the board is in the picture although nobody knows yet where the\n"

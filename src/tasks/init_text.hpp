@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "posewright/model/propose_chain.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
@@ -33,6 +34,8 @@ struct InitPlace {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   bool cell = true;
   std::string no_cell;  ///< why there is none
+  /// Where the arm keeps its clearances, one value a joint; empty: no motions are looked for.
+  std::vector<double> home{};
 };
 
 /// The commented file.

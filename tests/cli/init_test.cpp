@@ -76,6 +76,60 @@ TEST(Init, WritesAFileThatPlansWithoutAnEdit) {
   EXPECT_THAT(plan.out, HasSubstr("12 poses for variant geometric"));
 }
 
+/// An arm of three axes that hangs down from its foot where all joints are at zero.
+const char* const hanging = R"(<robot name="hanging">
+  <link name="base"><collision><geometry><box size="0.3 0.3 0.2"/></geometry></collision></link>
+  <link name="l1"><collision><geometry><cylinder radius="0.08" length="0.2"/></geometry></collision></link>
+  <link name="l2"><collision><origin xyz="0 0 -0.3"/><geometry><box size="0.08 0.08 0.5"/></geometry></collision></link>
+  <link name="l3"><collision><origin xyz="0 0 -0.25"/><geometry><box size="0.06 0.06 0.3"/></geometry></collision></link>
+  <link name="flange"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="l1"/><origin xyz="0 0 0.3"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/></joint>
+  <joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="1" velocity="2"/></joint>
+  <joint name="j3" type="revolute"><parent link="l2"/><child link="l3"/><origin xyz="0 0 -0.6"/><axis xyz="0 1 0"/>
+    <limit lower="-2.5" upper="2.5" effort="1" velocity="2"/></joint>
+  <joint name="end" type="fixed"><parent link="l3"/><child link="flange"/><origin xyz="0 0 -0.42"/></joint>
+</robot>)";
+
+TEST(Init, ProposesAFreeHomeAndPosesThatARouteKeeps) {
+  const TemporaryFolder folder;
+  folder.write("arm.urdf", hanging);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("reachable: true"));
+  EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("\"j2\": \"0 deg\""))) << "zero is in the floor";
+  ASSERT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--from-home"});
+  EXPECT_EQ(route.exit_code, 0) << route.err;
+  EXPECT_THAT(route.out, HasSubstr("8 poses in "));
+}
+
+TEST(Init, KeepsJointsThatTurnMoreThanOnceWithinOneTurn) {
+  const TemporaryFolder folder;
+  std::string text = hanging;
+  const auto turn = [&](const std::string& limits, const std::string& more) {
+    text.replace(text.find(limits), limits.size(), more);
+  };
+  turn("lower=\"-3\" upper=\"3\"", "lower=\"-6\" upper=\"6\"");
+  turn("lower=\"-3\" upper=\"3\"", "lower=\"-3.3\" upper=\"2.9\"");
+  folder.write("arm.urdf", text);
+  ASSERT_EQ(init(folder, {"arm.urdf", "--tracker", "--poses", "8"}).exit_code, 0);
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("    limits: {\"j1\": [\"-180 deg\", \"180 deg\"]}\n"));
+}
+
+TEST(Init, LeavesMotionsOutWhereNoVelocityIsKnown) {
+  const TemporaryFolder folder;
+  std::string text = hanging;
+  for (std::size_t at = 0; (at = text.find("velocity=\"2\"", at)) != std::string::npos;)
+    text.replace(at, 12, "velocity=\"0\"");
+  folder.write("arm.urdf", text);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("which poses can be reached is not checked"));
+  EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("reachable")));
+}
+
 TEST(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {
   const TemporaryFolder folder;
   ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435"}).exit_code, 0);

@@ -114,7 +114,10 @@ void bind_certificate(py::module_& m) {
       .def_readonly("efficiency", &C::Workspace::efficiency)
       .def_readonly("bound", &C::Workspace::bound)
       .def_readonly("max_sensitivity_ratio", &C::Workspace::max_sensitivity_ratio)
-      .def_readonly("method", &C::Workspace::method);
+      .def_readonly("method", &C::Workspace::method)
+      .def_readonly("settled", &C::Workspace::settled, "proved, or the search came to its end")
+      .def_readonly("at_most", &C::Workspace::at_most,
+                    "share of the best weights found; no more is reached of the best");
   py::class_<C>(m, "Certificate", "What is proved about a plan over its candidates.")
       .def_readonly("efficiency", &C::efficiency, "lower bound of what the plan reaches of the best, in (0, 1]")
       .def_readonly("bound", &C::bound, "no plan of as many of these candidates exceeds it")

@@ -42,6 +42,8 @@ Json certificate_json(const Plan& plan) {
                  {"max_sensitivity_ratio", c.workspace->max_sensitivity_ratio},
                  {"method", c.workspace->method},
                  {"proved", c.workspace->proved},
+                 {"settled", c.workspace->settled},
+                 {"at_most", c.workspace->at_most},
                  {"within", c.workspace->within},
                  {"limits", c.workspace->limits},
                  {"why_not_proved", c.workspace->proved ? Json(nullptr) : Json(c.workspace->why_not)},

@@ -55,8 +55,12 @@ std::string workspace_text(const Certificate::Workspace& w) {
   const std::string why = w.loose_bound
                               ? fmt::format("proved is at least {}: {}", proved_percent(w.loose_efficiency), w.why_not)
                               : "no proof: " + w.why_not;
-  return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
-                     searched_percent(w.efficiency), why);
+  if (w.settled)
+    return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
+                       searched_percent(w.efficiency), why);
+  return fmt::format(
+      "Over the whole workspace: no figure, the search for better poses did not come to an end{} ({}).\n",
+      w.at_most < 1 ? fmt::format("; at most {} of the best", at_most_percent(w.at_most)) : "", why);
 }
 
 std::string certificate_text(const Plan& plan) {
@@ -233,7 +237,7 @@ std::string parameter_table(const Plan& plan) {
     if (p.sigma)
       table.row({name(p), shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
                  shown_value(*p.sigma, p.label.unit), fmt::format("{:.3f}", *p.sigma / p.label.tolerance), verdict(p)});
-  return table.text();
+  return table.text() + "Predicted σ: what the stated noise alone leaves, if the model is complete.\n";
 }
 
 std::string dropped_text(const Plan& plan) {

@@ -43,6 +43,8 @@ std::string searched_percent(double share) {
   return fmt::format("{:.0f} %", std::min(100.0, std::floor(share * 1e2 + 0.05)));
 }
 
+std::string at_most_percent(double share) { return fmt::format("{:.1f} %", std::ceil(share * 1e3) / 10); }
+
 Table::Table(std::vector<std::string> header, std::vector<Align> align) : align_(std::move(align)) {
   rows_.push_back(std::move(header));
 }

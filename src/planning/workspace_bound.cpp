@@ -23,6 +23,8 @@ constexpr int few_rounds = 8;
 constexpr int pool_per_column = 4;
 // Largest d over its bound from which on the local searches are thorough.
 constexpr double nearly = 1.02;
+// Weights are settled where searches from drawn candidates alone find no d above h by more than this share.
+constexpr double settled_within = 0.005;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
 
@@ -44,15 +46,17 @@ class Sensitivity : public BlockObjective {
   BlockArray::RowMatrix rotated_;
 };
 
+using Configurations = std::vector<std::vector<double>>;
+
 /// Candidates worth keeping and configurations found.
 struct Pool {
   BlockArray blocks;
-  std::vector<std::vector<double>> configurations;
+  Configurations configurations;
   std::size_t candidates = 0;   // the first of the pool, all others were found
   std::vector<int> original{};  ///< indices of those candidates
 };
 
-void append(Pool& pool, const std::vector<std::vector<double>>& found, ConfigurationSpace::Probe& probe) {
+void append(Pool& pool, const Configurations& found, ConfigurationSpace::Probe& probe) {
   BlockArray grown(pool.blocks.count() + found.size(), pool.blocks.rows(), pool.blocks.columns());
   std::copy_n(pool.blocks.data(), pool.blocks.count() * std::size_t(grown.rows() * grown.stride()), grown.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -72,57 +76,106 @@ bool is_same_place(const std::vector<ConfigurationSpace::Axis>& axes, std::span<
   return true;
 }
 
-/// Where the local searches start: half are the pool's largest d, half are drawn from the candidates; no two in one
-/// place. What is drawn depends on the seed and the round alone: not on an order of d that the last bit may turn.
-std::vector<std::size_t> starts_of(const ApproximateDesign& design, const Pool& pool,
-                                   const std::vector<ConfigurationSpace::Axis>& axes, int count, Random& random) {
-  std::vector<std::size_t> order(design.sensitivity.size());
+/// Enters a configuration that is in no known one's place.
+void enter(Configurations& places, std::span<const double> q, const ConfigurationSpace& space, double share) {
+  if (std::none_of(places.begin(), places.end(),
+                   [&](const auto& known) { return is_same_place(space.axes(), known, q, share); }))
+    places.emplace_back(q.begin(), q.end());
+}
+
+/// Indices by value, largest first.
+std::vector<std::size_t> largest_first(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto& d = design.sensitivity;
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return d[a] != d[b] ? d[a] > d[b] : a < b; });
-  std::vector<std::size_t> starts;
-  const auto enter = [&](std::size_t i) {
-    for (const std::size_t known : starts)
-      if (is_same_place(axes, pool.configurations[known], pool.configurations[i], start_distance)) return;
-    starts.push_back(i);
-  };
-  for (std::size_t i = 0; i < order.size() && int(starts.size()) < count / 2; ++i) enter(order[i]);
+  std::sort(order.begin(), order.end(),
+            [&](auto a, auto b) { return values[a] != values[b] ? values[a] > values[b] : a < b; });
+  return order;
+}
+
+/// Configurations by d, largest first; those without a block or outside the limits fall away.
+Configurations by_sensitivity(Configurations all, const Pool& pool, const Eigen::MatrixXd& T,
+                              ConfigurationSpace::Probe& probe) {
+  Sensitivity sensitivity(T);
+  ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
+  std::vector<std::pair<double, std::vector<double>>> valued;
+  for (std::vector<double>& q : all)
+    if (probe.perhaps_feasible(q) && block.at(probe, q))
+      valued.emplace_back(-sensitivity.value(block.map()), std::move(q));
+  std::sort(valued.begin(), valued.end());
+  all.clear();
+  for (auto& [d, q] : valued) all.push_back(std::move(q));
+  return all;
+}
+
+/// Poses that weights use, each with one coordinate at an end of its range or at another choice.
+Configurations at_the_ends(const ApproximateDesign& design, const Pool& pool, const ConfigurationSpace& space) {
+  Configurations ends;
+  for (const int i : design.weighted()) {
+    std::vector<double> q = pool.configurations[std::size_t(i)];
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const ConfigurationSpace::Axis& axis = space.axes()[k];
+      const double own = std::exchange(q[k], axis.lower);
+      for (const double end : axis.continuous ? std::vector<double>{axis.lower, axis.upper} : axis.choices)
+        if (end != own) {
+          q[k] = end;
+          ends.push_back(q);
+        }
+      q[k] = own;
+    }
+  }
+  return by_sensitivity(std::move(ends), pool, design.factor, *space.probe());
+}
+
+/// Fills up with candidates that are drawn.
+void add_drawn(Configurations& starts, std::size_t candidates, const ConfigurationSpace& space, int count,
+               Random& random) {
   for (int draw = 0; draw < 2 * count && int(starts.size()) < count; ++draw)
-    enter(std::size_t(random.index(int(pool.candidates))));
+    enter(starts, space.candidate(random.index(int(candidates))), space, start_distance);
+}
+
+/// Where the local searches start, no two in one place: the pool's largest d, the largest d at ends of coordinates
+/// and of all candidates, and candidates that are drawn. What is drawn depends on the seed and the round alone: not on
+/// an order of d that the last bit may turn.
+Configurations starts_of(const ApproximateDesign& design, const Pool& pool, const std::vector<double>& of_candidates,
+                         const ConfigurationSpace& space, int count, Random& random) {
+  Configurations starts;
+  const auto room = [&](double share) { return double(starts.size()) < share * count; };
+  for (const std::size_t i : largest_first(design.sensitivity))
+    if (room(0.3)) enter(starts, pool.configurations[i], space, start_distance);
+  for (const auto& q : at_the_ends(design, pool, space))
+    if (room(0.5)) enter(starts, q, space, start_distance);
+  for (const std::size_t i : largest_first(of_candidates))
+    if (room(0.7)) enter(starts, space.candidate(int(i)), space, start_distance);
+  add_drawn(starts, of_candidates.size(), space, count, random);
   return starts;
 }
 
-std::vector<AscentResult> search_from(const std::vector<std::size_t>& starts, const Pool& pool,
-                                      const Eigen::MatrixXd& T, const ConfigurationSpace& space, int evaluations,
+std::vector<AscentResult> search_from(const Configurations& starts, const Pool& pool, const Eigen::MatrixXd& T,
+                                      const ConfigurationSpace& space, int evaluations,
                                       const WorkspaceBoundOptions& options) {
   std::vector<AscentResult> results(starts.size());
   parallel_for(starts.size(), thread_count(options.threads), [&](std::size_t i, int) {
     const auto probe = space.probe();
     Sensitivity d(T);
-    results[i] = ascend(space, *probe, d, pool.blocks.rows(), pool.blocks.columns(), pool.configurations[starts[i]],
-                        evaluations);
+    results[i] = ascend(space, *probe, d, pool.blocks.rows(), pool.blocks.columns(), starts[i], evaluations);
   });
   return results;
 }
 
-/// Candidates whose d exceeds `limit`, largest first, no two in one place; and the largest d of all.
-std::vector<std::vector<double>> candidates_above(double limit, const BlockArray& blocks, const Eigen::MatrixXd& T,
-                                                  const ConfigurationSpace& space, int most_returned, double& largest) {
+std::vector<double> sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T) {
   Sensitivity sensitivity(T);
-  std::vector<std::pair<double, int>> above;
-  for (std::size_t i = 0; i < blocks.count(); ++i) {
-    const double d = sensitivity.value(blocks.block(i));
-    largest = std::max(largest, d);
-    if (d > limit) above.emplace_back(-d, int(i));
-  }
-  std::sort(above.begin(), above.end());
-  std::vector<std::vector<double>> result;
-  for (const auto& [d, i] : above) {
-    const auto q = space.candidate(i);
-    if (std::none_of(result.begin(), result.end(),
-                     [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
-      result.emplace_back(q.begin(), q.end());
-    if (int(result.size()) == most_returned) break;
+  std::vector<double> d(blocks.count());
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = sensitivity.value(blocks.block(i));
+  return d;
+}
+
+/// Candidates whose d exceeds `limit`, largest first, no two in one place.
+Configurations candidates_above(double limit, const std::vector<double>& d, const ConfigurationSpace& space,
+                                int most_returned) {
+  Configurations result;
+  for (const std::size_t i : largest_first(d)) {
+    if (!(d[i] > limit) || int(result.size()) == most_returned) break;
+    enter(result, space.candidate(int(i)), space, start_distance);
   }
   return result;
 }
@@ -149,13 +202,10 @@ bool towards(const std::vector<double>& inside, ConfigurationSpace::Probe& probe
   return probe.feasible(q);
 }
 
-/// What local searches from candidates do not find: where actuators cut the workspace, few candidates are near its
-/// corners. Starts of new searches are the middles of boxes that a proof of d ≤ limit would have to cut; none if there
-/// is no such proof. Raises `largest` to the largest d found.
-std::vector<std::vector<double>> missed_by_searches(double limit, const Pool& pool, const Eigen::MatrixXd& T,
-                                                    const ConfigurationSpace& space,
-                                                    const WorkspaceBoundOptions& options, const Monitor& monitor,
-                                                    double& largest) {
+/// Starts that candidates lack: where actuators cut the workspace, few candidates are near its corners. Middles of
+/// boxes that a proof of d ≤ limit would have to cut; none if there is no such proof.
+Configurations in_uncut_boxes(double limit, const Pool& pool, const Eigen::MatrixXd& T, const ConfigurationSpace& space,
+                              const WorkspaceBoundOptions& options, const Monitor& monitor) {
   SeenAbove seen;
   seen.limit = limit;
   BoxSearchOptions boxes;
@@ -164,39 +214,13 @@ std::vector<std::vector<double>> missed_by_searches(double limit, const Pool& po
   boxes.most_boxes = boxes_of_a_look;
   boxes.threads = options.threads;
   largest_enclosed(space, T, boxes, monitor, &seen);
-  std::sort(seen.middles.begin(), seen.middles.end());
   const auto probe = space.probe();
-  ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
-  Sensitivity sensitivity(T);
   const std::vector<double> inside = inner_place(pool, *probe);
-  std::vector<std::pair<double, std::vector<double>>> reached;
-  for (std::vector<double>& q : seen.middles)
-    if (towards(inside, *probe, q) && block.at(*probe, q)) reached.emplace_back(sensitivity.value(block.map()), q);
-  std::sort(reached.begin(), reached.end(),
-            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
-  std::vector<std::vector<double>> starts;
-  for (const auto& of_value : reached) {
-    if (int(starts.size()) == options.starts) break;
-    const std::vector<double>& q = of_value.second;
-    if (std::none_of(starts.begin(), starts.end(),
-                     [&](const auto& known) { return is_same_place(space.axes(), known, q, start_distance); }))
-      starts.push_back(q);
-  }
-  std::vector<AscentResult> ends(starts.size());
-  parallel_for(starts.size(), thread_count(options.threads), [&](std::size_t i, int) {
-    const auto own = space.probe();
-    Sensitivity d(T);
-    ends[i] = ascend(space, *own, d, pool.blocks.rows(), pool.blocks.columns(), starts[i], options.evaluations);
-  });
-  std::vector<std::vector<double>> found;
-  for (const AscentResult& end : ends) {
-    largest = std::max(largest, end.value);
-    if (end.value > limit && std::none_of(found.begin(), found.end(), [&](const auto& q) {
-          return is_same_place(space.axes(), q, end.q, end_distance);
-        }))
-      found.push_back(end.q);
-  }
-  return found;
+  std::erase_if(seen.middles, [&](std::vector<double>& q) { return !towards(inside, *probe, q); });
+  Configurations starts;
+  for (const auto& q : by_sensitivity(std::move(seen.middles), pool, T, *probe))
+    if (int(starts.size()) < options.starts) enter(starts, q, space, start_distance);
+  return starts;
 }
 
 Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
@@ -217,6 +241,134 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   return pool;
 }
 
+/// Column generation: weights, searches by their d, and what was found enters.
+class ColumnGeneration {
+ public:
+  ColumnGeneration(const BlockArray& blocks, const ApproximateDesign& on_candidates,
+                   const InformationFunction& function, const ConfigurationSpace& space,
+                   const WorkspaceBoundOptions& options, const Monitor& monitor)
+      : blocks_(blocks),
+        function_(function),
+        space_(space),
+        options_(options),
+        monitor_(monitor),
+        pool_(first_pool(blocks, on_candidates, space, std::size_t(pool_per_column * blocks.columns()))),
+        random_(options.seed, 0),
+        evaluations_(options.evaluations / 4) {
+    weights_.prior = options.prior;
+    weights_.tolerance = 0.1 * options.tolerance;
+    weights_.threads = options.threads;
+    for (const int i : on_candidates.weighted())
+      weights_.start.push_back(
+          int(std::lower_bound(pool_.original.begin(), pool_.original.end(), i) - pool_.original.begin()));
+    take(options.known);
+    result_.degree = function.degree();
+  }
+
+  WorkspaceBound run() {
+    const bool quick = blocks_.count() < few_candidates;
+    const int rounds = quick ? std::min(few_rounds, options_.rounds) : options_.rounds;
+    const bool has_boxes = !quick && options_.proof.seconds != 0.0 && !space_.is_box() &&
+                           space_.enclosure(Eigen::MatrixXd::Identity(blocks_.columns(), 1)) != nullptr;
+    for (int round = 0; round < rounds; ++round) {
+      weigh();
+      search(starts_of(design_, pool_, of_candidates_, space_, options_.starts, random_));
+      if (has_boxes && is_done() && !monitor_.should_stop())
+        search(in_uncut_boxes(limit_, pool_, design_.factor, space_, options_, monitor_));
+      result_.stopped = monitor_.should_stop();
+      monitor_.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result_.max_ratio});
+      if (result_.stopped) break;
+      if (is_done() || round + 1 == rounds) confirm();
+      if (is_done()) break;
+      if (result_.max_ratio <= nearly || found_.empty()) evaluations_ = options_.evaluations;
+      // Each round begins with the weights of the one before and what came in.
+      weights_.start = design_.weighted();
+      take(found_);
+    }
+    tell_support();
+    return result_;
+  }
+
+ private:
+  void take(const Configurations& found) {
+    for (std::size_t i = 0; i < found.size(); ++i) weights_.start.push_back(int(pool_.blocks.count() + i));
+    if (!found.empty()) append(pool_, found, *space_.probe());
+  }
+
+  /// Optimal weights of the pool, and which candidates they miss.
+  void weigh() {
+    design_ = solve_approximate_design(pool_.blocks, function_, weights_, monitor_);
+    of_candidates_ = sensitivities(blocks_, design_.factor);
+    // What the prior adds to every d, so that Σ w d is the degree.
+    extra_ = weights_.prior.size() > 0 ? (design_.factor.transpose() * weights_.prior * design_.factor).trace() : 0.0;
+    limit_ = design_.degree * (1 + options_.tolerance) - extra_;
+    const double own = *std::max_element(design_.sensitivity.begin(), design_.sensitivity.end());
+    larger_ = own * (1 + 1e-6);
+    found_ = candidates_above(std::max(limit_, larger_), of_candidates_, space_, options_.starts);
+    judge(std::max(own, *std::max_element(of_candidates_.begin(), of_candidates_.end())));
+  }
+
+  void search(const Configurations& starts) {
+    double most = most_;
+    for (const AscentResult& end : search_from(starts, pool_, design_.factor, space_, evaluations_, options_)) {
+      most = std::max(most, end.value);
+      if (end.value > std::min(limit_, larger_)) enter(found_, end.q, space_, end_distance);
+    }
+    result_.searches += int(starts.size());
+    judge(most);
+  }
+
+  void judge(double most) {
+    most_ = most;
+    result_.value = design_.value;
+    result_.max_ratio = std::max(1.0, (most + extra_) / design_.degree);
+    result_.bound = design_.value + design_.degree * std::log(result_.max_ratio);
+  }
+
+  bool is_done() const {
+    return evaluations_ == options_.evaluations && (result_.max_ratio <= 1 + options_.tolerance || found_.empty());
+  }
+
+  /// Whether searches from drawn candidates alone come to the same end.
+  void confirm() {
+    if (result_.max_ratio > 1 + settled_within) return;
+    evaluations_ = options_.evaluations;
+    Configurations starts;
+    add_drawn(starts, blocks_.count(), space_, options_.starts, random_);
+    search(starts);
+    result_.confirmed = result_.max_ratio <= 1 + settled_within ? int(starts.size()) : 0;
+  }
+
+  void tell_support() {
+    result_.factor = design_.factor;
+    for (std::size_t i = 0; i < design_.support.size(); ++i)
+      if (const auto at = std::size_t(design_.support[i]); design_.weights[i] > 1e-6) {
+        if (at < pool_.candidates) {
+          result_.candidates.push_back(pool_.original[at]);
+          result_.candidate_weights.push_back(design_.weights[i]);
+        } else {
+          result_.support.push_back(pool_.configurations[at]);
+          result_.weights.push_back(design_.weights[i]);
+        }
+      }
+  }
+
+  const BlockArray& blocks_;
+  const InformationFunction& function_;
+  const ConfigurationSpace& space_;
+  const WorkspaceBoundOptions& options_;
+  const Monitor& monitor_;
+  Pool pool_;
+  Random random_;
+  int evaluations_;  // the first rounds bring in whatever is larger than the rest; only the last must find each top
+  ApproximateDesignOptions weights_;
+  ApproximateDesign design_;
+  WorkspaceBound result_;
+  std::vector<double> of_candidates_;  // d
+  Configurations found_;               // to enter the weights
+  double extra_ = 0.0, limit_ = 0.0, larger_ = 0.0, most_ = 0.0;
+};
+
 }  // namespace
 
 double WorkspaceBound::bound_for(int poses) const { return bound + degree * std::log(double(poses)); }
@@ -224,78 +376,7 @@ double WorkspaceBound::bound_for(int poses) const { return bound + degree * std:
 WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign& on_candidates,
                                const InformationFunction& function, const ConfigurationSpace& space,
                                const WorkspaceBoundOptions& options, const Monitor& monitor) {
-  ApproximateDesignOptions weights;
-  weights.prior = options.prior;
-  weights.tolerance = 0.1 * options.tolerance;
-  weights.threads = options.threads;
-  Pool pool = first_pool(blocks, on_candidates, space, std::size_t(pool_per_column * blocks.columns()));
-  ApproximateDesign design;
-  WorkspaceBound result;
-  result.degree = function.degree();
-  // The first rounds bring in whatever is larger than the rest; only the last ones must find each top.
-  int evaluations = options.evaluations / 4;
-  Random random(options.seed, 0);
-  const auto probe = space.probe();
-  // Each round begins with the weights of the one before and what came in.
-  for (const int i : on_candidates.weighted())
-    weights.start.push_back(
-        int(std::lower_bound(pool.original.begin(), pool.original.end(), i) - pool.original.begin()));
-  if (!options.known.empty()) {
-    for (std::size_t i = 0; i < options.known.size(); ++i) weights.start.push_back(int(pool.blocks.count() + i));
-    append(pool, options.known, *probe);
-  }
-  const int rounds = blocks.count() < few_candidates ? std::min(few_rounds, options.rounds) : options.rounds;
-  const bool look_into_boxes = blocks.count() >= few_candidates && options.proof.seconds != 0.0 && !space.is_box() &&
-                               space.enclosure(Eigen::MatrixXd::Identity(blocks.columns(), 1)) != nullptr;
-  for (int round = 0; round < rounds; ++round) {
-    design = solve_approximate_design(pool.blocks, function, weights, monitor);
-    const std::vector<AscentResult> ends = search_from(starts_of(design, pool, space.axes(), options.starts, random),
-                                                       pool, design.factor, space, evaluations, options);
-    result.searches += int(ends.size());
-    // What the prior adds to every d, so that Σ w d is the degree.
-    const double extra =
-        weights.prior.size() > 0 ? (design.factor.transpose() * weights.prior * design.factor).trace() : 0.0;
-    const double own = *std::max_element(design.sensitivity.begin(), design.sensitivity.end());
-    double most = own;
-    const double limit = design.degree * (1 + options.tolerance) - extra;
-    std::vector<std::vector<double>> found =
-        candidates_above(std::max(limit, own * (1 + 1e-6)), blocks, design.factor, space, options.starts, most);
-    for (const AscentResult& end : ends) {
-      most = std::max(most, end.value);
-      if (end.value > own * (1 + 1e-6) || end.value > limit)
-        if (std::none_of(found.begin(), found.end(),
-                         [&](const auto& q) { return is_same_place(space.axes(), q, end.q, end_distance); }))
-          found.push_back(end.q);
-    }
-    const bool thorough = evaluations == options.evaluations;
-    if (thorough && look_into_boxes && (most <= limit || found.empty()) && !monitor.should_stop()) {
-      const auto missed = missed_by_searches(limit, pool, design.factor, space, options, monitor, most);
-      found.insert(found.end(), missed.begin(), missed.end());
-    }
-    result.value = design.value;
-    result.max_ratio = std::max(1.0, (most + extra) / design.degree);
-    result.bound = design.value + design.degree * std::log(result.max_ratio);
-    result.stopped = monitor.should_stop();
-    monitor.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result.max_ratio});
-    if (result.stopped) break;
-    if (thorough && (result.max_ratio <= 1 + options.tolerance || found.empty())) break;
-    if (result.max_ratio <= nearly || found.empty()) evaluations = options.evaluations;
-    weights.start = design.weighted();
-    for (std::size_t i = 0; i < found.size(); ++i) weights.start.push_back(int(pool.blocks.count() + i));
-    append(pool, found, *probe);
-  }
-  result.factor = design.factor;
-  for (std::size_t i = 0; i < design.support.size(); ++i)
-    if (const auto at = std::size_t(design.support[i]); design.weights[i] > 1e-6) {
-      if (at < pool.candidates) {
-        result.candidates.push_back(pool.original[at]);
-        result.candidate_weights.push_back(design.weights[i]);
-      } else {
-        result.support.push_back(pool.configurations[at]);
-        result.weights.push_back(design.weights[i]);
-      }
-    }
-  return result;
+  return ColumnGeneration(blocks, on_candidates, function, space, options, monitor).run();
 }
 
 }  // namespace posewright

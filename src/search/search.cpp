@@ -265,13 +265,17 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
             "",
             proof.boxes,
             proof.limits};
-  Certificate::Workspace searched{
-      0.0,
-      found.bound_for(poses) + offset,
-      found.max_ratio,
-      fmt::format("largest d(q) of {} local searches ({}); not a proof", found.searches, smooth ? "SLSQP" : "SBPLX"),
-      false,
-      proof.why_not};
+  const std::string confirmed =
+      found.confirmed == 0 ? "not settled"
+                           : fmt::format("{} more from drawn candidates found nothing better", found.confirmed);
+  Certificate::Workspace searched{0.0,
+                                  found.bound_for(poses) + offset,
+                                  found.max_ratio,
+                                  fmt::format("largest d(q) of {} local searches ({}), {}; not a proof",
+                                              found.searches - found.confirmed, smooth ? "SLSQP" : "SBPLX", confirmed),
+                                  false,
+                                  proof.why_not};
+  searched.settled = found.confirmed > 0;
   if (loose) {
     searched.why_not =
         !proof.ended.empty() ? "the proof was " + proof.ended
@@ -382,8 +386,10 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   // A planner that proves something knows more than the weights alone.
   if (result.design.bound && !request.reserve)
     result.certificate.bound = std::min(result.certificate.bound, *result.design.bound + offset);
-  if (workspace)
+  if (workspace) {
     result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->margins().has_value());
+    result.certificate.workspace->reached = workspace->value + share * std::log(double(request.poses)) + offset;
+  }
   // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
   // miss.
   if (auto& space_wide = result.certificate.workspace; space_wide && !space_wide->proved)
@@ -405,10 +411,11 @@ void certify(Certificate& certificate, double phi, double degree) {
   // poses, or have some nearer to the limits than any that is proposed.
   const double short_of = certificate.bound - phi;
   certificate.efficiency = std::abs(short_of) < 1e-9 ? 1.0 : std::exp(-short_of / degree);
-  if (certificate.workspace)
-    certificate.workspace->efficiency = std::exp((phi - certificate.workspace->bound) / degree);
-  if (certificate.workspace && certificate.workspace->loose_bound)
-    certificate.workspace->loose_efficiency = std::exp((phi - *certificate.workspace->loose_bound) / degree);
+  if (!certificate.workspace) return;
+  Certificate::Workspace& whole = *certificate.workspace;
+  whole.efficiency = std::exp((phi - whole.bound) / degree);
+  whole.at_most = std::exp((phi - whole.reached) / degree);
+  if (whole.loose_bound) whole.loose_efficiency = std::exp((phi - *whole.loose_bound) / degree);
 }
 
 }  // namespace posewright

@@ -51,6 +51,13 @@ class WaveSpace : public ConfigurationSpace {
     axes_[k].continuous = false;
     axes_[k].choices = {0.0, 1.0};
   }
+  /// All candidates have this value of axis k.
+  void set_candidates(std::size_t k, double value) {
+    for (std::size_t i = 0; i < configurations_.size(); ++i) {
+      configurations_[i][k] = value;
+      write(configurations_[i], blocks_.row(i, 0), blocks_.stride());
+    }
+  }
   void allow_repeats() { spacing_.unit.resize(0); }
 
   const std::vector<Axis>& axes() const override { return axes_; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "planners/continuous.hpp"
@@ -263,6 +264,55 @@ TEST(WorkspaceBound, IsNotExceededByADenseGridAndFindsWhatCandidatesMiss) {
   const ApproximateDesign fine = solve_approximate_design(grid, function, {}, Monitor{});
   EXPECT_LE(fine.value, bound.bound + 1e-9);
   EXPECT_GT(fine.value, bound.bound - 0.02);
+}
+
+/// The bound of a space with all default options but these.
+WorkspaceBound bound_of(const WaveSpace& space, const WorkspaceBoundOptions& options = {}) {
+  const LogDetFunction function(0, space.blocks().columns());
+  const ApproximateDesign design = solve_approximate_design(space.blocks(), function, {}, Monitor{});
+  return workspace_bound(space.blocks(), design, function, space, options, Monitor{});
+}
+
+TEST(WorkspaceBound, TriesChoicesThatNoCandidateHas) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    WaveSpace space(3, 2, 6, 200, 60 + seed);
+    space.make_choice(2);
+    space.set_candidates(2, 0.0);
+    const WorkspaceBound bound = bound_of(space);
+    EXPECT_TRUE(std::any_of(bound.support.begin(), bound.support.end(), [](const auto& q) { return q[2] == 1.0; }));
+    WaveSpace other(3, 2, 6, 200, 60 + seed);
+    other.make_choice(2);
+    other.set_candidates(2, 1.0);
+    EXPECT_NEAR(bound_of(other).value, bound.value, 0.002 * 6) << "from the other choice alone the same weights";
+  }
+}
+
+TEST(WorkspaceBound, IsSettledWhereNoneOfManyRandomPlacesExceedsIt) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const WaveSpace space(4, 2, 8, 1500, 80 + seed);
+    const WorkspaceBound bound = bound_of(space);
+    EXPECT_GT(bound.confirmed, 0);
+    EXPECT_LE(bound.max_ratio, 1.005);
+    BlockArray block(1, 2, 8);
+    Random random(seed, 2);
+    double most = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const std::vector<double> q{random.uniform(), random.uniform(), random.uniform(), random.uniform()};
+      space.probe()->block(q, block.row(0, 0), block.stride());
+      most = std::max(most, (std::as_const(block).block(0) * bound.factor).squaredNorm());
+    }
+    EXPECT_LE(most, 1.005 * 8);
+  }
+}
+
+TEST(WorkspaceBound, IsNotSettledWhereItsRoundsEndFirst) {
+  WorkspaceBoundOptions one_round;
+  one_round.rounds = 1;
+  const WaveSpace space(4, 2, 8, 1500, 80);
+  const WorkspaceBound bound = bound_of(space, one_round);
+  EXPECT_EQ(bound.confirmed, 0);
+  EXPECT_GT(bound.max_ratio, 1.005);
+  EXPECT_LT(bound.value, bound_of(space).value);
 }
 
 TEST(ExtendedBound, EqualsThatOfCandidatesAndNewBlocksTogether) {

@@ -32,6 +32,7 @@ namespace posewright {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class WorkspaceProofs : public testing::Test {
  protected:
@@ -401,6 +402,26 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
   // A turn of each visit moves the tip by what it points at; a camera divides by the distance.
   EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("turns of each visit"));
   EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
+}
+
+TEST_F(WorkspaceProofs, ASearchThatDidNotEndGivesNoFigureButWhatIsNotExceeded) {
+  PlanOptions options;
+  options.candidates = 1000;
+  Plan plan = plan_problem(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}"), options, Monitor{});
+  Certificate::Workspace& whole = *plan.certificate.workspace;
+  ASSERT_TRUE(whole.settled) << whole.method;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Over the whole workspace: "));
+  EXPECT_THAT(plan_summary(plan), Not(HasSubstr("no figure")));
+  EXPECT_THAT(whole.method, HasSubstr(" more from drawn candidates found nothing better"));
+  EXPECT_GE(whole.at_most, whole.efficiency);
+  EXPECT_NEAR(whole.at_most, whole.efficiency, 0.005);
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Predicted σ: what the stated noise alone leaves, if the model is"));
+  whole.settled = false;
+  whole.at_most = 0.8765;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Over the whole workspace: no figure, the search for better poses did not "
+                                            "come to an end; at most 87.7 % of the best (no proof: "));
+  whole.at_most = 1.02;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("come to an end (no proof: "));
 }
 
 TEST_F(WorkspaceProofs, TakesWhatRefutesItIntoTheWeights) {

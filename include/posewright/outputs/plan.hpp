@@ -100,6 +100,10 @@ struct Certificate {
     /// A proof far below what the search says: it holds all the same.
     std::optional<double> loose_bound{};
     double loose_efficiency = 0.0;
+    /// Whether a search that proves nothing came to its end; otherwise its efficiency is no figure for people.
+    bool settled = true;
+    double reached = 0.0;  ///< Φ of the best weights found: some plan may be as good
+    double at_most = 1.0;  ///< no more than this share of the best: that of these weights
   };
   std::optional<Workspace> workspace;
 };

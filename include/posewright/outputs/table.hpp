@@ -32,6 +32,9 @@ std::string percent(double share);
 
 /// "97 %": the same to the digits that a search gives on any processor. Half a thousandth is what the search stops at.
 std::string searched_percent(double share);
+
+/// "97.9 %" for 0.97869: rounded up, because no more is reached.
+std::string at_most_percent(double share);
 /// "98.5 %", rounded down: of a proof that rests on weights whose last digits depend on the processor.
 std::string proved_percent(double share);
 

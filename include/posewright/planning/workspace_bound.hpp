@@ -26,7 +26,7 @@ struct ProofLimits {
 };
 
 struct WorkspaceBoundOptions {
-  int starts = 32;          ///< local searches a round, from the candidates of largest d and spread ones
+  int starts = 32;          ///< local searches a round: from the largest d, ends of coordinates, drawn candidates
   int rounds = 30;          ///< at most: new configurations enter, the weights are solved again;
                             ///< with fewer than 1,000 candidates, a quick look, no more than 8
   double tolerance = 1e-3;  ///< stop where no search finds d above degree·(1 + tolerance)
@@ -61,6 +61,7 @@ struct WorkspaceBound {
   double degree = 0.0;     ///< h
   double max_ratio = 1.0;  ///< largest d found over h
   int searches = 0;        ///< local searches carried out
+  int confirmed = 0;       ///< searches from drawn candidates that found nothing better in the end; 0: not settled
   std::vector<std::vector<double>> support;  ///< configurations with weight that were not candidates
   std::vector<double> weights;               ///< theirs; with those of the candidates they sum to one
   std::vector<int> candidates;               ///< with weight, ascending
@@ -73,8 +74,9 @@ struct WorkspaceBound {
 };
 
 /// Column generation: optimal weights on the candidates and the configurations found so far, then multi-start local
-/// maximisation of d(q) = ‖J(q) T‖², winners enter, until none exceeds. Repeats are allowed (in a continuum two poses
-/// may be as near as one likes). Starts are deterministic; the number of threads does not matter.
+/// maximisation of d(q) = ‖J(q) T‖², winners enter, until none exceeds. Then as many searches from drawn candidates
+/// must find nothing better, or the rounds go on. Repeats are allowed (in a continuum two poses may be as near as one
+/// likes). Starts are deterministic; the number of threads does not matter.
 /// @param blocks  candidates
 /// @param design  optimal weights on them: those with weight or large d take part
 WorkspaceBound workspace_bound(const BlockArray& blocks, const ApproximateDesign& design,

@@ -4,7 +4,7 @@ import { efficiencyOf, inCommon, whyNotComparable } from '../numerics/two_plans.
 import { PoseList } from '../pose_list.js';
 import { growingPlot, sigmaPairsPlot } from '../plots/two_plans.js';
 import { shellFile } from '../sections/reproduce.js';
-import { newPoses } from '../text/sentences.js';
+import { isSettled, newPoses } from '../text/sentences.js';
 import { coordinate, number, percent, percentDown, plural, quantity } from '../text/units.js';
 import { viewer } from '../view/viewer.js';
 
@@ -98,7 +98,7 @@ function figuresTable(reports) {
     [
       'of the best over the workspace',
       (p) =>
-        certificate(p).workspace
+        certificate(p).workspace && isSettled(certificate(p).workspace)
           ? `${certificate(p).workspace.proved ? '≥ ' : 'about '}${percentDown(certificate(p).workspace.efficiency, 1)}`
           : '–',
     ],

@@ -22,7 +22,7 @@ export function certificateSection(plan) {
     ? [
         w.proved
           ? ['at least this share of the best', percentDown(w.efficiency, 1)]
-          : ['share of the best, as far as the search saw', percentDown(Math.min(1, w.efficiency + 5e-4), 0)],
+          : ['share of the best, as far as the search saw', say.isSettled(w) ? say.searchedShare(w) : 'not settled'],
         ['bound', number(w.bound, 8)],
         [`largest sensitivity ${w.proved ? 'that is possible' : 'found'}`, number(w.max_sensitivity_ratio, 6)],
         ['method', w.method],

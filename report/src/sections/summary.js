@@ -7,15 +7,11 @@ import * as say from '../text/sentences.js';
 function nearness({ candidates, workspace }) {
   const title = 'of the best plan';
   if (!candidates) return tile('no bound', 'for this criterion', 'how near the best plan is unknown');
-  if (!workspace || workspace.efficiency >= candidates.efficiency)
+  if (!workspace || !say.isSettled(workspace) || workspace.efficiency >= candidates.efficiency)
     return tile(`≥ ${percentDown(candidates.efficiency)}`, title, 'proved over the candidates');
   return workspace.proved
     ? tile(`≥ ${percentDown(workspace.efficiency, 1)}`, title, 'proved over the whole workspace')
-    : tile(
-        percentDown(Math.min(1, workspace.efficiency + 5e-4), 0),
-        title,
-        'over the whole workspace, by a search',
-      );
+    : tile(say.searchedShare(workspace), title, 'over the whole workspace, by a search');
 }
 
 /** @param {import('../pose_list.js').PoseList} list */

@@ -98,9 +98,15 @@ export function searched(plan) {
   if (w?.proved)
     return `Proved ${w.within}${limits}: between the candidates too, it reaches at least ${percentDown(w.efficiency, 1)} of the best.`;
   return w
-    ? `Searched, not proved: over the whole workspace, between the candidates too, it reaches ${percentDown(Math.min(1, w.efficiency + 5e-4), 0)} of the best.`
+    ? `Searched, not proved: over the whole workspace, between the candidates too, ${isSettled(w) ? `it reaches ${searchedShare(w)} of the best` : 'no figure: the search for better poses did not come to an end'}.`
     : '';
 }
+
+/** Whether a search came to its end (older files do not say). @param {any} workspace */
+export const isSettled = (workspace) => workspace.settled !== false;
+
+/** @param {any} workspace */
+export const searchedShare = (workspace) => percentDown(Math.min(1, workspace.efficiency + 5e-4), 0);
 
 /** @param {any} plan */
 export function loss(plan) {

@@ -26,6 +26,9 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
   FittedRows rows = fitted_rows(model, selected, poses, correction, fit);
   const Beside fitted(rows.J.leftCols(own));
   rows.r = fitted.left(rows.r);
+  // Of the fitted columns per unit of a whitened reading.
+  const Eigen::MatrixXd taken_up =
+      fit.covariance * rows.J.leftCols(own).transpose() / (fit.noise_factor * fit.noise_factor);
   const Eigen::VectorXd length = rows.J.colwise().norm().cwiseMax(1e-300);
   rows.J *= length.cwiseInverse().asDiagonal();
   const double squares = rows.r.squaredNorm();
@@ -37,15 +40,20 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
     for (std::size_t c = 0; c < effect.parameters.size(); ++c)
       X.col(Eigen::Index(c)) =
           rows.J.col(std::find(selected.begin(), selected.end(), effect.parameters[c]) - selected.begin());
+    const Eigen::MatrixXd whole = X;
     X = fitted.left(X);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(X.transpose() * X));
     ScoreTest test;
     test.name = effect.name;
+    Eigen::VectorXd effect_size = Eigen::VectorXd::Zero(X.cols());
     for (Eigen::Index k = 0; k < X.cols(); ++k) {
       if (!(eigen.eigenvalues()[k] > imitated)) continue;
       ++test.freedom;
-      test.gain += std::pow(eigen.eigenvectors().col(k).dot(X.transpose() * rows.r), 2) / eigen.eigenvalues()[k];
+      const double along = eigen.eigenvectors().col(k).dot(X.transpose() * rows.r);
+      test.gain += along * along / eigen.eigenvalues()[k];
+      effect_size += eigen.eigenvectors().col(k) * (along / eigen.eigenvalues()[k]);
     }
+    test.moves = -taken_up * (whole * effect_size);
     if (test.freedom == 0 || left <= test.freedom || !(squares > 0)) continue;
     test.share = test.gain / squares;
     test.statistic = test.gain / test.freedom / (std::max(squares - test.gain, 1e-300) / (left - test.freedom));

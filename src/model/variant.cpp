@@ -116,7 +116,9 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
     label.places = places(all[std::size_t(i)]);
     columns.selected.push_back(i);
     columns.parameters.push_back(std::move(label));
-    columns.tiers.push_back(variant.automatic && tier.count(i) != 0 ? tier[i] : 0);
+    // Of parameters that depend on each other, those that nobody asked for are left out.
+    const int of_role = role == Role::nuisance ? 1 : 0;
+    columns.tiers.push_back(!variant.automatic ? of_role : tier.count(i) != 0 ? tier[i] : 0);
   };
   for (int i = 0; i < int(all.size()); ++i)
     if (is_nuisance[std::size_t(i)] && !is_fixed[std::size_t(i)]) add(i, Role::nuisance);

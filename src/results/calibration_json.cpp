@@ -66,8 +66,7 @@ Json numbers(const std::vector<double>& values) {
 }
 
 Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
-  const auto estimate = [&](double value) { return p.estimated ? Json(value) : Json(nullptr); };
-  const bool interval = p.estimated && turned_frame(c, p) == nullptr;
+  const bool known = p.estimated && p.given.empty(), interval = known && turned_frame(c, p) == nullptr;
   const double half = p.half_width;
   return {{"name", p.label.name},
           {"unit", p.label.unit},
@@ -80,12 +79,13 @@ Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
                                                : "assumed"},
           {"tolerance_times", p.spread},
           {"value", p.value},
-          {"sigma", estimate(p.sigma)},
+          {"sigma", known ? Json(p.sigma) : Json(nullptr)},
           {"interval", interval ? Json({finite_or_null(p.lower), finite_or_null(p.upper)}) : Json(nullptr)},
           {"interval_by", !interval ? Json(nullptr) : Json(p.profiled ? "profile" : "linear")},
           {"linear_interval", interval ? Json({p.value - half, p.value + half}) : Json(nullptr)},
           {"tells_less_than_tolerance", p.weak},
-          {"why_not", text_or_null(p.why_not)}};
+          {"why_not", text_or_null(p.why_not)},
+          {"given", p.given}};
 }
 
 Json test_json(const TestResult& test) {

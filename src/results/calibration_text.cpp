@@ -58,6 +58,7 @@ std::string orientations_text(const Calibration& c) {
 
 /// What is worth knowing of one parameter beside its numbers.
 std::string remark_of(const CalibratedParameter& p) {
+  if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
   std::string text = p.weak ? "the data add less than its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
   if (!p.profiled) return text;
   return text + fmt::format("{}profile; linear {} to {}", text.empty() ? "" : "; ",
@@ -73,12 +74,18 @@ std::string parameters_text(const Calibration& c) {
     if (!p.estimated) continue;
     const std::string& unit = p.label.unit;
     const auto shown = [&](double value) { return std::isfinite(value) ? shown_to(value, p.sigma, unit) : "no end"; };
-    const bool turns = turned_frame(c, p) != nullptr;
+    const bool turns = turned_frame(c, p) != nullptr, known = p.given.empty();
     table.row({p.label.name, tolerance_text(p), shown(p.label.nominal), shown(p.value),
-               shown(p.value - p.label.nominal), turns ? "below" : shown(p.sigma), turns ? "" : shown(p.lower),
-               turns ? "" : shown(p.upper), remark_of(p)});
+               shown(p.value - p.label.nominal),
+               !known  ? "-"
+               : turns ? "below"
+                       : shown(p.sigma),
+               turns || !known ? "" : shown(p.lower), turns || !known ? "" : shown(p.upper), remark_of(p)});
   }
   std::string text = table.text() + orientations_text(c);
+  if (std::any_of(c.parameters.begin(), c.parameters.end(),
+                  [](const CalibratedParameter& p) { return !p.given.empty(); }))
+    text += "given: right only where what it names is nominal\n";
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
     text +=
         "assumed: nobody wrote this tolerance; its kind is assumed, its size is what the readings show of parameters "

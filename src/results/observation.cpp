@@ -66,13 +66,18 @@ std::string near_text(const Observation& o) {
          "  (a parameter on the left mostly looks like those on its right, the largest terms of which are shown)\n";
 }
 
+/// Of a kept parameter: what its value would depend on.
+const std::vector<std::string>& given_of(const Observation& o, std::size_t kept) {
+  return o.given[std::size_t(o.identifiability.kept[kept])];
+}
+
 std::string names(const Observation& o, bool recommended) {
   const std::vector<int>& kept = o.practical->recommended;
   std::string text;
   for (std::size_t j = 0; j < o.kept.size(); ++j) {
     if (o.kept[j].role == Role::nuisance) continue;
-    if ((std::find(kept.begin(), kept.end(), int(j)) != kept.end()) == recommended)
-      text += (text.empty() ? "" : ", ") + o.kept[j].name;
+    const bool worth = std::find(kept.begin(), kept.end(), int(j)) != kept.end() && given_of(o, j).empty();
+    if (worth == recommended) text += (text.empty() ? "" : ", ") + o.kept[j].name;
   }
   return text;
 }
@@ -98,9 +103,10 @@ std::string practical_text(const Observation& o) {
     const bool worth = p.sigma[k] < label.tolerance;
     table.row({label.name, shown_value(label.tolerance, label.unit), shown_value(p.sigma[k], label.unit),
                fmt::format("{:.3g}", p.sigma[k] / label.tolerance), share_text(p.unexplained[k]),
-               label.role == Role::nuisance ? "nuisance"
-               : worth                      ? "yes"
-                                            : "no: tolerance says more",
+               !given_of(o, j).empty()        ? fmt::format("given {}", fmt::join(given_of(o, j), ", "))
+               : label.role == Role::nuisance ? "nuisance"
+               : worth                        ? "yes"
+                                              : "no: tolerance says more",
                most_like(o, int(j))});
   }
   text += table.text();
@@ -114,7 +120,9 @@ std::string verdict_text(const Observation& o) {
   };
   const auto kept = [&](Role role) {
     const std::vector<int>& found = o.identifiability.kept;
-    return std::count_if(found.begin(), found.end(), [&](int j) { return o.parameters[std::size_t(j)].role == role; });
+    return std::count_if(found.begin(), found.end(), [&](int j) {
+      return o.parameters[std::size_t(j)].role == role && o.given[std::size_t(j)].empty();
+    });
   };
   std::string text = fmt::format("Variant {}: {} of {} parameters can be identified", o.variant, kept(Role::interest),
                                  all(Role::interest));
@@ -185,7 +193,8 @@ Json observation_json(const Observation& o) {
                           {"unit", p.unit},
                           {"role", p.role == Role::interest ? "interest" : "nuisance"},
                           {"tolerance", p.tolerance},
-                          {"identifiable", kept}});
+                          {"identifiable", kept && o.given[j].empty()},
+                          {"given", o.given[j]}});
   }
   for (const Dependency& d : found.dependencies) dependencies.push_back(dependency_json(d, o.parameters));
   Json json = {

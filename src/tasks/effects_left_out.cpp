@@ -17,11 +17,13 @@ Problem with_eccentricity(Problem problem, const std::vector<Coordinate>& coordi
   return problem;
 }
 
-/// Both parameters of a harmonic are one effect: "q1.cos1" and "q1.sin1" belong to "q1.cos1, q1.sin1".
+/// Both parameters of a harmonic are one effect: "q1.cos1" and "q1.sin1" belong to "q1.cos1, q1.sin1"; and so are focal
+/// lengths, which a lens has in common.
 std::string effect_of(const std::string& name) {
   const auto dot = name.rfind('.');
   if (dot == std::string::npos) return name;
   const std::string joint = name.substr(0, dot + 1), kind = name.substr(dot + 1);
+  if (kind == "fx" || kind == "fy") return joint + "fx, " + joint + "fy";
   for (const char* harmonic : {"1", "2", "_g"})
     for (const char* part : {"cos", "sin"})
       if (kind == std::string(part) + harmonic) return joint + "cos" + harmonic + ", " + joint + "sin" + harmonic;

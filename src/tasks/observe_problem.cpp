@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "posewright/calibration/given.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/study/columns.hpp"
@@ -47,6 +48,8 @@ Observation observe(const Variant& variant, const Configurations& configurations
   IdentifiabilityOptions structural;
   structural.tiers = columns.tiers;
   result.identifiability = identifiability(pool, columns.parameters, structural);
+  result.given.resize(columns.parameters.size());
+  if (!columns.automatic) result.given = given(result.identifiability.dependencies, columns.parameters);
   structural.threshold = 1e-9;
   result.exact_rank = identifiability(pool, columns.parameters, structural).rank;
   const VariantColumns kept = subset(columns, result.identifiability.kept);

@@ -10,8 +10,10 @@
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
+#include "posewright/tasks/observe_problem.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/temporary_folder.hpp"
+#include "tests/kit/urdf_text.hpp"
 #include "tests/kit/virtual_data.hpp"
 #include "tests/kit/virtual_file.hpp"
 
@@ -185,6 +187,109 @@ TEST(Verdict, AnArmOnAColumnIsNeverMetresOffAndItsOpenDirectionIsNamed) {
       if (p.label.name == "base.z" && plain.verdict != Verdict::do_not_use) {
         EXPECT_NEAR(p.value, arm.base_z, 0.1) << draw;
       }
+  }
+}
+
+const CalibratedParameter& parameter(const Calibration& c, const std::string& name) {
+  return *std::ranges::find_if(c.parameters, [&](const CalibratedParameter& p) { return p.label.name == name; });
+}
+
+/// Those that hang on something left out have no interval, are written without σ, and the rest is right.
+void expect_given(const Calibration& c, const std::vector<std::string>& names, const std::string& left_out) {
+  for (const CalibratedParameter& p : c.parameters) {
+    const bool hangs = std::ranges::find(names, p.label.name) != names.end();
+    if (p.estimated) {
+      EXPECT_EQ(p.given, hangs ? std::vector{left_out} : std::vector<std::string>{}) << p.label.name;
+      EXPECT_EQ(std::isfinite(p.lower) && std::isfinite(p.upper), !hangs) << p.label.name;
+    } else {
+      EXPECT_EQ(p.label.name, left_out);
+    }
+  }
+  for (const EstimatedValue& value : c.values) {
+    if (std::ranges::find(names, value.value.name) != names.end()) {
+      EXPECT_FALSE(value.sigma) << value.value.name;
+    }
+  }
+  EXPECT_THAT(c.notes, Contains(HasSubstr("only where " + left_out + " is nominal")));
+}
+
+TEST(Verdict, WhatHangsOnSomethingLeftOutHasNoSigmaAndIsNotCountedAsIdentified) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  const Calibration confounded = calibrated_case("confounded/problem.yaml", "confounded/measured.csv");
+  expect_given(confounded, {"base.x", "base.y", "base.z"}, "tool.z");
+  const Calibration one_axis = calibrated_case("one_axis/problem.yaml", "one_axis/one_axis.csv");
+  expect_given(one_axis, {"base.x", "base.y", "tool.x", "tool.y", "tool.z"}, "base.z");
+  const Observation o = observe_problem(read_problem(cases / "confounded/problem.yaml"), {}, Monitor{}).front();
+  for (std::size_t j = 0; j < o.parameters.size(); ++j)
+    EXPECT_EQ(o.given[j].empty(), o.parameters[j].name != "base.z") << o.parameters[j].name;
+}
+
+TEST(Verdict, OfOneAxisOnlyWhatDoesNotHangOnTheToolsHeightIsKnown) {
+  TemporaryFolder folder;
+  folder.write("robot.urdf", urdf_text({{'P', "0 0 0", "0 0 0", "1 0 0"},
+                                        {'P', "0 0 0", "0 0 0", "0 1 0"},
+                                        {'P', "0 0 0", "0 0 0", "0 0 1"},
+                                        {'R', "0 0 0", "0 0 0", "0 0 1"}}));
+  const Problem problem = read_problem(folder.write("problem.yaml", R"(posewright: 1
+robot: {urdf: robot.urdf, placement: {position: [0.1, 0.2, 0.9], rpy: ["180 deg", 0, 0]}}
+measurement: {type: pose, device: {type: isotropic, noise: {position: "1 mm", rotation: "5 mrad"}}}
+variants: {hand_eye: {parameters: ["base.*"], nuisance: ["tool.*"]}}
+design: {poses: 20, candidates: 500}
+)"));
+  const auto model = make_model(problem, problem.variants.front());
+  Random random(11, 0);
+  for (int draw = 0; draw < 10; ++draw) {
+    std::vector<MeasuredPose> poses = random_poses(*model, 20, random);
+    std::vector<double> truth(model->parameters().size(), 0.0);
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      if (model->parameters()[i].places) truth[i] = 0.05 * random.normal();
+    read_poses_of(*model, truth, 1.0, random, poses);
+    CalibrateOptions options;
+    options.data = folder.write("data.csv", measured_data_csv(*model, poses));
+    const Calibration c = calibrate_problem(problem, options, Monitor{});
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const std::string& name = model->parameters()[i].name;
+      if (truth[i] == 0 || (!name.ends_with(".x") && !name.ends_with(".y") && !name.ends_with(".z"))) continue;
+      const CalibratedParameter& p = parameter(c, name);
+      if (p.estimated && p.given.empty()) {
+        EXPECT_NEAR(p.value, p.label.nominal + truth[i], 5 * p.sigma) << name << " of draw " << draw;
+      }
+    }
+    EXPECT_FALSE(parameter(c, "base.z").given.empty());
+  }
+}
+
+TEST(Verdict, AnEffectThatMostOfTheResidualsAreLeavesNoIntervalToWhatItMoves) {
+  VirtualFile data("instruments/camera_on_hand.yaml", 15);
+  std::vector<double> truth(data.truth.size(), 0.0);
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    if (const std::string& name = data.model->parameters()[i].name; name == "camera.fx" || name == "camera.fy")
+      truth[i] = 0.03 * data.model->parameters()[i].nominal;
+  read_poses_of(*data.model, truth, 1.0, data.random, data.poses);
+  data.write();
+  CalibrateOptions options = data.options();
+  options.variant = "hand_eye";
+  const Calibration c = calibrate_problem(data.problem, options, Monitor{});
+  ASSERT_FALSE(c.effects.empty());
+  EXPECT_EQ(c.effects.front().name, "camera.fx, camera.fy");
+  EXPECT_TRUE(c.effects.front().dominates());
+  int given = 0;
+  for (const CalibratedParameter& p : c.parameters) {
+    // Truth is nominal for all that is estimated.
+    if (p.given.empty() && turned_frame(c, p) == nullptr) {
+      EXPECT_NEAR(p.value, p.label.nominal, 2 * p.half_width) << p.label.name;
+    }
+    given += p.given.empty() ? 0 : 1;
+  }
+  EXPECT_GT(given, 0);
+}
+
+TEST(Verdict, AFocalLengthOrABoardOfAnotherSizeLeavesNoIntervalOfTheCamerasPlace) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  for (const char* name : {"foc", "sq"}) {
+    const Calibration c =
+        calibrated_case(std::string("focal/") + name + ".yaml", std::string("focal/") + name + ".csv");
+    EXPECT_EQ(parameter(c, "camera.z").given, std::vector<std::string>{"camera.fx, camera.fy"}) << name;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct ScoreTest {
   double statistic = 0.0;    ///< F
   double probability = 1.0;  ///< that chance alone gives as much
   double corrected = 1.0;    ///< the same for the best of as many tests (Bonferroni)
+  Eigen::VectorXd moves;     ///< of the fitted columns, SI: how far they would move if the effect were fitted, too
+
+  /// Most of what is left is this effect, and chance does not give it.
+  bool dominates() const { return corrected < 0.01 && share > 0.5; }
 };
 
 /// Score tests (Rao 1948) of effects beside a fit, one by one, on its linearisation: with r the whitened residuals and

@@ -65,6 +65,7 @@ struct CalibratedParameter {
   bool profiled = false;             ///< the interval is by profile, see Profile
   double half_width = 0.0;           ///< of the linear interval
   std::string why_not{};             ///< not estimated: what the data cannot tell it from
+  std::vector<std::string> given{};  ///< what is left out and this value depends on: it has neither σ nor interval
   bool weak = false;                 ///< the data tell less than the tolerance
   std::optional<double> in_steps{};  ///< identified in steps, where that was asked for
 };

@@ -25,10 +25,11 @@ struct ObserveOptions {
 struct Observation {
   std::string variant;
   std::size_t configurations = 0;
-  int rows = 0;                       ///< of one block
-  std::vector<Parameter> parameters;  ///< all free columns, nuisance first
-  Identifiability identifiability;    ///< over those columns
-  int exact_rank = 0;                 ///< rank where only dependencies to rounding count
+  int rows = 0;                                 ///< of one block
+  std::vector<Parameter> parameters;            ///< all free columns, nuisance first
+  Identifiability identifiability;              ///< over those columns
+  std::vector<std::vector<std::string>> given;  ///< of each of `parameters`: posewright::given()
+  int exact_rank = 0;                           ///< rank where only dependencies to rounding count
   ObservabilityIndices indices;       ///< of the kept interest columns, nuisance eliminated, scaled by tolerance
   std::vector<Parameter> kept;        ///< labels of the independent columns, in their order
   std::optional<int> smallest_poses;  ///< that determine them; none if the pool does not suffice

@@ -7,7 +7,7 @@ const reach = 3;
 
 /** @param {any} p of parameters */
 function picture(p) {
-  if (!p.estimated || !(p.tolerance > 0)) return '';
+  if (!p.estimated || p.sigma === null || !(p.tolerance > 0)) return '';
   const at = (value) => 60 + (60 * (value - p.nominal)) / p.tolerance / reach;
   const inside = (x) => Math.min(118, Math.max(2, x));
   const [lower, upper] = p.interval
@@ -45,11 +45,12 @@ function line(p) {
   const cells = [
     toSigma(p.value, p),
     quantity(p.value - p.nominal, p.unit, 3),
-    quantity(p.sigma, p.unit, 2),
+    p.sigma === null ? '–' : quantity(p.sigma, p.unit, 2),
     p.interval ? `${endOf(p.interval[0], p)} to ${endOf(p.interval[1], p)}` : '–',
   ];
   const notes = [
     p.role === 'nuisance' && 'nuisance',
+    p.given.length > 0 && `given ${p.given.join(', ')} at nominal`,
     p.tells_less_than_tolerance && 'told less than its tolerance',
     p.prior === 'stated' && 'tolerance counts',
     p.interval_by === 'profile' &&

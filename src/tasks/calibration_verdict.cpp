@@ -27,8 +27,18 @@ std::string not_converged(const Calibration& c) {
                            : "the estimate did not converge" + near_dependence(c) + "; " + remedy_of(c);
 }
 
+/// A wide tolerance that was stated for an estimate (1 for a coupling) is no size of what a fit leaves.
+VariantColumns with_usual_tolerances(const CalibratedPoses& poses) {
+  VariantColumns columns = poses.columns;
+  for (std::size_t j = 0; j < columns.selected.size(); ++j) {
+    const double usual = poses.model.parameters()[std::size_t(columns.selected[j])].tolerance;
+    columns.parameters[j].tolerance = std::min(columns.parameters[j].tolerance, usual);
+  }
+  return columns;
+}
+
 void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
-  ResidualSize size = residual_size(poses.model, poses.columns, poses.fitted, c.fit.correction);
+  ResidualSize size = residual_size(poses.model, with_usual_tolerances(poses), poses.fitted, c.fit.correction);
   size.found = c.fit.scale;  // counts the parameters
   if (!size.beyond_robots()) return;
   c.refusals.push_back(

@@ -213,6 +213,21 @@ void expect_given(const Calibration& c, const std::vector<std::string>& names, c
   EXPECT_THAT(c.notes, Contains(HasSubstr("only where " + left_out + " is nominal")));
 }
 
+TEST(Verdict, AWideToleranceThatWasStatedDoesNotExcuseALostTarget) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  const Problem problem = read_problem(cases / "coupling/told.yaml");  // states 1 for the coupling
+  const auto model = make_model(problem, problem.variants.front());
+  std::vector<MeasuredPose> poses = read_measured_data(cases / "coupling/controller.csv", problem, *model).poses;
+  poses[4].y.setZero();
+  const TemporaryFolder folder;
+  CalibrateOptions options;
+  options.data = folder.write("lost.csv", measured_data_csv(*model, poses));
+  const Calibration c = calibrate_problem(problem, options, Monitor{});
+  EXPECT_EQ(c.verdict, Verdict::do_not_use);
+  EXPECT_THAT(c.refusals, Contains(HasSubstr("no robot's errors do that")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("lost.csv:6: a target is read as 0")));
+}
+
 TEST(Verdict, WhatHangsOnSomethingLeftOutHasNoSigmaAndIsNotCountedAsIdentified) {
   if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
   const Calibration confounded = calibrated_case("confounded/problem.yaml", "confounded/measured.csv");

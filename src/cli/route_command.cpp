@@ -72,7 +72,9 @@ int run_route(const po::variables_map& values, const Words& positional) {
   write_results(files);
   if (common.json) fmt::print("{}", text);
   else print_report(route_summary(route) + written_text({json, csv}));
-  return was_interrupted ? interrupted : done;
+  if (was_interrupted) return interrupted;
+  if (!route.unreachable.empty()) throw CannotDo(plan.string() + ": " + route_loss(route));
+  return done;
 }
 
 }  // namespace

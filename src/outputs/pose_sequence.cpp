@@ -159,6 +159,12 @@ class SequenceReader {
       throw InputError(place_, "has poses without an id of their own", "ids 1, 2, …");
   }
 
+  void read_loss() {
+    sequence_.left_out = json_.value("unreachable", nlohmann::json::array()).size();
+    const nlohmann::json worth = json_.value("worth", nlohmann::json());
+    if (worth.is_object()) sequence_.worth = number_of(worth.at("efficiency"), place_);
+  }
+
   void read_route() {
     // A program that skipped a stop would take a way that nobody checked.
     for (const SequencePose& pose : sequence_.poses)
@@ -167,6 +173,7 @@ class SequenceReader {
                          "a new route of the poses that are left: mark them in the plan");
     sequence_.from_home = json_.at("from_home").get<bool>();
     sequence_.closed = json_.at("closed").get<bool>();
+    read_loss();
     sequence_.home = numbers_of(json_.at("home"), place_);
     sequence_.settle = number_of(json_.at("seconds").at("settle"), place_) / double(sequence_.poses.size());
     for (const nlohmann::json& json : json_.at("motions")) {

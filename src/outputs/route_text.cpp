@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
 Json motion_json(const RouteMotion& motion) {
   return {{"from", motion.from},
           {"to", motion.to},
@@ -164,11 +166,30 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
   json["unreachable"] = Json::array();
   for (const SkippedPose& skipped : route.unreachable)
     json["unreachable"].push_back({{"pose", skipped.pose}, {"reason", skipped.reason}});
+  json["worth"] = nullptr;
+  if (const auto& worth = route.worth)
+    json["worth"] = {{"efficiency", worth->efficiency},
+                     {"position_error_planned", or_null(worth->planned)},
+                     {"position_error", or_null(worth->left)}};
   return json_text(json);
 }
 
+std::string route_loss(const Route& route) {
+  if (route.unreachable.empty()) return {};
+  const std::size_t lost = route.unreachable.size();
+  std::string text =
+      fmt::format("{} of {} poses {} left out: ", lost, lost + route.poses.size(), lost == 1 ? "is" : "are");
+  if (!route.worth) return text + "those left do not identify all parameters";
+  text += fmt::format("{:.1f} % of the plan's information is left", 100 * route.worth->efficiency);
+  if (route.worth->planned && route.worth->left)
+    text += fmt::format(", predicted position error {:.3g} mm in place of {:.3g} mm", 1e3 * *route.worth->left,
+                        1e3 * *route.worth->planned);
+  return text;
+}
+
 std::string route_summary(const Route& route) {
-  std::string text;
+  std::string text = route_loss(route);
+  if (!text.empty()) text += ".\n";
   if (route.problem_changed) text += "The problem file has changed since the plan was made.\n";
   const double total = route.travel_seconds() + route.change_seconds();
   text += fmt::format("{} poses in {} of motion", route.poses.size(), seconds_text(route.travel_seconds()));

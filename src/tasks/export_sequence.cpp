@@ -17,6 +17,17 @@ void require_read(const PoseFormat& format, const std::vector<std::string>& give
                                               : fmt::format("allowed: --{}", fmt::join(format.options, ", --")));
 }
 
+namespace {
+
+std::string loss_note(const PoseSequence& route) {
+  std::string text = fmt::format("{} of {} poses of the plan {} left out of this route", route.left_out,
+                                 route.left_out + route.poses.size(), route.left_out == 1 ? "is" : "are");
+  if (route.worth) text += fmt::format(": {:.1f} % of its information is left", 100 * *route.worth);
+  return text;
+}
+
+}  // namespace
+
 Exported export_sequence(const PoseFormat& format, PoseSequence sequence, const ExportOptions& options,
                          const Problem* problem) {
   if (format.moves_robot() && problem != nullptr) {
@@ -27,6 +38,7 @@ Exported export_sequence(const PoseFormat& format, PoseSequence sequence, const 
     sequence = checked_sequence(*problem, std::move(sequence));
   }
   Exported exported = export_poses(format, sequence, options);
+  if (sequence.left_out > 0) exported.notes.insert(exported.notes.begin(), loss_note(sequence));
   if (format.controller) exported.notes.emplace_back(no_controller_note);
   if (format.moves_robot() && problem == nullptr)
     exported.notes.emplace_back("nothing is checked against the robot's limits and velocities");

@@ -16,6 +16,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
+#include "route_loss.hpp"
 #include "without_roadmap.hpp"
 
 namespace posewright {
@@ -402,6 +403,7 @@ Route route_problem(const Problem& problem, const PoseList& poses, const RouteOp
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(poses, most_routed, "route orders");
   Route route = Router(problem, poses, options, monitor).make();
+  if (!route.unreachable.empty()) route.worth = worth_of_route(problem, poses, route, monitor);
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;
 }

@@ -1,13 +1,18 @@
 // Plans and routes in cells: three real arms with their meshes, judged again by other code; the example cell.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "posewright/outputs/pose_sequence.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
@@ -214,6 +219,28 @@ TEST(ExampleCell, APoseThatIsNoLongerFreeIsLeftOutAndNamed) {
     }
   EXPECT_TRUE(named);
   for (const PlannedPose& pose : route.poses) EXPECT_NE(pose.id, 3);
+  // What is left, as `plan` and `evaluate` judge the two lists.
+  const PoseList all = poses_in(problem, file);
+  PoseList kept;
+  for (std::size_t i = 0; i < all.configurations.size(); ++i)
+    if (std::any_of(route.poses.begin(), route.poses.end(), [&](const PlannedPose& p) { return p.id == all.ids[i]; }))
+      kept.configurations.push_back(all.configurations[i]);
+  EvaluateOptions options;
+  options.plan = quick_cell(0);
+  options.plan.poses.reset();
+  const Plan left = evaluate_problem(problem, kept, options, Monitor{}).plan;
+  ASSERT_TRUE(route.worth.has_value());
+  const double interest = std::count_if(left.parameters.begin(), left.parameters.end(), [](const auto& p) {
+    return p.label.role == Role::interest && p.dropped_because.empty();
+  });
+  EXPECT_NEAR(route.worth->efficiency, std::exp((left.log_det - plan.log_det) / interest), 1e-9);
+  EXPECT_LT(route.worth->efficiency, 1);
+  const std::string json = route_json(route);
+  const PoseSequence sequence = parse_sequence(json, "route.json");
+  EXPECT_EQ(sequence.left_out, route.unreachable.size());
+  EXPECT_NEAR(*sequence.worth, route.worth->efficiency, 1e-12);
+  EXPECT_THAT(route_summary(route),
+              testing::StartsWith(fmt::format("{} of {} pose", route.unreachable.size(), plan.poses.size())));
 }
 
 TEST(Stations, ThatSeesTheReflectorsIsRankedAboveTheOneBehindTheWall) {

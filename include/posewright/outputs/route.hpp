@@ -30,6 +30,12 @@ struct SkippedPose {
   std::string reason;
 };
 
+/// What the poses of a route are worth beside all poses of its plan.
+struct RouteWorth {
+  double efficiency = 0.0;              ///< of the information, on the geometric mean of the parameters
+  std::optional<double> planned, left;  ///< m, predicted position error after calibration
+};
+
 /// The order of measurement and the motions between the poses.
 struct Route {
   std::string plan_file, problem_file, problem_sha256;
@@ -45,6 +51,7 @@ struct Route {
   std::vector<RouteMotion> motions;  ///< in order: from home (if asked), between the poses, back (if closed)
   std::vector<ReferenceCheck> references;
   std::vector<SkippedPose> unreachable;
+  std::optional<RouteWorth> worth;  ///< where poses are left out; none: those left do not identify all parameters
   double planned_seconds = 0.0;  ///< of the same poses in the plan's own order at least: straight motions, free or not
   bool optimal = false;          ///< no order of these motions is shorter
   bool interrupted = false;      ///< the search was ended: its best order so far
@@ -59,6 +66,8 @@ struct Route {
 
 /// Schema posewright/route/1 (docs/cell.md).
 std::string route_json(const Route& route, const std::vector<WrittenWith>& files = {});
+/// "4 of 12 poses are left out: …" with what is left; empty if none is.
+std::string route_loss(const Route& route);
 /// The table a person reads.
 std::string route_summary(const Route& route);
 /// The poses in measuring order, as poses.csv of a plan.

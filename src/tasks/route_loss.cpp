@@ -1,0 +1,65 @@
+#include "route_loss.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+#include "without_roadmap.hpp"
+
+namespace posewright {
+namespace {
+
+/// The poses of the list that `wanted` takes, by place and id.
+template <class Wanted>
+PoseList subset(const PoseList& plan, const Wanted& wanted) {
+  PoseList list;
+  list.name = plan.name;
+  for (std::size_t i = 0; i < plan.configurations.size(); ++i)
+    if (wanted(i, plan.ids.empty() ? int(i) + 1 : plan.ids[i])) list.configurations.push_back(plan.configurations[i]);
+  return list;
+}
+
+Configurations configurations_of(const PoseList& list, std::size_t dimension) {
+  Configurations result;
+  result.dimension = int(dimension);
+  for (const std::vector<double>& q : list.configurations) append(result, q);
+  return result;
+}
+
+}  // namespace
+
+std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const Route& route,
+                                         const Monitor& monitor) {
+  const auto measured = [&](std::size_t i) { return !plan.measured.empty() && plan.measured[i]; };
+  const auto on_route = [&](std::size_t i, int id) {
+    return !measured(i) &&
+           std::any_of(route.poses.begin(), route.poses.end(), [&](const PlannedPose& pose) { return pose.id == id; });
+  };
+  const PoseList kept = subset(plan, on_route);
+  const PoseList all = subset(plan, [&](std::size_t i, int) { return !measured(i); });
+  PlanOptions options;
+  options.candidates_from = kept;
+  options.poses = int(kept.configurations.size());
+  options.fixed = PoseList{};
+  if (std::find(plan.measured.begin(), plan.measured.end(), true) != plan.measured.end())
+    options.measured = subset(plan, [&](std::size_t i, int) { return measured(i); });
+  try {
+    const Problem free = without_roadmap(problem);
+    Settings settings = settings_of(free, options);
+    settings.fixed.reset();
+    const Study study = make_study(free, settings, monitor);
+    const std::size_t dimension = study.first().workspace->coordinates().size();
+    const Judgement left = judge(study, configurations_of(kept, dimension), settings);
+    const Judgement planned = judge(study, configurations_of(all, dimension), settings);
+    const VariantColumns& columns = study.first().columns;
+    const auto interest = double(columns.parameters.size()) - columns.nuisance;
+    const double gain = left.evaluations.front().log_det - planned.evaluations.front().log_det;
+    return RouteWorth{std::exp(gain / interest), planned.rho0, left.rho0};
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace posewright

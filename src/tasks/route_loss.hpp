@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "posewright/lists/pose_list.hpp"
+#include "posewright/outputs/route.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+
+namespace posewright {
+
+/// What the poses of a route are worth beside all of the plan; none if they do not identify all parameters.
+/// @param plan  all poses, with those that are measured already marked
+std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const Route& route,
+                                         const Monitor& monitor);
+
+}  // namespace posewright

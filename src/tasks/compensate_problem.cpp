@@ -408,7 +408,10 @@ std::size_t Compensation::open_lines() const {
 std::vector<Coordinate> compensation_coordinates(const Problem& problem) {
   const auto tip = calibrated_tip(problem);
   const auto model = make_model(problem, calibrated_variant(problem));
-  const std::vector<Coordinate> limits = limits_in_force(*model, problem);
+  // Limits of the workspace are of poses to measure; a program goes wherever robot and controller can.
+  Problem anywhere = problem;
+  anywhere.workspace.limits.clear();
+  const std::vector<Coordinate> limits = limits_in_force(*model, anywhere);
   std::vector<Coordinate> result = tip->coordinates();
   for (Coordinate& c : result)
     for (const Coordinate& narrowed : limits)

@@ -158,6 +158,15 @@ TEST(Compensate, BringsTheTipOfTheCorrectedUrdfToWhereTheNominalArmHadIt) {
     expect_compensated(arm_problem(folder, kind), 0.7, 4, 40);
 }
 
+TEST(Compensate, TakesPosesBeyondTheLimitsOfThoseThatAreMeasured) {
+  Problem problem = read_problem(POSEWRIGHT_SOURCE_DIR "/examples/kr270/problem.yaml");
+  problem = calibrated(problem, random_values(problem, "joint_.*", 1, 3));
+  const std::vector<Coordinate> own = compensation_coordinates(problem);
+  problem.workspace.limits.push_back({{own.back().name, 1}, -1, 1, Quantity::angle});
+  EXPECT_EQ(compensation_coordinates(problem).back().lower, own.back().lower);
+  EXPECT_LT(own.back().lower, -3);
+}
+
 TEST(Compensate, DoesSoForDenavitHartenbergParameters) {
   const TemporaryFolder folder;
   Problem problem = arm_problem(folder, "generic_6R");

@@ -86,7 +86,7 @@ struct Compensation {
   bool is_whole() const { return failures.empty() && open_lines() == 0; }
 };
 
-/// Coordinates that lists are read with: the robot's own with the limits in force.
+/// Coordinates that lists are read with: limits of robot and controller, not those of the workspace that is measured.
 /// @param problem  with parameters (apply_parameters())
 /// Throws CannotDo for a robot that carries no tip.
 std::vector<Coordinate> compensation_coordinates(const Problem& problem);

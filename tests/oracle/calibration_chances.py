@@ -65,7 +65,9 @@ def one(program, folder, random, way, chances, covered):
             chances.setdefault((way, test), []).append(result["tests"][test]["probability"])
     held = [p["interval"][0] <= p["nominal"] + truth[p["name"]] <= p["interval"][1]
             for p in result["parameters"] if p["estimated"] and p["interval"] and p["name"] in truth]
-    covered.setdefault(way, []).append(np.mean(held))
+    # None has an interval where all hang on something that these poses cannot tell.
+    if held:
+        covered.setdefault(way, []).append(np.mean(held))
 
 
 def main(program, source, count="120", seed="1"):

@@ -41,8 +41,8 @@ struct PoseSequence {
   bool is_route = false;     ///< motions are checked and in measuring order
   bool is_platform = false;  ///< coordinates are a platform's, its actuators follow from them
   bool from_home = false, closed = false;
-  std::size_t left_out = 0;       ///< poses of its plan that a route has no motion to
-  std::optional<double> worth{};  ///< share of the plan's information that is left then; empty: not known
+  std::size_t left_out = 0;               ///< poses of its plan that a route has no motion to
+  std::optional<double> worth{};          ///< share of the plan's information that is left then; empty: not known
   double settle = 0.0;                    ///< s at each pose, of a route
   std::vector<std::string> names, units;  ///< "rad" or "m"
   bool units_stated = true;               ///< false: the file has none, and "rad" is a guess

@@ -86,8 +86,8 @@ TEST(SdfWorld, ShapesAndPosesAreThoseOfLibsdformat) {
       const Eigen::Matrix3d R = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().matrix();
       const auto equal = [&](const PlacedShape& shape) {
         const Described is = described(shape.shape);
-        return shape.name == one["name"] && is.kind == one["kind"] && is.uri == one["uri"] &&
-               is.values == one["values"].get<std::vector<double>>() &&
+        return shape.name == one["name"].get<std::string>() && is.kind == one["kind"].get<std::string>() &&
+               is.uri == one["uri"].get<std::string>() && is.values == one["values"].get<std::vector<double>>() &&
                (shape.X.translation() - Eigen::Vector3d(p[0], p[1], p[2])).norm() < rounded &&
                (shape.X.linear() - R).norm() < 1e-12;
       };

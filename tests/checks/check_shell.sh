@@ -3,4 +3,4 @@
 set -eu
 cd "$1"
 command -v shellcheck >/dev/null || { echo "Skipped: shellcheck is missing (scripts/setup test installs it)."; exit 77; }
-grep -l '^#!.*sh$' .ci/run scripts/* bench/*.sh tests/checks/*.sh tests/package/*.sh | xargs shellcheck
+grep -l '^#!.*sh$' .ci/run scripts/* bench/*.sh tests/checks/*.sh | xargs shellcheck

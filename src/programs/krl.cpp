@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
+#include "posewright/controller/axis_names.hpp"
 #include "reading.hpp"
 
 namespace posewright::programs {
@@ -13,14 +13,11 @@ namespace {
 using Kind = Expression::Kind;
 using Form = FoundPoint::Form;
 
-constexpr std::array<std::string_view, 12> axis_names = {"A1", "A2", "A3", "A4", "A5", "A6",
-                                                         "E1", "E2", "E3", "E4", "E5", "E6"};
-
 std::optional<FoundPoint> krl_point(const Expression& list, const Source&) {
   FoundPoint point{list.line};
   bool joints = false, pose = false;
   for (const Expression& item : list.items) {
-    const bool axis = std::find(axis_names.begin(), axis_names.end(), item.label) != axis_names.end();
+    const bool axis = std::ranges::find(krl_axis_names(), item.label) != krl_axis_names().end();
     joints = joints || (axis && item.label[0] == 'A');
     pose = pose || item.label == "X" || item.label == "Y" || item.label == "Z";
     if (item.is(Kind::constant)) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "posewright/controller/axis_names.hpp"
+
 namespace posewright::programs {
 
 const std::vector<Language>& languages() {
@@ -10,7 +12,7 @@ const std::vector<Language>& languages() {
       {"kuka-krl",
        {".dat", ".src"},
        ".src",
-       {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
+       krl_axis_names(),
        Angle::degrees,
        5,
        false,
@@ -22,7 +24,7 @@ const std::vector<Language>& languages() {
       {"abb-rapid",
        {".mod", ".prg"},
        "",
-       {"rax_1", "rax_2", "rax_3", "rax_4", "rax_5", "rax_6", "eax_a", "eax_b", "eax_c", "eax_d", "eax_e", "eax_f"},
+       rapid_axis_names(),
        Angle::degrees,
        4,
        true,
@@ -31,18 +33,7 @@ const std::vector<Language>& languages() {
        0,
        read_rapid,
        rapid_pose},
-      {"fanuc-tp",
-       {".ls"},
-       "",
-       {"J1", "J2", "J3", "J4", "J5", "J6", "E1", "E2", "E3", "GP2.J1", "GP2.J2", "GP2.J3"},
-       Angle::degrees,
-       5,
-       true,
-       Scope::file,
-       true,
-       0,
-       read_tp,
-       tp_pose},
+      {"fanuc-tp", {".ls"}, "", tp_axis_names(), Angle::degrees, 5, true, Scope::file, true, 0, read_tp, tp_pose},
       {"urscript", {".script"}, "", six, Angle::radians, 6, false, Scope::file, false, 0, read_urscript, nullptr},
       {"yaskawa-inform", {".jbi"}, "", six, Angle::pulses, 0, true, Scope::file, true, 0, read_inform, nullptr},
       {"staubli-val3",

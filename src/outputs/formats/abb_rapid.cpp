@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "program.hpp"
 
@@ -15,8 +16,7 @@ const ProgramRules rapid_rules = {
     .format = "abb-rapid",
     .default_name = "CalPoses",
     .longest_name = 32,
-    .axes = {"rax_1", "rax_2", "rax_3", "rax_4", "rax_5", "rax_6", "eax_a", "eax_b", "eax_c", "eax_d", "eax_e",
-             "eax_f"},
+    .axes = rapid_axis_names(),
     .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "robots with a parallelogram (IRB 2400, IRB 4400, ...: -1) count axis 3 from the horizontal, "

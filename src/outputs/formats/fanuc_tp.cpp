@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
@@ -18,8 +19,7 @@ const ProgramRules tp_rules = {
     .format = "fanuc-tp",
     .longest_name = 36,
     .capitals = true,
-    // Axes that move with the arm's group, and those of a positioner, a group of its own.
-    .axes = {"J1", "J2", "J3", "J4", "J5", "J6", "E1", "E2", "E3", "GP2.J1", "GP2.J2", "GP2.J3"},
+    .axes = tp_axis_names(),
     .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "the controller's J3 is J3 - F*J2 of a URDF: F is 1 for nearly all FANUC arms, -1 for the "

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "program.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 
 const ProgramRules krl_rules = {.format = "kuka-krl",
                                 .longest_name = 24,
-                                .axes = {"A1", "A2", "A3", "A4", "A5", "A6", "E1", "E2", "E3", "E4", "E5", "E6"},
+                                .axes = krl_axis_names(),
                                 .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
                                 .decimals = 5,
                                 .pose = "XP",

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace posewright {
+
+/// What programs call their axes: six that turn, then the external ones, in the order of the controller.
+const std::vector<std::string>& krl_axis_names();
+const std::vector<std::string>& rapid_axis_names();
+/// E1 to E3 move with the arm's group; those of a positioner are a group of its own, GP2.
+const std::vector<std::string>& tp_axis_names();
+
+}  // namespace posewright

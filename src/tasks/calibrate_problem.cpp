@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numbers>
 
 #include "calibration_accuracy.hpp"
@@ -13,11 +11,11 @@
 #include "calibration_profiles.hpp"
 #include "calibration_verdict.hpp"
 #include "effects_left_out.hpp"
+#include "given_parameters.hpp"
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/conventions.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
-#include "posewright/calibration/given.hpp"
 #include "posewright/calibration/gross_errors.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/platform_images.hpp"
@@ -262,7 +260,7 @@ class CalibrationRun {
       columns_ = determined(*model_, wanted, fitted_, placed_, result_.prior, &dependent, exact_dependency);
       leave_at_nominal(dependent, wanted);
     }
-    note_given();
+    note(given_.note(left_out_));
     if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
   }
 
@@ -282,53 +280,18 @@ class CalibrationRun {
       left.why_not = describe(d, among.parameters);
       left_out_.push_back(std::move(left));
     }
-    // What a convention leaves out is zero by that convention.
-    if (among.automatic) return;
-    const std::vector<std::vector<std::string>> names = given(dependent, among.parameters);
-    for (std::size_t j = 0; j < names.size(); ++j)
-      if (!names[j].empty()) given_[among.parameters[j].name] = names[j];
+    given_.take(dependent, among);
   }
 
-  /// What depends on the nominal value of something else is not known: it has no σ, and what is written has none.
-  void take_given(CalibratedParameter& p) const {
-    const auto at = given_.find(p.label.name);
-    if (at == given_.end()) return;
-    p.given = at->second;
-    p.profiled = p.weak = false;
-    p.lower = -std::numeric_limits<double>::infinity();
-    p.upper = std::numeric_limits<double>::infinity();
-  }
-
-  void note_given() {
-    std::string named, open;
-    for (const auto& [name, others] : given_) named += (named.empty() ? "" : ", ") + name;
-    for (const CalibratedParameter& p : left_out_)
-      if (!counts(p.label, Prior::manufactured)) open += (open.empty() ? "" : ", ") + p.label.name;
-    if (!named.empty())
-      result_.notes.push_back(
-          fmt::format("{}: right only where {} {} nominal, which these poses cannot tell; without σ "
-                      "and interval here and in what is written",
-                      named, open, open.find(',') == std::string::npos ? "is" : "are"));
+  void note(std::string text) {
+    if (!text.empty()) result_.notes.push_back(std::move(text));
   }
 
   /// An effect that most of the residuals are moves estimates farther than their intervals reach.
   void give_effect() {
     const auto effect = std::ranges::find_if(result_.effects, &ScoreTest::dominates);
-    if (effect == result_.effects.end()) return;
-    std::string named;
-    for (std::size_t j = 0; j < columns_.parameters.size(); ++j) {
-      const auto k = Eigen::Index(j);
-      if (!(std::abs(effect->moves[k]) > stretch() * std::sqrt(result_.fit.covariance(k, k)))) continue;
-      const std::string& name = columns_.parameters[j].name;
-      given_[name].push_back(effect->name);
-      named += (named.empty() ? "" : ", ") + name;
-    }
-    if (!named.empty())
-      result_.notes.push_back(
-          fmt::format("{}: right only without the effect {}, which is {:.3g} % of the squared "
-                      "residuals and would move them beyond their intervals; without σ and interval "
-                      "here and in what is written: estimate the effect, too",
-                      named, effect->name, 100 * effect->share));
+    if (effect != result_.effects.end())
+      note(given_.take(*effect, columns_.parameters, result_.fit.covariance, stretch()));
   }
 
   /// The poses and random configurations within the limits.
@@ -409,9 +372,7 @@ class CalibrationRun {
 
   void fill_parameters() {
     give_effect();
-    std::erase_if(result_.orientations, [this](const CalibratedOrientation& o) {
-      return std::ranges::any_of(given_, [&](const auto& entry) { return entry.first.starts_with(o.frame + ".r"); });
-    });
+    std::erase_if(result_.orientations, [this](const CalibratedOrientation& o) { return given_.turn(o.frame); });
     std::vector<CalibratedParameter> nuisance;
     for (std::size_t j = 0; j < columns_.parameters.size(); ++j) {
       const auto k = Eigen::Index(j);
@@ -430,7 +391,7 @@ class CalibrationRun {
         p.upper = p.label.nominal + profile->upper;
       }
       p.weak = p.sigma > p.label.tolerance * (p.prior ? prior_share * p.spread : 1.0);
-      take_given(p);
+      given_.mark(p);
       (p.label.role == Role::nuisance ? nuisance : result_.parameters).push_back(std::move(p));
     }
     for (const int j : result_.fit.contradicted)
@@ -483,7 +444,7 @@ class CalibrationRun {
   VariantColumns columns_;
   std::vector<MeasuredPose> fitted_, held_back_, validation_;
   std::vector<CalibratedParameter> left_out_;
-  std::map<std::string, std::vector<std::string>> given_;  ///< by the name of what depends on them
+  GivenParameters given_;
   std::vector<double> placed_;
   ProfiledColumns profiled_;
   std::vector<RepeatedReadings> repeated_;

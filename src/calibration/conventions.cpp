@@ -229,14 +229,13 @@ void add_columns(std::vector<Hypothesis>& table) {
   constexpr std::array<const char*, 3> columns = {"pose.rx", "pose.ry", "pose.rz"};
   for (const auto& order : orders) {
     const EulerTurns turns{true, order};
-    table.push_back(
-        {"pose.rx, pose.ry, pose.rz are turns about moving axes " + order_name(turns),
-         fmt::format("name {}, {}, {} pose.{}.1, .2, .3", columns[std::size_t(order[0])],
-                     columns[std::size_t(order[1])], columns[std::size_t(order[2])], turns.name()),
-         [turns](Row& row) {
-           const Eigen::Vector3d v = row.y.tail<3>();
-           row.y.tail<3>() = rotation_vector(turns.rotation({v[turns.axes[0]], v[turns.axes[1]], v[turns.axes[2]]}));
-         }});
+    table.push_back({"pose.rx, pose.ry, pose.rz are turns about moving axes " + order_name(turns),
+                     fmt::format("name {}, {}, {} pose.{}.1, .2, .3", columns[std::size_t(order[0])],
+                                 columns[std::size_t(order[1])], columns[std::size_t(order[2])], turns.name()),
+                     [turns](Row& row) {
+                       const Eigen::Vector3d v = row.y.tail<3>();
+                       row.y.tail<3>() = rotation_vector(turned_by_axis(turns, v));
+                     }});
   }
   table.push_back({"pose.rx, pose.ry, pose.rz are degrees", "state the unit in the header, as in pose.rx [deg]",
                    [](Row& row) { row.y.tail<3>() *= degree; }});

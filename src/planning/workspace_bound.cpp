@@ -46,17 +46,17 @@ class Sensitivity : public BlockObjective {
   BlockArray::RowMatrix rotated_;
 };
 
-using Configurations = std::vector<std::vector<double>>;
+using Places = std::vector<std::vector<double>>;
 
 /// Candidates worth keeping and configurations found.
 struct Pool {
   BlockArray blocks;
-  Configurations configurations;
+  Places configurations;
   std::size_t candidates = 0;   // the first of the pool, all others were found
   std::vector<int> original{};  ///< indices of those candidates
 };
 
-void append(Pool& pool, const Configurations& found, ConfigurationSpace::Probe& probe) {
+void append(Pool& pool, const Places& found, ConfigurationSpace::Probe& probe) {
   BlockArray grown(pool.blocks.count() + found.size(), pool.blocks.rows(), pool.blocks.columns());
   std::copy_n(pool.blocks.data(), pool.blocks.count() * std::size_t(grown.rows() * grown.stride()), grown.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -77,7 +77,7 @@ bool is_same_place(const std::vector<ConfigurationSpace::Axis>& axes, std::span<
 }
 
 /// Enters a configuration that is in no known one's place.
-void enter(Configurations& places, std::span<const double> q, const ConfigurationSpace& space, double share) {
+void enter(Places& places, std::span<const double> q, const ConfigurationSpace& space, double share) {
   if (std::none_of(places.begin(), places.end(),
                    [&](const auto& known) { return is_same_place(space.axes(), known, q, share); }))
     places.emplace_back(q.begin(), q.end());
@@ -92,9 +92,8 @@ std::vector<std::size_t> largest_first(const std::vector<double>& values) {
   return order;
 }
 
-/// Configurations by d, largest first; those without a block or outside the limits fall away.
-Configurations by_sensitivity(Configurations all, const Pool& pool, const Eigen::MatrixXd& T,
-                              ConfigurationSpace::Probe& probe) {
+/// Places by d, largest first; those without a block or outside the limits fall away.
+Places by_sensitivity(Places all, const Pool& pool, const Eigen::MatrixXd& T, ConfigurationSpace::Probe& probe) {
   Sensitivity sensitivity(T);
   ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
   std::vector<std::pair<double, std::vector<double>>> valued;
@@ -108,8 +107,8 @@ Configurations by_sensitivity(Configurations all, const Pool& pool, const Eigen:
 }
 
 /// Poses that weights use, each with one coordinate at an end of its range or at another choice.
-Configurations at_the_ends(const ApproximateDesign& design, const Pool& pool, const ConfigurationSpace& space) {
-  Configurations ends;
+Places at_the_ends(const ApproximateDesign& design, const Pool& pool, const ConfigurationSpace& space) {
+  Places ends;
   for (const int i : design.weighted()) {
     std::vector<double> q = pool.configurations[std::size_t(i)];
     for (std::size_t k = 0; k < q.size(); ++k) {
@@ -127,8 +126,7 @@ Configurations at_the_ends(const ApproximateDesign& design, const Pool& pool, co
 }
 
 /// Fills up with candidates that are drawn.
-void add_drawn(Configurations& starts, std::size_t candidates, const ConfigurationSpace& space, int count,
-               Random& random) {
+void add_drawn(Places& starts, std::size_t candidates, const ConfigurationSpace& space, int count, Random& random) {
   for (int draw = 0; draw < 2 * count && int(starts.size()) < count; ++draw)
     enter(starts, space.candidate(random.index(int(candidates))), space, start_distance);
 }
@@ -136,9 +134,9 @@ void add_drawn(Configurations& starts, std::size_t candidates, const Configurati
 /// Where the local searches start, no two in one place: the pool's largest d, the largest d at ends of coordinates
 /// and of all candidates, and candidates that are drawn. What is drawn depends on the seed and the round alone: not on
 /// an order of d that the last bit may turn.
-Configurations starts_of(const ApproximateDesign& design, const Pool& pool, const std::vector<double>& of_candidates,
-                         const ConfigurationSpace& space, int count, Random& random) {
-  Configurations starts;
+Places starts_of(const ApproximateDesign& design, const Pool& pool, const std::vector<double>& of_candidates,
+                 const ConfigurationSpace& space, int count, Random& random) {
+  Places starts;
   const auto room = [&](double share) { return double(starts.size()) < share * count; };
   for (const std::size_t i : largest_first(design.sensitivity))
     if (room(0.3)) enter(starts, pool.configurations[i], space, start_distance);
@@ -150,7 +148,7 @@ Configurations starts_of(const ApproximateDesign& design, const Pool& pool, cons
   return starts;
 }
 
-std::vector<AscentResult> search_from(const Configurations& starts, const Pool& pool, const Eigen::MatrixXd& T,
+std::vector<AscentResult> search_from(const Places& starts, const Pool& pool, const Eigen::MatrixXd& T,
                                       const ConfigurationSpace& space, int evaluations,
                                       const WorkspaceBoundOptions& options) {
   std::vector<AscentResult> results(starts.size());
@@ -170,9 +168,9 @@ std::vector<double> sensitivities(const BlockArray& blocks, const Eigen::MatrixX
 }
 
 /// Candidates whose d exceeds `limit`, largest first, no two in one place.
-Configurations candidates_above(double limit, const std::vector<double>& d, const ConfigurationSpace& space,
-                                int most_returned) {
-  Configurations result;
+Places candidates_above(double limit, const std::vector<double>& d, const ConfigurationSpace& space,
+                        int most_returned) {
+  Places result;
   for (const std::size_t i : largest_first(d)) {
     if (!(d[i] > limit) || int(result.size()) == most_returned) break;
     enter(result, space.candidate(int(i)), space, start_distance);
@@ -204,8 +202,8 @@ bool towards(const std::vector<double>& inside, ConfigurationSpace::Probe& probe
 
 /// Starts that candidates lack: where actuators cut the workspace, few candidates are near its corners. Middles of
 /// boxes that a proof of d ≤ limit would have to cut; none if there is no such proof.
-Configurations in_uncut_boxes(double limit, const Pool& pool, const Eigen::MatrixXd& T, const ConfigurationSpace& space,
-                              const WorkspaceBoundOptions& options, const Monitor& monitor) {
+Places in_uncut_boxes(double limit, const Pool& pool, const Eigen::MatrixXd& T, const ConfigurationSpace& space,
+                      const WorkspaceBoundOptions& options, const Monitor& monitor) {
   SeenAbove seen;
   seen.limit = limit;
   BoxSearchOptions boxes;
@@ -217,7 +215,7 @@ Configurations in_uncut_boxes(double limit, const Pool& pool, const Eigen::Matri
   const auto probe = space.probe();
   const std::vector<double> inside = inner_place(pool, *probe);
   std::erase_if(seen.middles, [&](std::vector<double>& q) { return !towards(inside, *probe, q); });
-  Configurations starts;
+  Places starts;
   for (const auto& q : by_sensitivity(std::move(seen.middles), pool, T, *probe))
     if (int(starts.size()) < options.starts) enter(starts, q, space, start_distance);
   return starts;
@@ -290,7 +288,7 @@ class ColumnGeneration {
   }
 
  private:
-  void take(const Configurations& found) {
+  void take(const Places& found) {
     for (std::size_t i = 0; i < found.size(); ++i) weights_.start.push_back(int(pool_.blocks.count() + i));
     if (!found.empty()) append(pool_, found, *space_.probe());
   }
@@ -308,7 +306,7 @@ class ColumnGeneration {
     judge(std::max(own, *std::max_element(of_candidates_.begin(), of_candidates_.end())));
   }
 
-  void search(const Configurations& starts) {
+  void search(const Places& starts) {
     double most = most_;
     for (const AscentResult& end : search_from(starts, pool_, design_.factor, space_, evaluations_, options_)) {
       most = std::max(most, end.value);
@@ -333,7 +331,7 @@ class ColumnGeneration {
   void confirm() {
     if (result_.max_ratio > 1 + settled_within) return;
     evaluations_ = options_.evaluations;
-    Configurations starts;
+    Places starts;
     add_drawn(starts, blocks_.count(), space_, options_.starts, random_);
     search(starts);
     result_.confirmed = result_.max_ratio <= 1 + settled_within ? int(starts.size()) : 0;
@@ -365,7 +363,7 @@ class ColumnGeneration {
   ApproximateDesign design_;
   WorkspaceBound result_;
   std::vector<double> of_candidates_;  // d
-  Configurations found_;               // to enter the weights
+  Places found_;                       // to enter the weights
   double extra_ = 0.0, limit_ = 0.0, larger_ = 0.0, most_ = 0.0;
 };
 

@@ -28,8 +28,8 @@ struct SimulateOptions {
   TruthNoise truth_noise;
   bool truth_nominal = false;  ///< of the truth only the nominal values differ: parameters of `variant` are drawn
   int validation = 50;         ///< random places to check if the problem has no test poses
-  std::optional<int>
-      candidates;  ///< that decide which columns of an `auto` variant can be identified; none: the file's
+  /// That decide which columns of an `auto` variant can be identified; none: the file's.
+  std::optional<int> candidates;
   ExperimentOptions experiment;
 };
 

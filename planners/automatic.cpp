@@ -224,7 +224,7 @@ class Run {
     return found;
   }
 
-  /// Where poses were moved to: candidates of the next round, so that good places of different sets meet in one.
+  /// Moved poses as candidates of the next round, so that good places of different sets meet in one.
   void remember(const PoseSet& poses) {
     for (std::size_t i = 0; i < poses.configurations.size(); ++i)
       if (poses.candidates[i] < 0 &&

@@ -91,7 +91,7 @@ bool EigenvalueProgram::factorise() {
   return true;
 }
 
-/// What E of trace 1 says.
+/// Bound by E of trace 1.
 bool EigenvalueProgram::take_dual() {
   dual_factor_.compute(dual_);
   if (dual_factor_.info() != Eigen::Success) return false;

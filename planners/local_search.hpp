@@ -11,7 +11,7 @@ namespace posewright {
 /// Gains below this are rounding of the running inverse, not progress.
 inline constexpr double smallest_gain = 1e-10;
 
-/// What one start of a search ended with.
+/// Result of one start of a search.
 struct Outcome {
   std::vector<int> members;
   double value = -std::numeric_limits<double>::infinity();

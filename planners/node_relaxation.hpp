@@ -13,12 +13,12 @@
 
 namespace posewright {
 
-/// How often each candidate is chosen at least and at most.
+/// Lower and upper number of each candidate.
 struct ChoiceBox {
   std::vector<std::uint16_t> least, most;
 };
 
-/// What the relaxation of a box says: numbers n_i that need not be whole, and no design in the box above `bound`.
+/// Relaxation of a box: fractional numbers n_i, and an upper `bound` for all designs in the box.
 struct RelaxedBox {
   double bound = 0.0;
   std::vector<double> numbers;  ///< n_i of every candidate, Σ n_i = N
@@ -62,7 +62,7 @@ class NodeRelaxation {
   /// solve() for o3 (theory.md eq. (44), (62), (63)). Nothing if that way is not open: too many candidates, or numbers
   /// that leave a parameter unknown.
   std::optional<bool> solve_least_eigenvalue(ChoiceBox& box, RelaxedBox& relaxed, double best);
-  /// Whether inertia_ speaks of these candidates: one row each, no nuisance columns.
+  /// True if inertia_ applies to these candidates: one row each, no nuisance columns.
   bool single_rows() const { return r_ == 1 && least_eigenvalue_->nuisance() == 0; }
   bool rule_out_rows(ChoiceBox& box) const;
   void limit_rows(const std::vector<double>& numbers);

@@ -18,7 +18,7 @@ struct PlannerEntry {
 const std::vector<PlannerEntry>& planner_registry();
 /// nullptr if no planner has that name.
 std::unique_ptr<Planner> make_planner(const std::string& name);
-/// "exchange, …": for messages that say what is allowed.
+/// "exchange, …": for messages with the allowed values.
 std::string planner_names();
 
 }  // namespace posewright

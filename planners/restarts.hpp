@@ -27,7 +27,7 @@ int affordable_kicks(const DesignTask& task, const PlannerOptions& options);
 
 /// Start i: rounded optimal weights, draws from them, uniform draws, in turn.
 std::vector<int> raw_start(const DesignTask& task, std::size_t index, Random& random);
-/// The same settled under the smoother criteria of
+/// Variant settled under the smoother criteria of
 /// the task's, if it has any, the smoothest first.
 std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Random& random, const Monitor& monitor);
 

@@ -87,7 +87,7 @@ bool RowInertia::settle_pairs(const Eigen::VectorXd& room, int left) {
   return std::count(possible_.begin(), possible_.end(), 1) >= left && enough_classes(left);
 }
 
-/// Whether rows that exclude each other leave room for as many as are still to be chosen: a greedy colouring.
+/// True if rows that exclude each other leave room for as many as are still to be chosen: a greedy colouring.
 bool RowInertia::enough_classes(int left) const {
   std::vector<std::uint64_t> open(words_, 0), same(words_);
   for (std::size_t i = 0; i < possible_.size(); ++i)

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What single rows v_1 … v_L must be like if M0 + Σ v_iᵀv_i is to be ⪰ t I: more than the same for numbers of rows
+/// Necessary conditions on single rows v_1 … v_L for M0 + Σ v_iᵀv_i ⪰ t I: more than the same for numbers of rows
 /// that need not be whole. With G = V (t I − M0)⁻¹ Vᵀ − I and e eigenvalues of M0 below t, G has exactly s = L − e
 /// negative eigenvalues (Haynsworth 1968, inertia of a matrix and its Schur complements); theory.md eq. (62), (63).
 /// Rounding is inside: what reaches t is never ruled out.
@@ -24,10 +24,10 @@ class RowInertia {
 
   /// s; 0: every row lifts an eigenvalue to t, and none may be taken twice.
   int slack() const { return slack_; }
-  /// Whether row i may be in what reaches t.
+  /// True if row i may be in a set that reaches t.
   bool possible(Eigen::Index i) const { return possible_[std::size_t(i)] != 0; }
-  /// Of those that may: b ≥ 0 with Σ b_i ≤ s over what reaches t, b_i = max(0, 1 − v_i D v_iᵀ), D the positive part of
-  /// (t I − M0)⁻¹.
+  /// Bounds for possible rows: b ≥ 0 with Σ b_i ≤ s over what reaches t, b_i = max(0, 1 − v_i D v_iᵀ), D the positive
+  /// part of (t I − M0)⁻¹.
   const Eigen::VectorXd& shortfall() const { return shortfall_; }
   /// Rows of which s at most are in what reaches t: no more of them can be, as G of s + 1 would be negative definite.
   /// Those of large `weight` are taken first, and those alone that may be taken no more than once.

@@ -11,12 +11,12 @@ namespace {
 // Swaps after which running quantities are computed anew.
 constexpr long refresh_after = 40;
 
-/// Which moves are forbidden until when.
+/// Forbidden moves and their ends.
 class Memory {
  public:
   Memory(DesignState& state, int poses) : state_(state), poses_(poses) {}
 
-  /// Who left and who entered stay so for a while.
+  /// Forbids the reverse of recent moves for a while.
   void record(int left, int entered, long now, Random& random) {
     const int shortest = std::max(1, poses_ / 4), spread = std::max(2, poses_ / 2);
     left_until_[left] = now + shortest + random.index(spread);

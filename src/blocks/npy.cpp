@@ -132,7 +132,7 @@ std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, s
   return {n, r, m};
 }
 
-/// Where a row is, for messages.
+/// Place of a row, for messages.
 struct RowPlace {
   std::size_t block;
   int row;
@@ -195,7 +195,7 @@ class NpyReader {
   void pass() {
     for (int i = 0; i < rows_; ++i) next_line();
   }
-  /// The same, as block `to` of an array; `block` is what messages call it.
+  /// Variant for block `to` of an array; `block` is its name in messages.
   void take(BlockArray& blocks, std::size_t to, std::size_t block) {
     for (int i = 0; i < rows_; ++i) {
       next_line();

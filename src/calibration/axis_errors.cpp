@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<const char*, 8> axes = {"x", "y", "z", "distance", "rx", "ry", "rz", "angle"};
 constexpr std::size_t distance_at = 3, first_turn = 4, angle_at = 7;
 
-/// Where the axis of a reading stands in `axes`; nothing for readings of another kind.
+/// Index of a reading's axis in `axes`; none for readings of another kind.
 std::optional<std::size_t> axis_of(const Reading& reading) {
   const auto dot = reading.name.rfind('.');
   if (dot == std::string::npos) return std::nullopt;
@@ -94,7 +94,7 @@ Sorted sorted(const IdentificationModel& model, const Eigen::VectorXd& values) {
   return result;
 }
 
-/// How far the measured targets are turned against the predicted ones; nothing for fewer than three.
+/// Rotation of the measured targets against the predicted ones; none for fewer than three.
 std::optional<Eigen::Vector3d> turn_of_targets(const Sorted& measured, const Sorted& residual) {
   std::vector<Eigen::Vector3d> from, to;
   for (std::size_t t = 0; t < measured.positions.size(); ++t)

@@ -304,7 +304,7 @@ struct Unit {
   const char* condition;
 };
 
-/// What one factor on all lengths that were seen is called.
+/// Name of one factor on all measured lengths.
 Convention scaled(double scale, const MeasurementSpec& measurement) {
   if (const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument))
     return {fmt::format("squares of the board are {:.4g} mm", 1e3 * scale * camera->spacing),
@@ -347,7 +347,7 @@ class Search {
     if (const auto* arm_spec = std::get_if<SerialArmSpec>(&problem.robot)) base_ = isometry(arm_spec->placement);
   }
 
-  /// Whether what the instrument reads is a place in space.
+  /// True if the instrument reads a place in space.
   bool sees_places() const {
     const InstrumentSpec& instrument = problem_.measurement.instrument;
     if (problem_.measurement.loaded_minus_unloaded || rows_.size() < least_sights) return false;
@@ -377,7 +377,7 @@ class Search {
     return table;
   }
 
-  /// What base and tool alone leave.
+  /// Residuals with base and tool alone.
   HandEye left(const Hypothesis& hypothesis) const {
     std::vector<SeenPoints> seen;
     for (const Row& written : rows_) {
@@ -456,7 +456,7 @@ class Search {
   Eigen::Isometry3d base_ = Eigen::Isometry3d::Identity();
 };
 
-/// Those that are nearly as good as the best, of each remedy the first one of the table.
+/// Hypotheses nearly as good as the best, for each remedy the first one of the table.
 void keep_best(std::vector<Convention>& found) {
   double best = std::numeric_limits<double>::infinity();
   for (const Convention& c : found) best = std::min(best, c.left);

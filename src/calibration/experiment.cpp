@@ -65,7 +65,7 @@ Eigen::VectorXd error_of(const VirtualExperiment& experiment, const Fit& fitted,
   return error;
 }
 
-/// Where the truth is on the profile of every column.
+/// Position of the truth on the profile of every column.
 Eigen::VectorXd tau_of_truth(const VirtualExperiment& experiment, const std::vector<MeasuredPose>& poses,
                              const Fit& fitted, const Eigen::VectorXd& error, const Monitor& monitor) {
   Profile profile(*experiment.model, experiment.columns, poses, experiment.options.fit, fitted);

@@ -12,7 +12,7 @@ namespace {
 constexpr int most_rounds = 300;
 constexpr double small_move = 1e-3;
 
-/// What gives way under load: its unit has a force in it.
+/// Parameters of stiffness: units with a force.
 bool gives_way(const Parameter& p) { return p.unit.find('N') != std::string::npos; }
 
 struct Stage {

@@ -9,7 +9,7 @@
 namespace posewright {
 namespace {
 
-/// Everything at the estimate, whitened.
+/// Whitened residuals and columns at the estimate.
 struct AtEstimate {
   FittedRows rows;  // J and r of the estimated columns
   EffectFeatures features;

@@ -55,7 +55,7 @@ class Profile::State {
   double tolerance(int column) const { return stacked_.tolerances()[column]; }
   double sigma(int column) const { return std::sqrt(covariance(column, column)); }
 
-  /// Where the linear problem expects all columns if one of them goes so far.
+  /// Values of all columns in the linear problem for a given value of one.
   Eigen::VectorXd along(int column, double change) const {
     return estimate + covariance.col(column) * (change / covariance(column, column));
   }
@@ -117,7 +117,7 @@ class Profile::Side {
         monitor_(monitor),
         within_{0.0, 0.0, state.estimate} {}
 
-  /// How far |τ| is first `factor`; none as Profile::interval().
+  /// Distance at which |τ| first is `factor`; none as Profile::interval().
   std::optional<double> end() {
     double step = half_;
     for (int refit = 0; refit < most_refits && within_.step < longest * half_; ++refit) {

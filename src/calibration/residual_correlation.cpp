@@ -13,7 +13,7 @@ namespace {
 // Below this many pairs a correlation says nothing.
 constexpr int fewest_pairs = 20;
 
-/// Which readings may err together: B v of the symmetric B that is 1 for each pair, and how many pairs there are.
+/// Pairs of readings with common errors: B v of the symmetric B that is 1 for each pair, and how many pairs there are.
 struct Partners {
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> of;
   double pairs = 0;
@@ -35,7 +35,7 @@ class FittedReadings {
     }
   }
 
-  /// Of every pose: where each reading stands; −1 where it was not read.
+  /// Row of each reading at every pose; −1 if it was not read.
   const std::vector<std::vector<int>>& row_of() const { return row_of_; }
 
   /// rᵀBr against its moments under white noise of any size (residual_statistics.hpp).

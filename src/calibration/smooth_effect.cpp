@@ -68,7 +68,7 @@ class Restricted {
     return std::exp(0.5 * (a + b));
   }
 
-  /// Where −2 ln L has grown to `allowed`, from `from` towards `end`.
+  /// Value at which −2 ln L reaches `allowed`, from `from` towards `end`.
   double edge(double from, double end, double allowed) const {
     if (minus_two_log(end) <= allowed) return end;
     double inside = std::log(from), outside = std::log(end);

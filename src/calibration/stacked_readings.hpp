@@ -7,17 +7,17 @@
 
 namespace posewright {
 
-/// Which readings are there.
+/// Readings that are present.
 std::vector<int> indices_read(const Eigen::VectorXd& y);
 
 /// model.predict_and_linearise() with the covariance of what was read at this pose.
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y);
 
-/// How many times the tolerances of these columns count, of those of all parameters; empty: once.
+/// Multiples of the tolerances of these columns, from those of all parameters; empty: one.
 Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<double>& spreads);
 
-/// What a fit read as one linear problem, whitened: columns of `selected`, residuals.
+/// Linear problem of a fit, whitened: columns of `selected`, residuals.
 struct FittedRows {
   Eigen::MatrixXd J;
   Eigen::VectorXd r;
@@ -41,7 +41,7 @@ Eigen::MatrixXd places_of(const UnmodelledEffect& effect, const std::vector<Meas
 Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::MatrixXd& places,
                                const Eigen::MatrixXd& along, const std::vector<int>& first);
 
-/// What fitted columns leave of others, all whitened: X − Q Qᵀ X.
+/// Part of columns outside the fitted ones, all whitened: X − Q Qᵀ X.
 class Beside {
  public:
   explicit Beside(const Eigen::MatrixXd& fitted);

@@ -15,7 +15,7 @@ namespace {
 // Streams of a draw: what else is drawn from the seed must not be the same numbers.
 constexpr std::uint64_t readings_stream = 0x51e0, gross_stream = 0x6e055;
 
-/// Which targets are missing or wrong at one pose.
+/// Missing or wrong targets at one pose.
 class GrossErrors {
  public:
   GrossErrors(const ExperimentOptions& options, int draw)

@@ -8,25 +8,25 @@
 
 namespace posewright {
 
-/// What one thread knows of pairs from states it looked at before: a pair that had s to spare beyond its clearance at
+/// Cache of one thread for pairs at earlier states: a pair that had s to spare beyond its clearance at
 /// q₀ keeps it at every q with Σ travel_k |q_k − q₀_k| < s (the bound that motions are followed with; Schwarzer, Saha &
 /// Latombe 2005). Searches and bisections ask for states next to each other, so most pairs are not looked at again.
 class ApartMemory {
  public:
-  /// That of the calling thread for this scene; empty where the thread looked at another one last.
+  /// Cache of the calling thread for this scene; empty if its last scene was another.
   static ApartMemory& of(const Scene& scene);
 
-  /// Whether the pair is known to keep its clearance at q, with `certain` to spare: what a distance may be off by does
-  /// not count, so the verdict is the one that looking would give.
+  /// True if the pair is known to keep its clearance at q, with `certain` to spare. `certain` is the possible error
+  /// of a distance, so the verdict equals that of a measurement.
   bool covers(const BodyPair& pair, std::size_t place, int pose, std::span<const double> q) const {
     return spare_[place] > certain && moved(pair, place, pose, q) < spare_[place] - certain;
   }
-  /// Whether the state that the pair was last looked at is so near that it pays to know how much more than its
+  /// True if the state that the pair was last looked at is so near that it pays to know how much more than its
   /// clearance it has.
   bool is_near(const BodyPair& pair, std::size_t place, int pose, std::span<const double> q) const {
     return looked_at(place) && moved(pair, place, pose, q) < look_ahead;
   }
-  /// Whether the pair is known to be nearer than its clearance at q: it lacked s of it at q₀.
+  /// True if the pair is known to be nearer than its clearance at q: it lacked s of it at q₀.
   bool is_too_near(const BodyPair& pair, std::size_t place, int pose, std::span<const double> q) const {
     return looked_at(place) && spare_[place] < -certain && moved(pair, place, pose, q) < -spare_[place] - certain;
   }

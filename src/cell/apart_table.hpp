@@ -11,7 +11,7 @@ namespace posewright {
 struct BodyPair;
 struct Scene;
 
-/// What a pair that few coordinates move has beyond its clearance, at least, looked up instead of measured: cells of
+/// Lower bounds of the distance beyond the clearance, for pairs that few coordinates move: cells of
 /// these coordinates' ranges, each with what the pair has in its middle, less what it may lose on the way from there
 /// (BodyPair::travel). A cell is measured when it is first asked for, at the same state whoever asks, so that answers
 /// depend on nothing else. Const and callable from several threads.

@@ -87,7 +87,7 @@ class ChainFrames : public BodyFrames {
     return places_[std::size_t(pose)][std::size_t(chain_.joints[joint].coordinate)];
   }
 
-  /// Where each of the chain's coordinates stands in a configuration; empty if one is missing.
+  /// Index of each of the chain's coordinates in a configuration; empty if one is missing.
   std::vector<std::size_t> places_of(const std::string& suffix, const IdentificationModel& model) const {
     std::vector<std::size_t> places;
     for (const Coordinate& own : chain_.coordinates)

@@ -78,7 +78,7 @@ class SceneBuilder {
       for (const auto& [a, b] : read_srdf_pairs(srdf->value, problem_.at(srdf->line))) ignored_.insert(ordered(a, b));
   }
 
-  /// What a pair of the robot's own bodies keeps: named, or of all, or as from obstacles.
+  /// Clearance of a pair of the robot's own bodies: of the pair, of all, or as from obstacles.
   double self_clearance(const Body& a, const Body& b) const {
     for (const CollisionSpec::PairClearance& pair : spec_.pair_clearances)
       if (ordered(pair.first.value, pair.second.value) == ordered(a.name, b.name)) return pair.clearance;
@@ -136,7 +136,7 @@ class SceneBuilder {
     }
   }
 
-  /// Whether both are links or tool.
+  /// True if both are links or tool.
   bool is_own(const BodyPair& pair) const {
     return !scene_.bodies[std::size_t(pair.a)].obstacle && !scene_.bodies[std::size_t(pair.b)].obstacle;
   }
@@ -205,7 +205,7 @@ class SceneBuilder {
       if (always.count(names) == 0) scene_.reduced.push_back({names.first, names.second, kept});
   }
 
-  /// What settle_self_pairs(), find_never_near() and add_tables() found for the same bodies.
+  /// Results of settle_self_pairs(), find_never_near() and add_tables() for the same bodies.
   void take_self_pairs(const Scene& known) {
     scene_.always = known.always;
     scene_.reduced = known.reduced;
@@ -239,7 +239,7 @@ class SceneBuilder {
     }
   }
 
-  /// Of most links two or three joints decide how far they are apart, whatever the others do.
+  /// Distances of most links depend on two or three joints only.
   void add_tables() {
     if (scene_.frames->poses_per_configuration() != 1) return;
     const std::vector<Coordinate>& coordinates = model_.coordinates();

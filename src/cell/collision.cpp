@@ -47,7 +47,7 @@ double distance_of(const Scene& scene, const BodyPair& pair, const Poses& X, dou
 
 const Body& body_above(const Scene& scene, const BodyPair& pair) { return scene.bodies[std::size_t(pair.b)]; }
 
-/// Whether a pair is a body of the robot and a half space that stands still.
+/// True if a pair is a body of the robot and a half space that stands still.
 bool is_above_plane(const Scene& scene, const BodyPair& pair) {
   const Body& plane = scene.bodies[std::size_t(pair.a)];
   return scene.frames->poses_per_configuration() == 1 && plane.frame == 0 && plane.solid->plane() && !pair.never_near &&

@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// Where a mesh file named as in a URDF is: package://NAME/… is looked for in Problem::packages, the folders of
+/// Path of a mesh file with a name as in a URDF: package://NAME/… is searched in Problem::packages, the folders of
 /// ROS_PACKAGE_PATH (AMENT_PREFIX_PATH, Gazebo's), the folders above the URDF, and those around it whose package.xml
 /// has the name. Throws InputError at `place`.
 std::filesystem::path find_mesh(const std::filesystem::path& name, const Problem& problem, const SourcePlace& place);

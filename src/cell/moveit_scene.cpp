@@ -25,7 +25,7 @@ class SceneWords {
     throw InputError({file_, line_}, what, allowed);
   }
 
-  /// What is left of the line.
+  /// Rest of the line.
   std::string rest() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     const std::string result(trimmed(std::string_view(text_).substr(at_, end - at_)));
@@ -125,7 +125,7 @@ ShapeSpec read_scene_shape(SceneWords& words, Eigen::Isometry3d& X) {
   return HalfSpaceShape{normal.normalized()};
 }
 
-/// Whether objects have poses of their own: the line after the first name has more than a number.
+/// True if objects have poses of their own: the line after the first name has more than a number.
 bool has_object_poses(SceneWords words) {
   if (words.word("an object") != "*") return false;
   words.rest();

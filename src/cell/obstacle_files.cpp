@@ -33,12 +33,12 @@ constexpr std::array<ObstacleReader, 4> readers{{
     {".scene", [](const ObstacleFileSpec& spec, const Problem&) { return read_moveit_shapes(spec); }},
 }};
 
-/// Whether `except` names the body, the model it is part of, or one that this is in.
+/// True if `except` names the body, the model it is part of, or one that this is in.
 bool is_within(const std::string& name, const std::string& except) {
   return name == except || name.starts_with(except + "::");
 }
 
-/// Whether a world names the model, though it may have been left out before its shapes were looked for.
+/// True if a world names the model, even if it was left out before its shapes were read.
 bool names_model(const std::filesystem::path& world, const std::string& name) {
   return read_xml_text(world, largest_world).find(name) != std::string::npos;
 }

@@ -42,7 +42,7 @@ void send_text(int to, char kind, const std::string& text) {
   send(to, text.data(), size);
 }
 
-/// What the child does: kind, length, bytes; those of a message where something is wrong.
+/// Work of the child: kind, length, bytes; those of a message where something is wrong.
 [[noreturn]] void work_and_send(const std::function<std::string()>& work, int to) {
   const rlimit memory{present_size() + most_bytes, present_size() + most_bytes}, time{most_seconds, most_seconds},
       none{0, 0};

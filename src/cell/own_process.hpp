@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// What a process of its own says is wrong, or that it ended without a word.
+/// Error message of a separate process, or its end without a message.
 class OwnProcessFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -26,7 +26,7 @@ inline constexpr double look_ahead = 0.08;
 /// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
 inline constexpr double near_enough = 0.002;
 
-/// What a distance between meshes, hulls and shapes is off by at most, m.
+/// Largest error of a distance between meshes, hulls and shapes, m.
 inline constexpr double certain = 1e-4;
 
 /// One solid on a frame. Links, tool parts and obstacles are made of them; what they belong to has the name.
@@ -64,17 +64,17 @@ struct Scene {
   std::uint64_t number = 0;  ///< of this scene among all that the program made: what a thread remembers is of one
 };
 
-/// Which spare room (m) is enough, so that the next way to find it, which takes longer and finds more, is left out.
+/// Sufficient spare room (m), so that the next way to find it, which takes longer and finds more, is left out.
 struct EnoughSpare {
   double of_boxes, of_hulls;
   double of_surfaces;  ///< most that is found of meshes
 };
 
-/// How much a pair has beyond its clearance, at least: exact where it is negative, so that the sign is the verdict.
+/// Lower bound of a pair's distance beyond its clearance: exact where it is negative, so that the sign is the verdict.
 double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3d& X_a, const Eigen::Isometry3d& X_b,
                 const EnoughSpare& enough);
 
-/// Whether a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it
+/// True if a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it
 /// is d apart, it cannot come too near before it has moved by what d has to spare.
 /// @param most_steps  states looked at before the answer is no
 bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
@@ -88,7 +88,7 @@ Scene build_scene(const Problem& problem, const IdentificationModel& model, cons
 /// Links of the arm, tool and obstacles, in that order.
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames);
 
-/// The same before solids are made of them.
+/// Pairs before their solids are made.
 struct BodyShape {
   std::string name, station, parent;
   enum class Kind { link, tool, obstacle } kind = Kind::link;
@@ -102,7 +102,7 @@ struct BodyShape {
 /// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);
 
-/// How far a robot that is built within the tolerances of the planned variant may be from where it is thought, one
+/// Deviation of a robot within the tolerances of the planned variant from the nominal one, one
 /// standard deviation: largest over the workspace for a pair's bodies relative to each other.
 class UncalibratedError {
  public:

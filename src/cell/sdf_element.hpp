@@ -15,7 +15,7 @@ class XMLElement;
 
 namespace posewright {
 
-/// What a pose element holds: X in the frame that it names, "" where it names none.
+/// Content of a pose element: X in the named frame, "" without a name.
 struct SdfPose {
   std::string relative_to;
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();

@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// Where names are looked for: those of a model or world, and the frame that a pose is in if it names none.
+/// Scope of names: those of a model or world, and the default frame of a pose.
 struct SdfScope {
   std::string prefix;  ///< "MODEL::" of a model in its world, "" of the world
   std::string own;     ///< full name of the model's frame, or "world"

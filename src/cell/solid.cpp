@@ -78,12 +78,12 @@ std::shared_ptr<Mesh> surface_of(const std::vector<Eigen::Vector3d>& vertices,
 class FclSolid : public Solid {
  public:
   const Geometry& geometry() const { return *geometry_; }
-  /// What stands for the solid beside a surface: triangles where all its faces are flat. The distance of two triangles
-  /// is known in closed form; that of a triangle and a shape is an iteration that takes some twenty times as long.
+  /// Representation of the solid besides a surface: triangles where all its faces are flat. The distance of two
+  /// triangles has a closed form; that of a triangle and a shape needs an iteration, some twenty times as long.
   virtual const Geometry& beside_surface() const { return *geometry_; }
   /// Convex, with the solid in it: of a mesh its hull, else itself. Null for a mesh whose points lie in one plane.
   virtual const Geometry* hull() const { return geometry_.get(); }
-  /// Whether it is more than its triangles' hull: a mesh that is not convex.
+  /// True if it is not convex, so its triangles' hull is larger.
   bool is_surface() const { return hull() != geometry_.get(); }
   const Eigen::Vector3d& middle() const { return middle_; }
   const Eigen::Vector3d& half_extent() const { return half_extent_; }
@@ -281,7 +281,7 @@ class MeshSolid : public FclSolid {
     });
   }
 
-  /// Whether no corner is above a triangle: such a mesh is its hull, for which a few steps of an iteration do.
+  /// True if no corner is above a triangle: such a mesh is its hull, for which a few steps of an iteration do.
   bool is_convex() {
     for (const auto& t : mesh_.triangles) {
       const Eigen::Vector3d normal = normal_of(t).normalized();
@@ -355,7 +355,7 @@ double gap_between_boxes(const Eigen::Vector3d& g, const Eigen::Vector3d& h, con
 
 bool has_surface(const FclSolid& a, const FclSolid& b) { return a.is_surface() || b.is_surface(); }
 
-/// What stands for two solids when their distance is asked for.
+/// Representations of two solids for their distance.
 std::pair<const Geometry*, const Geometry*> geometries(const FclSolid& a, const FclSolid& b) {
   if (has_surface(a, b)) return {&a.beside_surface(), &b.beside_surface()};
   return {&a.geometry(), &b.geometry()};

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What is wrong with a mesh; the caller knows its name.
+/// Error of a mesh; the caller knows its name.
 class BadMesh : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

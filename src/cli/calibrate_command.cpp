@@ -47,7 +47,7 @@ po::options_description calibrate_command_options() {
   return options;
 }
 
-/// What goes to the robot's users.
+/// Output files for users of the robot.
 struct Results {
   std::filesystem::path parameters, urdf, deformation;  ///< empty: not asked for
   std::string dh;

@@ -129,7 +129,7 @@ DocumentOptions document_options(const po::variables_map& values) {
   return options;
 }
 
-/// Where the files go: one file by its name, several into a folder under their own names.
+/// Paths of the output: one file by its name, several into a folder under their own names.
 std::vector<fs::path> output_places(const po::variables_map& values, const Words& files) {
   const fs::path output = values.count("output") > 0 ? output_file(values, "output", "") : fs::path();
   if (output.empty()) return {};
@@ -183,7 +183,7 @@ class NewFolder {
   fs::path folder_;
 };
 
-/// What describes the robot itself: the same files and tables that `calibrate` writes.
+/// Output files of the robot itself, as `calibrate` writes them.
 struct RobotFiles {
   fs::path urdf, xacro, kinematics;  ///< empty: not asked for
   std::optional<DhTable> table;
@@ -266,7 +266,7 @@ Compensation compensate_files(const Words& files, const Problem& problem, Docume
   return result;
 }
 
-/// Whether all lines stay as straight as asked; notes name those that do not.
+/// True if all lines stay within --line-deviation; notes name the others.
 bool keep_lines(Compensation& result, double allowed) {
   bool kept = true;
   for (const LineDeviation& line : result.lines) {

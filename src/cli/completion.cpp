@@ -15,7 +15,7 @@ std::string command_words() {
   return words;
 }
 
-/// What an option's value may be, as the call that completes it; `:` where only the user knows.
+/// Call that completes an option's value; `:` for values only the user knows.
 std::string bash_values(const Expected& expected) {
   if (!expected.words.empty()) return fmt::format("_posewright_words '{}'", joined(expected.words));
   if (!expected.suffixes.empty()) return fmt::format("_posewright_files '{}'", fmt::join(expected.suffixes, "' '"));

@@ -96,7 +96,7 @@ std::optional<Problem> problem_of(const PoseFormat& format, const fs::path& plan
   return problem_for_plan(problem_file(values, plan), values, plan);
 }
 
-/// Where each file goes.
+/// Path of each file.
 std::vector<fs::path> places(const PoseFormat& format, const Exported& exported, const fs::path& output) {
   std::vector<fs::path> result;
   const bool to_file = !output.empty() && !fs::is_directory(output) && output.has_filename();
@@ -139,7 +139,7 @@ class Folders {
   bool kept_ = false;
 };
 
-/// What was measured and put into a file is not replaced by predictions. Such a file still begins as ours does.
+/// Refuses to replace measured values in a file by predictions. Such a file still begins as ours does.
 void keep_measurements(const PoseFormat& format, const std::vector<fs::path>& files, const Exported& exported) {
   if (!format.to_be_filled) return;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -149,7 +149,7 @@ void keep_measurements(const PoseFormat& format, const std::vector<fs::path>& fi
   }
 }
 
-/// Those of the files that are not there as they would be written.
+/// Files that differ from the text to write.
 std::vector<fs::path> changed(const std::vector<fs::path>& files, const Exported& exported) {
   std::vector<fs::path> result;
   for (std::size_t i = 0; i < files.size(); ++i)

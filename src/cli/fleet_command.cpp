@@ -33,7 +33,7 @@ po::options_description fleet_command_options() {
   return options;
 }
 
-/// What a problem's files are called: the file's name, or its folder's where every file is called "problem".
+/// Name of a problem's files: the file's name, or its folder's where every file is called "problem".
 std::vector<std::string> names_of(const std::vector<Problem>& problems) {
   std::vector<std::string> names;
   std::map<std::string, int> count;

@@ -155,7 +155,7 @@ void ask_instrument(InitFacts& facts) {
       });
 }
 
-/// What no option said, of those things that only the user knows.
+/// Asks for missing facts that only the user knows.
 void ask_for_the_rest(InitFacts& facts, const po::variables_map& values) {
   if (values.count("tracker") + values.count("camera") == 0) ask_instrument(facts);
   if (facts.camera && values.count("board") == 0)

@@ -21,7 +21,7 @@
 namespace posewright::cli {
 namespace {
 
-/// What was meant by an option that there is not: a name that begins so, or the nearest one.
+/// Suggestion for an unknown option: a name that begins so, or the nearest one.
 std::string meant_option(const std::string& written, const po::options_description& options) {
   const std::string word = written.substr(std::min(written.find_first_not_of('-'), written.size()));
   std::vector<std::string> names;

@@ -23,7 +23,7 @@ class GrowingFile {
   std::filesystem::path file_;
 };
 
-/// Where results of `next` go; empty: not asked for.
+/// Files for results of `next`; empty: not requested.
 struct NextFiles {
   std::filesystem::path state, poses, result;
 

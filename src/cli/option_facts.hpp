@@ -7,7 +7,7 @@
 
 namespace posewright::cli {
 
-/// What may stand for an argument or an option's value.
+/// Allowed values of an argument or an option.
 struct Expected {
   std::vector<std::string> words;     ///< these words
   std::vector<std::string> suffixes;  ///< files that end so ("yaml"); "*": any file

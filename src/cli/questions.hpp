@@ -5,7 +5,7 @@
 
 namespace posewright::cli {
 
-/// Whether there is somebody to ask: a terminal to read from and one to write to.
+/// True if stdin and stderr are terminals, so that questions make sense.
 bool can_ask();
 
 /// Asks on stderr until `take` accepts the answer, which is `standard` where nothing but Enter is typed. What `take`

@@ -75,7 +75,7 @@ int report_plan(const po::variables_map& values, const CommonOptions& common, co
   return was_interrupted ? interrupted : done;
 }
 
-/// What cannot be done with these files is said before anything is read.
+/// Checks the combination of files before anything is read.
 void refuse_options(const po::variables_map& values, std::initializer_list<const char*> names,
                     const std::string& shown) {
   for (const char* name : names)

@@ -40,7 +40,7 @@ std::string size_limited(const fs::path& file) {
   return code || size > most_bytes ? std::string() : bytes_of(file, std::size_t(size));
 }
 
-/// Whether the plan or route in `record` says that it was written with `file` as it is now.
+/// True if the plan or route in `record` says that it was written with `file` as it is now.
 bool is_recorded(const fs::path& file, const fs::path& record) {
   std::error_code code;
   if (!fs::is_regular_file(record, code) || !is_posewright_json(bytes_of(record, 64))) return false;

@@ -16,11 +16,11 @@ namespace posewright::cli {
 void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs,
                    bool force);
 
-/// Whether a file has these bytes already, or begins with them; false if it is not there. It does not become an input.
+/// True if a file has these bytes already, or begins with them; false if it is not there. It does not become an input.
 bool begins_with(const std::filesystem::path& file, const std::string& bytes);
 bool holds(const std::filesystem::path& file, const std::string& bytes);
 
-/// What a plan or route says about the other files of its set: names as seen from its folder, and what is in them.
+/// Record of a plan or route about the other files of its set: names seen from its folder, and contents.
 std::vector<WrittenWith> written_with(const std::filesystem::path& main, const std::vector<FileToWrite>& others);
 
 /// write_files() of a command's results, the main one last. What cannot be written where it was asked for is saved in

@@ -51,7 +51,7 @@ std::vector<int> row_list(const po::variables_map& values, const std::string& op
   }
 }
 
-/// What went between the processes for each exchange.
+/// Traffic between the processes for each exchange.
 void tell_of_spread(const SpreadTraffic& traffic, int processes, const CommonOptions& common) {
   if (!common.verbose) return;
   const auto each = [](long of_all, long count) { return count > 0 ? double(of_all) / double(count) : 0.0; };

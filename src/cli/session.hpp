@@ -32,7 +32,7 @@ class Watch {
   bool shown_ = false;
 };
 
-/// What a computation made under a Watch, and whether Ctrl-C ended it early.
+/// Result of a computation under a Watch, and a mark for an early end by Ctrl-C.
 template <class Result>
 struct Watched {
   Result result;
@@ -45,7 +45,7 @@ struct Interrupted {};
 /// Ends a process that is not the one that writes.
 struct AnotherWrites {};
 
-/// What --verbose tells of tasks; throws AnotherWrites.
+/// Output of --verbose about tasks; throws AnotherWrites.
 void after_tasks(TaskEngine& engine, const CommonOptions& common);
 
 /// Runs work(monitor) under a Watch. Throws Interrupted where the work gave up because of Ctrl-C, AnotherWrites on all
@@ -65,7 +65,7 @@ auto watched(const CommonOptions& common, double seconds, const Work& work, Task
   }
 }
 
-/// What a result says to its user, on stderr.
+/// Notes of a result, on stderr.
 void print_notes(const std::vector<std::string>& notes);
 
 /// The value of an option, above 0 and below `most`; none if it is not given. InputError saying what is allowed.

@@ -4,7 +4,7 @@
 
 namespace posewright::cli {
 
-/// What Ctrl-C, SIGTERM and SIGHUP do to this program, stage by stage. While nothing is to be lost they end it at once,
+/// Effect of Ctrl-C, SIGTERM and SIGHUP on this program, stage by stage. Before the first result they end it at once,
 /// with the exit code `interrupted`; while a search runs they ask for the best so far; from then on, until everything
 /// is written and told, they are passed over. A second one always ends it.
 enum class SignalStage { nothing_to_lose, searching, finishing };

@@ -44,7 +44,7 @@ std::vector<std::string> characters(std::string_view line) {
   return result;
 }
 
-/// Where a text in quotes of the message stands in the line, in bytes; npos if none does.
+/// Position of a quoted text of the message in the line, in bytes; npos if none occurs.
 std::pair<std::size_t, std::size_t> quoted_in(const std::string& line, const std::string& message) {
   for (std::size_t begin = message.find('\''); begin != std::string::npos;) {
     const std::size_t end = message.find('\'', begin + 1);

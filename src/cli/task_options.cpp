@@ -20,7 +20,7 @@ constexpr auto of_no_account =
     std::to_array<std::string_view>({"threads", "json", "markdown", "quiet", "verbose", "output", "output-dir",
                                      "poses-csv", "force", "resume", "shard", "time-limit", "data", "positional"});
 
-/// What is computed: command, options and all files that were read.
+/// Identity of the computation: command, options and all files read.
 std::string computation(const po::variables_map& values, const std::string& command, const std::filesystem::path& log) {
   std::string text = command + "\n";
   for (const auto& [name, value] : values) {

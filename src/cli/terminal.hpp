@@ -5,7 +5,7 @@
 
 namespace posewright::cli {
 
-/// Whether bold and colour may go to this stream: a terminal that knows them, and NO_COLOR is not set (no-color.org).
+/// True if the stream is a terminal with bold and colour, and NO_COLOR is not set (no-color.org).
 bool has_colour(std::FILE* stream);
 
 /// A report on stdout, its first line bold if there are colours.

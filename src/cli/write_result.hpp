@@ -24,7 +24,7 @@ void check_output_files(const po::variables_map& values, const std::vector<std::
 /// "Written: a, b" with a line end; empty if none of them is named.
 std::string written_text(const std::vector<std::filesystem::path>& outputs);
 
-/// Where a plan goes: files, and the table or JSON on stdout.
+/// Output of a plan: files, and the table or JSON on stdout.
 class Outputs {
  public:
   /// Checks the files before any search. Throws CannotDo or InputError.

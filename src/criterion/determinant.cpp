@@ -98,7 +98,7 @@ class DeterminantState : public DesignState {
     return j < 0 ? Swap{} : Swap{static_cast<int>(j), std::log1p(best)};
   }
 
-  /// The same with x_j V x_kᵀ known.
+  /// Variant with known x_j V x_kᵀ.
   Swap best_of_products(int position, int k, double min_gain) {
     const double* c = products_.row(members(), position);
     const std::vector<double>& d = inverse_.traces();

@@ -18,7 +18,7 @@ inline void gram(const BlockArray::RowMatrix& X, Eigen::MatrixXd& H) {
   H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
 }
 
-/// The same of rows that are not padded.
+/// Variant for rows without padding.
 template <class Rows>
 void gram_of(const Rows& X, Eigen::MatrixXd& H) {
   BlockArray::RowMatrix padded = padded_rows(X.rows(), X.cols());

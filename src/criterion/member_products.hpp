@@ -17,7 +17,7 @@ class MemberProducts {
  public:
   explicit MemberProducts(const InverseInformation& inverse) : inverse_(inverse) {}
 
-  /// Whether rows are so long, and members so few for it, that this saves time and takes no more than twice the memory
+  /// True if rows are so long, and members so few, that this saves time and takes no more than twice the memory
   /// of the blocks.
   static bool pays(const BlockArray& blocks, std::size_t members);
 

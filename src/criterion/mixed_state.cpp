@@ -48,7 +48,7 @@ class Share {
 
   /// ln e_v; −∞ where singular.
   double efficiency() const { return of(rest_.value()); }
-  /// The same with the ridge of a singular design: what gains count from.
+  /// Variant with the ridge of a singular design, the reference of gains.
   double reference() const { return of(rest_.reference()); }
   /// ∂ ln e_v per unit of weight on candidate j.
   double sensitivity(int j) const { return rest_.sensitivities()[std::size_t(j)] / interest_; }

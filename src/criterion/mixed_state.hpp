@@ -15,7 +15,7 @@ namespace posewright {
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<VariantGroup>& variants, bool minimum);
 
-/// The same for scenarios, whose blocks are their own.
+/// Variant for scenarios with their own blocks.
 std::unique_ptr<DesignState> start_mixed(const CandidateView& view, std::vector<int> members,
                                          const std::vector<Scenario>& scenarios, const RobustAim& aim, double whole);
 

@@ -12,7 +12,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Ratio of squared Cholesky pivots below which whitened information counts as singular.
 inline constexpr double singular_pivot = 1e-11;
 
-/// Whether a Cholesky factor of whitened information is safely away from singular.
+/// True if a Cholesky factor of whitened information is safely away from singular.
 inline bool is_regular(const Eigen::LLT<Eigen::MatrixXd>& factor) {
   if (factor.info() != Eigen::Success) return false;
   const auto pivots = factor.matrixLLT().diagonal();

@@ -112,7 +112,7 @@ class ResidualState : public DesignState {
     left_.diagonal().array() += 1.0;
   }
 
-  /// Of I + D_j; solved_ becomes L⁻¹ e_j.
+  /// Factor of I + D_j; solved_ becomes L⁻¹ e_j.
   double added(int j) {
     projected_.noalias() = own(j) * V_;
     S_.noalias() = projected_ * own(j).transpose();

@@ -194,7 +194,7 @@ class SpectralCriterion : public Criterion {
   }
 
  private:
-  /// Of the means that lead to o3, and the smoother ones behind it.
+  /// Exponents of the means that lead to o3, and of the smoother ones behind it.
   SpectralCriterion(const CriterionData& data, std::size_t step)
       : name_("o3 smoothed"),
         function_(std::make_shared<SpectralFunction>(SpectralIndex::mean, data, smooth_powers[step])) {

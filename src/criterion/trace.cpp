@@ -83,7 +83,7 @@ class WorstExpansion : public Expansion {
     value = std::log((variance > 0).select(share_ / variance, 0.0).sum());
   }
 
-  /// Of (Σ v_tᵖ)^{1/p}: the mean's own, and what its weights change.
+  /// Derivatives of (Σ v_tᵖ)^{1/p}: of the mean, and of its weights.
   void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const override {
     mean_->curvature(rows, r, H);
     const Eigen::Index count = rows.rows() / r;
@@ -114,7 +114,7 @@ class WorstTestPoint : public InformationFunction {
     return is_regular(factor) ? -std::log(worst(factor).second) : -infinity;
   }
 
-  /// Of the point that is worst: a supergradient.
+  /// Supergradient: gradient of the worst point.
   Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override {
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     const auto [point, variance] = worst(factor);

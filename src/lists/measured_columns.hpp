@@ -39,7 +39,7 @@ class MeasuredColumns {
   bool has(const std::string& name) const { return column_.count(name) > 0; }
   /// NaN for an empty cell.
   double value(int row, const std::string& column, const std::string& unit) const;
-  /// Of an orientation that is not given as one.
+  /// Columns of an orientation in another form.
   Eigen::Vector3d rotation_vector(int row) const;
   bool turned() const { return quaternions_ || euler_; }
   void find_orientation();

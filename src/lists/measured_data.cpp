@@ -29,7 +29,7 @@ struct Row {
 // Encoders jitter: rad and m that one configuration's rows differ by, and those of one that is called by its id.
 constexpr double jitter = 1e-5, jitter_of_one_id = 1e-3;
 
-/// Whether rows are readings of one configuration.
+/// True if rows are readings of one configuration.
 bool repeats(const std::vector<Coordinate>& coordinates, const Row& a, const Row& b) {
   const double allowed = a.id > 0 && a.id == b.id ? jitter_of_one_id : jitter;
   for (std::size_t i = 0; i < coordinates.size(); ++i)
@@ -78,7 +78,7 @@ class ReadingAverages {
     group_.clear();
   }
 
-  /// Of rows whose readings are averaged, so that encoders' jitter does not count as the robot's error.
+  /// Mean coordinates of averaged rows, so that encoders' jitter does not count as the robot's error.
   std::vector<double> mean_configuration() const {
     std::vector<double> q = group_.front().q;
     for (const Row& row : group_)
@@ -127,7 +127,7 @@ class ReadingAverages {
     data_.repeated.push_back(std::move(visit));
   }
 
-  /// How many rows each reading, and each two of them, are the mean of.
+  /// Numbers of rows behind each reading, and behind each pair of readings.
   void share_readings(MeasuredPose& pose) const {
     const Eigen::Index all = pose.y.size();
     Eigen::MatrixXd was_read(all, Eigen::Index(group_.size()));

@@ -100,7 +100,7 @@ class JsonDocument : public PoseDocument {
     return q;
   }
 
-  /// That the joints' velocities, where they are known, need for a way.
+  /// Time of a way by the known velocities of the joints.
   double least_seconds(const nlohmann::ordered_json& points) const {
     double seconds = 0;
     for (std::size_t k = 1; k < points.size(); ++k) {
@@ -441,7 +441,7 @@ std::vector<DocumentFile> companions(const std::filesystem::path& file) {
   return found;
 }
 
-/// If remarks number poses, other points are on the way: the numbered ones stay, in the order of their numbers.
+/// Numbered poses by remarks; other points are via points: the numbered ones stay, in the order of their numbers.
 void keep_numbered(PoseList& list) {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < list.own_ids.size(); ++k)

@@ -70,7 +70,7 @@ class ColumnMap {
   /// A choice among one thing needs no column.
   static bool needs_column(const Coordinate& c) { return !c.choice() || (c.labels.size() > 1 && c.arrives.empty()); }
 
-  /// Where no column says from which side a joint arrived, its last motion in the order of the list does.
+  /// Without a column for the side of arrival, a joint's last motion in the order of the list gives it.
   void arrive_in_order(std::size_t approach) {
     const Coordinate& c = coordinates_[approach];
     const auto joint = std::size_t(

@@ -12,7 +12,7 @@ constexpr std::size_t most_lines = 5;
 // rad and m: rows of one id may differ by so much, as encoders jitter.
 constexpr double jitter = 1e-3;
 
-/// What instruments write for nothing, in m and in mm.
+/// Values that instruments write for no reading, in m and in mm.
 bool is_code(double value) {
   for (const double code : {9999.0, 99999.0})
     for (const double unit : {1.0, 1e-3})

@@ -55,7 +55,7 @@ class Campaigns : public IdentificationModel {
   }
   int first_of(int campaign) const { return own_ + int(base_.size()) * (campaign - 1); }
 
-  /// Which parameter of the model inside moves the readings of a campaign as this one does; −1: none.
+  /// Parameter of the inner model with the same effect on a campaign's readings; −1: none.
   int moves(int index, int campaign) const {
     if (index >= int(parameters_.size())) return index - int(parameters_.size()) + own_;  // along the tip's twists
     if (index >= own_) {

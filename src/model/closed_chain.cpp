@@ -344,7 +344,7 @@ Frame<TaylorModel> constant_frame(const Eigen::Isometry3d& X) {
   return frame;
 }
 
-/// Who moves the tip by a twist changes the residual as if the platform had moved back: column −rows · twist.
+/// A twist of the tip changes the residual like an opposite motion of the platform: column −rows · twist.
 void fill_column(const EnclosedMatrix& rows, const Twist& twist, Eigen::Index c, EnclosedMatrix& parameter) {
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     TaylorModel sum;

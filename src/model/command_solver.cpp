@@ -43,7 +43,7 @@ TipError tip_error(const Error& e) { return {e.head<3>().norm(), e.tail<3>().nor
 
 }  // namespace
 
-/// Everything of one pose that is being solved; one a thread.
+/// Working data of one pose; one per thread.
 struct CommandSolver::Work {
   Eigen::Isometry3d target, X;
   Error e;                                     ///< at u; its last three count only where the orientation does

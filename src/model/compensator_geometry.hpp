@@ -6,8 +6,8 @@
 
 namespace posewright {
 
-/// Where the pins of a gravity compensator are: markers on the fixed pin P0 and on the link's pin P1 are measured over
-/// the joint's range. In a frame with the joint's axis as z through its origin P2 (theory.md eq. (12)):
+/// Positions of the pins of a gravity compensator: markers on the fixed pin P0 and on the link's pin P1 are measured
+/// over the joint's range. In a frame with the joint's axis as z through its origin P2 (theory.md eq. (12)):
 ///   P0 = −(ax, ay, 0),  P1 = L (sin(q2 + offset), cos(q2 + offset), 0).
 /// Configuration: q2 (rad). Rows: P0 and P1 in the measurement frame. Parameters: L, ax, ay (m), q2.offset (rad),
 /// base.{x,…,rz} (the axis in the measurement frame).

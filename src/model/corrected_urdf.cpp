@@ -32,7 +32,7 @@ std::map<std::string, std::size_t> joint_tags(const std::string& text) {
   return result;
 }
 
-/// What a macro's text says of a name: ${…} and $(…) stand for anything.
+/// Pattern of a name in a macro's text: ${…} and $(…) match anything.
 bool may_be(std::string_view pattern, std::string_view name) {
   const std::size_t dollar = std::min(pattern.find("${"), pattern.find("$("));
   if (dollar == std::string_view::npos) return pattern == name;

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// How far a sphere on the tip travels from one configuration to another, e.g. by a ball bar's two ends or a cable
+/// Distance of a sphere on the tip between two configurations, e.g. by a ball bar's two ends or a cable
 /// sensor read twice: d = ‖p(q') − p(q)‖ for each target. Configuration: q, then q' (coordinates NAME.second), then
 /// what is chosen for both (the load case). Parameters: the robot's without tool.*, target.NAME.{x,y,z}. Where the base
 /// stands has no effect.
@@ -29,7 +29,7 @@ class DistancePairModel : public IdentificationModel {
   bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
                     const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
   bool do_actuator_values(const Point& at, std::span<double> values) const override;
-  /// That of the second configuration.
+  /// Offset of the second configuration.
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 
   /// The robot's own coordinates at the first (0) or second (1) end.

@@ -259,7 +259,7 @@ struct ElasticChain::Bent {
   Twists twists, readings;
   TipAdjoint f;
 
-  /// What a gear makes of a reading; a deflection does not go through it.
+  /// Joint angle behind a gear for a reading; a deflection does not pass the gear.
   double gear(const ChainLayout& layout, int joint) const {
     return 1 + (rigid.empty() ? 0.0 : rigid[std::size_t(layout.offset[std::size_t(joint)]) + 1]);
   }

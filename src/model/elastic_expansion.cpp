@@ -44,14 +44,14 @@ double largest_by_frequencies(const std::vector<double>& coefficients, std::size
   return sum * rounded_up;
 }
 
-/// What a column's parameter does to a point: turns all that is carried from a place of the chain on, or moves it.
+/// Effect of a column's parameter on a point: a rotation or translation of the chain from a place on.
 /// Places count the joints before, times 2: a joint's own displacement stands before its turn.
 struct Motion {
   int place;
   bool turns;
 };
 
-/// What a joint's own turn does, and what the tip carries.
+/// Effects of a joint's own turn and of parts on the tip.
 Motion turn_of(std::size_t joint) { return {2 * int(joint) + 1, true}; }
 Motion carried_by_tip(const ChainDescription& chain) { return {2 * int(chain.joints.size()), false}; }
 
@@ -61,7 +61,7 @@ std::size_t joint_of(const ChainDescription& chain, int coordinate) {
   return k;
 }
 
-/// Of a parameter of the chain without springs; beyond its catalogue: what the tip carries.
+/// Effect of a parameter of the chain without springs; beyond its catalogue: parts on the tip.
 Motion motion_of(const ChainDescription& chain, const ChainLayout& layout, int parameter) {
   if (parameter < 6) return {-1, parameter >= 3};
   for (std::size_t k = 0; k < chain.joints.size(); ++k) {

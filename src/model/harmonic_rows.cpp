@@ -108,7 +108,7 @@ class ExplicitRows : public HarmonicRows {
   Eigen::MatrixXd K_;  // what the joints' readings are off by, for each column
 };
 
-/// Of one target alone the displacement of a visit is noise of its reading; several share it.
+/// Displacement of a visit: noise of the reading for one target, shared by several targets.
 void ExplicitRows::take_displacement(const Repeatability& repeatability) {
   const double alone = repeatability.independent * repeatability.independent;
   const double common = repeatability.translation * repeatability.translation;
@@ -176,7 +176,7 @@ void ExplicitRows::take_spreads() {
   }
 }
 
-/// Of whitened columns: points' changes are off by what the tip says, at each point's distance from its origin.
+/// Remainders of whitened columns: those of the tip, at each point's distance from its origin.
 void ExplicitRows::take_remainders(const std::vector<HarmonicColumns::Remainder>& remainders) {
   const Eigen::Isometry3d at_the_tip = Eigen::Isometry3d::Identity();
   const MeasurementModel::Sighting sighting{at_the_tip, own_correction(), station_};
@@ -358,7 +358,7 @@ void ExplicitRows::tune(const std::vector<std::vector<double>>& configurations, 
   K_ = normal.llt().solve(right);
 }
 
-/// Whether an instrument's rows are changes of points, three a point, in all directions alike.
+/// True if an instrument's rows are changes of points, three a point, in all directions alike.
 bool reads_points(const MeasurementModel& measurement, const HarmonicNoise& noise) {
   const MeasurementModel& instrument = noise.instead != nullptr ? *noise.instead : measurement;
   const Eigen::Index rows = instrument.rows();

@@ -11,7 +11,7 @@
 
 namespace posewright {
 
-/// Of a robot's tip seen by an instrument. Arguments must outlive it.
+/// Harmonic rows of a robot's tip and an instrument. Arguments must outlive it.
 /// @param tip_parameters  how many of the tip's parameters are in use; the instrument's follow
 /// @param at  its choices and corrections count
 /// @return null if nothing bounds the sensitivity; `why_not` says why

@@ -10,10 +10,10 @@ InstrumentView view_of(const DistanceMeasurement& distance);
 
 /// Variance of one distance reading d: (sigma + sigma_per_m d)²/repeats.
 double distance_variance(const DistanceMeasurement& spec, double d, double repeats);
-/// Whether the instrument can span d; distances under a micrometre have no direction.
+/// True if the instrument can span d; distances under a micrometre have no direction.
 bool spans(const DistanceMeasurement& spec, double d);
 
-/// Of one distance: how many margins its range has, and these (IdentificationModel::measurable_margins()).
+/// Margins of one distance's range: their number, and values (IdentificationModel::measurable_margins()).
 int span_margins(const DistanceMeasurement& spec);
 void span_margins_at(const DistanceMeasurement& spec, double d, std::span<double> out);
 

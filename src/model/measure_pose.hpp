@@ -31,7 +31,7 @@ class PoseModel : public MeasurementModel {
   Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 
  private:
-  /// Of points whose noise has no direction: that at the measurement frame's own axes, turned.
+  /// Noise of points without direction: at the measurement frame's own axes, turned.
   Eigen::Matrix<double, 6, 6> fitted_covariance(const Eigen::Matrix3d& R) const;
 
   PoseMeasurement spec_;

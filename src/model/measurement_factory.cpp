@@ -29,13 +29,13 @@ Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
 }
 Measurement model_of(const JointsMeasurement&, const MeasurementSpec&) { return nullptr; }
 
-/// What does not say what it looks at looks at nothing.
+/// Empty view for an instrument without one.
 template <class Instrument>
 InstrumentView view_of(const Instrument&) {
   return {};
 }
 
-/// What is not a view of one tip makes its readings of the robot itself.
+/// Models without a view of one tip, made from the robot itself.
 using Model = std::unique_ptr<IdentificationModel>;
 template <class Instrument>
 Model model_without_view(const Instrument&, std::unique_ptr<TipModel>, const Problem&) {

@@ -86,7 +86,7 @@ LinkPtr given_link(const UrdfDocument& urdf, const std::string& name, const std:
                    fmt::format("links: {}", fmt::join(names, ", ")));
 }
 
-/// What the first moving joint stands on; a link above it that is called as a base and that nothing moves.
+/// Parent of the first moving joint, or a fixed link above it with the name of a base.
 std::string base_of(const urdf::ModelInterface& model, LinkPtr tip) {
   std::vector<LinkPtr> way;
   for (LinkPtr link = tip;; link = model.getLink(link->parent_joint->parent_link_name)) {

@@ -9,10 +9,10 @@ namespace posewright {
 /// @param p  origin of the tip in M, m
 Twist unit_displacement(const Eigen::Vector3d& p, int k);
 
-/// How many twists a visit's displacement of the tip has: 0, 3 (a translation) or 6 (a rotation about the tip, too).
+/// Number of twists of a visit's displacement of the tip: 0, 3 (a translation) or 6 (a rotation about the tip, too).
 int displacement_size(const Repeatability& repeatability);
 
-/// What stays at a pose for the whole visit: the tip stands off by a random twist e, the same for all that is read
+/// Repeatability: the tip is displaced by a random twist e for the whole visit, equal for all readings
 /// there, so that the readings' covariance is A Σ_e Aᵀ with A the readings' derivative along the twists of the tip.
 /// Fills `twists` (6 × displacement_size()) with the columns of Σ_e^{1/2} as spatial twists in M.
 /// @param p  origin of the tip in M, m

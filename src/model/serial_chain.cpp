@@ -11,7 +11,7 @@
 namespace posewright {
 namespace {
 
-/// Everything of one configuration that columns are made of: displacement axes of base, joints and tool, joint axes.
+/// Data of one configuration for columns: displacement axes of base, joints and tool, joint axes.
 struct ChainState {
   std::array<DisplacementAxes, max_joints + 2> displacement;
   std::array<Twist, max_joints> motion;

@@ -30,7 +30,7 @@ constexpr int first_of_matrix = 1 + leg_count;
 
 enum Entry { ax, ay, az, bx, by, bz, ux, uy, length };
 
-/// What the columns of leg parameters mean, in the order of the catalogue.
+/// Meaning of the columns of leg parameters, in the order of the catalogue.
 constexpr std::array<Entry, 9> slide_entries = {ax, ay, az, bx, by, bz, ux, uy, length};
 constexpr std::array<Entry, 7> extend_entries = {ax, ay, az, bx, by, bz, length};
 constexpr std::array<const char*, 9> entry_names = {"ax", "ay", "az", "bx", "by", "bz", "ux", "uy", "l"};
@@ -75,7 +75,7 @@ struct Deformation {
   }
 };
 
-/// Which actuator lifts leg i's joint by parameter `index` of the deformation; −1: none does.
+/// Actuator that lifts leg i's joint by parameter `index` of the deformation; −1: none.
 int lifting_actuator(int index, int leg) {
   if (index == 0) return leg;
   if (index < first_of_matrix) return index - 1 == leg ? leg : -1;

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// The same URDF as tinyxml2 sees it: urdfdom knows no lines and reads "1,5" as 1.
+/// Lines and numbers of the URDF by tinyxml2: urdfdom knows no lines and reads "1,5" as 1.
 class UrdfLines {
  public:
   /// Throws InputError if the text is not XML, has no <robot>, or a number in it is malformed or not finite.

@@ -48,14 +48,14 @@ Coordinate coordinate_of(const urdf::Joint& joint, const SourcePlace& place) {
   return c;
 }
 
-/// Whether a file says where a follower ends: 0 and 0 is the format's way to say nothing.
+/// True if a file limits a follower: 0 and 0 is the format's word for no limits.
 bool has_own_end(const urdf::Joint& follower) {
   if (follower.type == urdf::Joint::CONTINUOUS) return true;
   return (follower.type == urdf::Joint::REVOLUTE || follower.type == urdf::Joint::PRISMATIC) &&
          follower.limits != nullptr && (follower.limits->lower != 0 || follower.limits->upper != 0);
 }
 
-/// What a joint that follows `master` allows it: its own limits, soft limits and velocity.
+/// Limits of `master` by a joint that follows it: its own limits, soft limits and velocity.
 void bind_follower(Coordinate& master, const urdf::Joint& follower, const SourcePlace& place) {
   if (!has_own_end(follower)) return;
   const double factor = follower.mimic->multiplier, offset = follower.mimic->offset;

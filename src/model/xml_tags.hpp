@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// Where an attribute's value stands in a text, between its quotes.
+/// Position of an attribute's value in a text, between its quotes.
 struct XmlAttribute {
   std::string_view name;
   std::size_t begin = 0, end = 0;

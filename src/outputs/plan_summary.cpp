@@ -111,7 +111,7 @@ std::string curve_text(const Plan& plan) {
   return "Smallest number of poses that reaches what is required:\n" + table.text();
 }
 
-/// What a lost pose costs: the one that hurts most.
+/// Remaining efficiency after the loss of the worst pose.
 std::string reserve_text(const Plan& plan) {
   const PlannedPose* worst = nullptr;
   for (const PlannedPose& pose : plan.poses)
@@ -247,7 +247,7 @@ std::string dropped_text(const Plan& plan) {
   return text.empty() ? text : "Dropped, because the measurement cannot identify them separately from others:\n" + text;
 }
 
-/// Where candidates were lost, most first: what to move so that fewer are.
+/// Rejected candidates by reason, most frequent first.
 std::string rejection_table(const PlanStatistics& s) {
   if (s.rejected.empty()) return {};
   std::vector<std::pair<std::string, long>> rows = s.rejected;
@@ -304,7 +304,7 @@ std::string candidates_text(const Plan& plan) {
   return text;
 }
 
-/// Nothing for a list that is given: what it prints is then the same in every run.
+/// Empty for a given list: its output is then equal in every run.
 std::string search_text(const Plan& plan) {
   if (plan.method == "given") return {};
   return fmt::format("Search ({}): {} restarts, {} exchanges, {:.1f} s\n", plan.method, plan.statistics.restarts,

@@ -8,7 +8,7 @@
 namespace posewright {
 
 nlohmann::ordered_json sight_json(const TargetSight& sight);
-/// Of a parallel robot, by name.
+/// Actuators of a parallel robot, by name.
 nlohmann::ordered_json actuators_json(const PlannedPose& pose);
 /// null if there is none
 nlohmann::ordered_json nearest_json(const std::optional<BodyDistance>& nearest);

@@ -16,7 +16,7 @@ std::size_t width(const std::string& text) {
   return std::size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
 }
 
-/// How a unit is shown: what SI is multiplied by, and what is written behind.
+/// Display of a unit: factor of SI, and its name.
 struct Shown {
   double factor;
   std::string suffix;

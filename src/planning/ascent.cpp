@@ -59,7 +59,7 @@ class Evaluator {
     return std::isfinite(value) ? value : floor_ - 1 - std::abs(floor_);
   }
 
-  /// Whether the smooth bounds of the feasible set are known: then f counts beyond them too, and margins() holds the
+  /// True if the smooth bounds of the feasible set are known: then f counts beyond them too, and margins() holds the
   /// search.
   bool follows_margins() const { return margin_count_ > 0; }
   std::size_t margin_count() const { return margin_count_; }
@@ -70,7 +70,7 @@ class Evaluator {
     floor_ = highest_ = best_.value;
   }
 
-  /// What must be ≤ 0: the margins less a little, so that where they end is still within; and their derivatives by u.
+  /// Constraints ≤ 0: the margins less a little, so that their boundary is still feasible; and their derivatives by u.
   void bounds(const std::vector<double>& u, double* result, double* gradient) {
     place(u);
     margins_at(q_, result);
@@ -103,7 +103,7 @@ class Evaluator {
   bool can_move() const { return !moving_.empty() && std::isfinite(best_.value); }
 
  private:
-  /// Where they have no values, nothing is within.
+  /// Without values, no point is feasible.
   void margins_at(std::span<const double> q, double* result) {
     if (!probe_.margins(q, std::span(result, margin_count_))) std::fill_n(result, margin_count_, no_margin);
     for (std::size_t m = 0; m < margin_count_; ++m) result[m] = kept_margin - result[m];

@@ -12,7 +12,7 @@ class BernsteinTensor {
  public:
   /// @param small  monomials of the highest degrees in a variable are not expanded where their sizes sum up to less
   void take(const TaylorModel& f, double small);
-  /// What f does not exceed in the box: its radius, what was not expanded and all rounding are counted in.
+  /// Upper bound of f in the box, with its radius, the remainder and all rounding.
   double largest() const;
   /// Variable along which the coefficients vary most.
   int most_varied() const;

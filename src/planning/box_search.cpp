@@ -15,7 +15,7 @@ namespace {
 // Boxes of one round; more threads than this would have nothing to do.
 constexpr std::size_t boxes_a_round = 16;
 
-/// What a judge says of a box, and left of it: each field, in the order of the bytes.
+/// Verdict of a judge on a box, with its bounds: each field, in the order of the bytes.
 template <class Box, class Found, class Visit>
 void each_field(Box& box, Found& found, const Visit& visit) {
   visit(box.lower);

@@ -30,7 +30,7 @@ class BoxSum {
 
   const std::vector<double>& coefficients() const { return sum_.now; }
   const std::vector<int>& sizes() const { return sum_.terms; }
-  /// Of each coefficient, at most.
+  /// Upper bound of each coefficient.
   double rounding() const { return rounding_; }
 
  private:

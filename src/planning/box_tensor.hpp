@@ -20,7 +20,7 @@ class BoxTensor {
   /// Turns coefficients() into quotients.
   /// @param most  sum of the sizes of all that the coefficients are sums of: rounding goes with it
   void put(const SearchBox& box, double most);
-  /// The same without the quotients: coefficients with Π(1 + u²)^D in them.
+  /// Variant without the quotients: coefficients with Π(1 + u²)^D in them.
   void put_weighted(const SearchBox& box, double most);
   /// Quotients that are there already, so many along each axis, each off by `rounding` at most.
   void take(const std::vector<double>& quotients, const std::vector<int>& terms, double rounding);
@@ -37,7 +37,7 @@ class BoxTensor {
   /// Coefficient nearest to the place of another's, whatever its degrees.
   double near(std::size_t index, const BoxTensor& of) const;
 
-  /// What no value exceeds, and what none is below; rounding is counted in.
+  /// Upper and lower bound of all values, with rounding.
   double largest() const;
   double smallest() const;
   /// Axis along which the quotients vary most; of one that follows another, the other.

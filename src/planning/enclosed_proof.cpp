@@ -20,7 +20,7 @@ constexpr double same_value = 1e-7;
 constexpr int poses_compared = 100;
 constexpr std::uint64_t enclosed_stream = 0x9f00f;
 
-/// Whether d of blocks is within the enclosure at random feasible places, up to rounding.
+/// True if d of blocks is within the enclosure at random feasible places, up to rounding.
 bool is_the_same(const WorkspaceBound& found, const ConfigurationSpace& space, int rows, std::uint64_t seed) {
   const auto enclosure = space.enclosure(found.factor);
   const auto probe = space.probe();

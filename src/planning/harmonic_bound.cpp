@@ -41,7 +41,7 @@ CommonDegrees common_degrees(const HarmonicForm& form, const HarmonicDegrees& sq
   return result;
 }
 
-/// What the function is nowhere below, to a percent of its range or so.
+/// Lower bound of the function, to about a percent of its range.
 double smallest_value(const HarmonicFunction& function, int threads) {
   BoxSearchOptions options;
   options.tolerance = 1e-2;

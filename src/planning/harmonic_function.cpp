@@ -26,7 +26,7 @@ double basis(const HarmonicAxis& axis, int k, double x) {
   return k % 2 == 1 ? std::cos(n * x) : std::sin(n * x);
 }
 
-/// Where a function of this degree is interpolated along an axis.
+/// Nodes of interpolation for a function of this degree along an axis.
 double node(const HarmonicAxis& axis, int degree, int k) {
   if (axis.turns) return axis.lower + 2 * std::numbers::pi * k / (2 * degree + 1);
   return degree == 0 ? axis.lower : axis.lower + width_of(axis) * k / degree;

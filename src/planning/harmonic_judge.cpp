@@ -80,7 +80,7 @@ void HarmonicJudge::judge(SearchBox& box, double enough, LargestFound& found) {
   choose_axis(box, middle);
 }
 
-/// Where the distances vary much or factors' bounds are loose, what makes those tighter; else where the tensor bends.
+/// Axis to halve: the one that tightens loose distances or factors; else the one with most curvature of the tensor.
 void HarmonicJudge::choose_axis(SearchBox& box, double middle) {
   box.longest = tensor_.most_bent();
   double widest = far_and_near;

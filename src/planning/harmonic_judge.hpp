@@ -28,7 +28,7 @@ class HarmonicJudge : public BoxJudge {
   void place(const Axis& value_of);
   /// The sensitivity at those values; `found` takes it if no limit forbids them.
   double look(const SearchBox& box, LargestFound& found);
-  /// What the bounds of factors add to the sensitivity where it was looked at last. @param loosest  term of the most
+  /// Excess of the sensitivity by the bounds of factors at the last place. @param loosest  term of the most
   double loose_bound(std::size_t& loosest) const;
   void choose_axis(SearchBox& box, double middle);
 

@@ -10,12 +10,12 @@
 
 namespace posewright {
 
-/// What a form says of feasible configurations, as functions over boxes (theory.md eq. (58)).
+/// Limits of a form on feasible configurations, as functions over boxes (theory.md eq. (58)).
 class HarmonicLimits {
  public:
   /// Limits whose values are no polynomials of the stated degrees are left out.
   HarmonicLimits(const HarmonicForm& form, std::uint64_t seed, int threads);
-  /// Of the limits along every axis.
+  /// Degrees of the limits along every axis.
   const std::vector<int>& degrees() const { return degrees_; }
 
  private:
@@ -48,10 +48,10 @@ class BoxLimits {
   /// @param divisor  weighted: what the bound was divided by
   /// @return false: nothing in the box is feasible
   bool lower(const SearchBox& box, const BoxTensor& divisor, double enough, BoxTensor& bound);
-  /// Of a box whose middle is forbidden: what is feasible may be less than its bound knows, so that it is halved along
+  /// Axis for a box with a forbidden middle: its feasible part may be smaller than its bound, so it is halved along
   /// the axis of the most varied limit if it is wider there than along its own.
   void take_turn(SearchBox& box) const;
-  /// Whether all limits hold at values of the axes.
+  /// True if all limits hold at values of the axes.
   bool allow(std::span<const double> values, HarmonicForm::Evaluator& evaluator);
 
  private:

@@ -4,8 +4,8 @@
 
 namespace posewright {
 
-/// Of a function at 2D + 1 equispaced angles of one axis: the highest harmonic whose amplitude is more than `nothing`,
-/// or is no number; 0: none.
+/// Highest harmonic of a function at 2D + 1 equispaced angles of one axis, with an amplitude above `nothing`
+/// or NaN; 0: none.
 int highest_harmonic(std::span<const double> values, double nothing);
 
 }  // namespace posewright

@@ -26,7 +26,7 @@ inline std::optional<double> interpolation_error(const HarmonicFunction& f,
   return difference_factor * difference + own_rounding * size;
 }
 
-/// Of values without cancellation: the largest of them is their size.
+/// Error of values without cancellation: their largest is their size.
 inline std::optional<double> interpolation_error(const HarmonicFunction& f,
                                                  const std::vector<std::vector<double>>& places,
                                                  const std::vector<double>& values) {

@@ -19,7 +19,7 @@ class PartSquares {
   PartSquares(const HarmonicForm& form, const Eigen::MatrixXd& T) : form_(form), T_(T), evaluator_(form.evaluator()) {}
 
   HarmonicForm::Evaluator& evaluator() { return *evaluator_; }
-  /// Of the place that was asked for last, one a part; and squares of the distances there.
+  /// Values at the last place, one per part; and squared distances there.
   const std::vector<double>& squares() const { return squares_; }
   const std::vector<double>& distances() const { return distances_; }
 
@@ -73,7 +73,7 @@ inline std::vector<int> larger_of(std::vector<int> a, const std::vector<int>& b)
   return a;
 }
 
-/// Where coefficients of lower degrees stand among those of higher ones.
+/// Positions of coefficients of lower degrees among those of higher ones.
 inline std::vector<std::size_t> places_in(const std::vector<HarmonicAxis>& axes, const std::vector<int>& low,
                                           const std::vector<int>& high) {
   std::vector<std::size_t> places{0};

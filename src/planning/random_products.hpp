@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What ‖B T − Z U‖² + ‖U‖² is made of at values of a form's axes (theory.md eq. (60)). One thread's.
+/// Terms of ‖B T − Z U‖² + ‖U‖² at values of a form's axes (theory.md eq. (60)). One thread's.
 class RandomProducts {
  public:
   /// @param T  undivided: columns of B × any

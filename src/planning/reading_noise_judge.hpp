@@ -19,7 +19,7 @@ class ReadingNoiseJudge : public BoxJudge {
   void judge(SearchBox& box, double enough, LargestFound& found) override;
 
  private:
-  /// Of a place in the box with this d.
+  /// Records a place in the box with this d.
   void look(const SearchBox& box, const std::vector<double>& values, double d, LargestFound& found);
   /// All terms of the sum for the fitted U. @return more than they are off by
   double combine();

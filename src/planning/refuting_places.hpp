@@ -11,7 +11,7 @@
 
 namespace posewright {
 
-/// What a judge keeps of the places that it sees. One thread's.
+/// Memory of a judge for its places. One thread's.
 class RefutingPlaces {
  public:
   /// @param refutation  null: nothing is kept

@@ -43,7 +43,7 @@ class RestrictedDesign {
   const Eigen::VectorXd& weights() const { return w_; }
   double price() const { return lambda_; }
   double value() const { return expansion_->value; }
-  /// What the prior has of Σ w_i d_i + tr(S prior) = degree; 0 without one.
+  /// Share of the prior in Σ w_i d_i + tr(S prior) = degree; 0 without one.
   double prior_sensitivity() const { return prior_sensitivity_; }
   /// T of S = T Tᵀ, for the pass over all candidates.
   const Eigen::MatrixXd& factor() const { return expansion_->factor; }

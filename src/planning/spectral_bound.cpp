@@ -34,7 +34,7 @@ class EigenvalueBound {
     known_ = options.prior.size() > 0 ? options.prior : Eigen::MatrixXd::Zero(m, m);
   }
 
-  /// Of the eigenvalues, not of their roots; `attained` is what numbers that need not be whole reach.
+  /// Bound of the eigenvalues, not of their roots; `attained` is the value of fractional numbers.
   struct Result {
     double bound = std::numeric_limits<double>::infinity(), attained = 0.0;
   };
@@ -145,7 +145,7 @@ class EigenvalueBound {
     return {sum, most};
   }
 
-  /// Those that carry numbers stay, those above the price come in; false if none does.
+  /// Keeps candidates with positive numbers and adds those above the price; false if none is.
   bool next_working_set() {
     std::vector<std::pair<int, double>> kept;
     std::vector<bool> inside(value_.size(), false);

@@ -75,7 +75,7 @@ double largest_mean(SpreadBlocks& candidates, double cap) {
   return sum;
 }
 
-/// Those that carry weight, at least `least` candidates, and the worst violators of the price.
+/// Candidates with weight, at least `least`, and the worst violators of the price.
 std::vector<int> next_working_set(const RestrictedDesign& restricted, const Pool& pool, SpreadBlocks& candidates,
                                   std::size_t least, std::size_t room) {
   const std::size_t size = restricted.candidates().size();

@@ -66,7 +66,7 @@ void append(Pool& pool, const Places& found, ConfigurationSpace::Probe& probe) {
   pool.blocks = std::move(grown);
 }
 
-/// Whether two configurations are one for a local search: no coordinate differs by this share of its range or more.
+/// True if two configurations are equal for a local search: no coordinate differs by this share of its range or more.
 bool is_same_place(const std::vector<ConfigurationSpace::Axis>& axes, std::span<const double> a,
                    std::span<const double> b, double share) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -131,7 +131,7 @@ void add_drawn(Places& starts, std::size_t candidates, const ConfigurationSpace&
     enter(starts, space.candidate(random.index(int(candidates))), space, start_distance);
 }
 
-/// Where the local searches start, no two in one place: the pool's largest d, the largest d at ends of coordinates
+/// Starts of the local searches, no two in one place: the candidates' largest d, the largest d at ends of coordinates
 /// and of all candidates, and candidates that are drawn. What is drawn depends on the seed and the round alone: not on
 /// an order of d that the last bit may turn.
 Places starts_of(const ApproximateDesign& design, const Pool& pool, const std::vector<double>& of_candidates,
@@ -327,7 +327,7 @@ class ColumnGeneration {
     return evaluations_ == options_.evaluations && (result_.max_ratio <= 1 + options_.tolerance || found_.empty());
   }
 
-  /// Whether searches from drawn candidates alone come to the same end.
+  /// True if searches from drawn candidates alone have the same result.
   void confirm() {
     if (result_.max_ratio > 1 + settled_within) return;
     evaluations_ = options_.evaluations;

@@ -44,12 +44,12 @@ WeightedConfigurations support_of(const WorkspaceBound& found, const Configurati
   return result;
 }
 
-/// Whether factors depend on distances, of an arm with more than a few joints.
+/// True if factors depend on distances, of an arm with more than a few joints.
 bool grows_with_distance(const HarmonicForms& forms) {
   return !forms.forms.front()->distance_degrees().empty() && forms.forms.front()->axes().size() > axes_at_once;
 }
 
-/// How far the forms' bound is above d where the weights are, on average: a proof by it is no better.
+/// Mean excess of the forms' bound over d at the weights: a limit of the proof.
 double looseness(const HarmonicForms& forms, const WeightedConfigurations& where, const ConfigurationSpace& space,
                  const Eigen::MatrixXd& T, int rows) {
   const auto probe = space.probe();
@@ -70,14 +70,14 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
   return direct > 0 ? bound / direct - 1 : 0.0;
 }
 
-/// How the largest d of a space is bounded.
+/// Method for bounding the largest d of a space.
 struct Approach {
   HarmonicForms forms;
   std::vector<HarmonicDegrees> degrees{};  ///< of the forms' squares
   bool noise_by_boxes = false;             ///< a matrix for joints' noise for each box (theory.md eq. (61))
 };
 
-/// Whether joints' noise that one matrix for the whole workspace bounds so loosely is bounded by boxes: that takes a
+/// True if joints' noise is bounded by boxes, because one matrix for the whole workspace is loose: that takes a
 /// minute where there are more than a few joints.
 bool bounds_noise_by_boxes(const HarmonicForms& forms, double loose, const ProofLimits& limits) {
   if (!(loose > hardly_loose) || forms.forms.front()->random_columns() == 0) return false;
@@ -158,7 +158,7 @@ BoxSearchOptions limits_of(const Functions& functions, const WorkspaceBound& fou
   return limits;
 }
 
-/// What the boxes tell.
+/// Result of the boxes.
 void take(const BoxSearchResult& most, const HarmonicForms& forms, const ConfigurationSpace& space, double extra,
           WorkspaceBound& found) {
   WorkspaceProof& proof = found.proof;

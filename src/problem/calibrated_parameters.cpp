@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t parameters_size_limit = 10'000'000;
 
-/// {value: …, unit: …}; what else stands there is for people.
+/// {value: …, unit: …}; what else stands there is for messages.
 ParameterEntry read_entry(const yaml::Entry& entry) {
   const yaml::Section section(entry.value);
   // "{value: 0,1}" is a value 0 beside an empty key 1.

@@ -52,7 +52,7 @@ std::vector<fs::path> search_folders(const fs::path& around) {
   return folders;
 }
 
-/// Whether the folder's package.xml says that it is package `name`.
+/// True if the folder's package.xml names package `name`.
 bool declares(const fs::path& folder, const std::string& name) {
   std::error_code code;
   if (!fs::is_regular_file(folder / "package.xml", code)) return false;

@@ -61,7 +61,7 @@ DesignSpec::MinimumDistance read_minimum_distance(const Value& value) {
   return distance;
 }
 
-/// What is required is somebody's drawing or contract: 0.1 without a unit would be 0.1 m.
+/// Requirements come from a drawing or contract: 0.1 without a unit would be 0.1 m.
 double required_number(const Value& value, Quantity quantity) {
   const Measured number = value.measured({quantity}, Sign::positive);
   if (number.quantity != quantity) value.fail("has no unit", "allowed: " + allowed_units({quantity}));
@@ -121,7 +121,7 @@ void read_poses(const Value& value, DesignSpec& design) {
   if (!design.smallest) design.poses = read_count(value, std::numeric_limits<int>::max());
 }
 
-/// What is maximised.
+/// Criterion to maximise.
 void read_aim(const Section& section, const std::vector<VariantSpec>& variants, const std::filesystem::path& folder,
               DesignSpec& design) {
   if (const Value* variant = section.find("variant")) {

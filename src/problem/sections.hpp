@@ -16,7 +16,7 @@ namespace posewright {
 RobotSpec read_robot(const yaml::Value& value, const std::filesystem::path& file, const Packages& packages);
 
 bool is_xacro(const std::filesystem::path& file);
-/// What the program `xacro` makes of the arm's file. Throws at `urdf` where arguments without default are missing,
+/// Expansion of the arm's file by the program `xacro`. Throws at `urdf` where arguments without default are missing,
 /// where there is no such program, and where it fails.
 std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf);
 

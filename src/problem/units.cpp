@@ -48,7 +48,7 @@ constexpr std::array<Unit, 25> units{{
     {"mm/s2", Quantity::acceleration, 1, 1e3},
 }};
 
-/// What no robot, cell or instrument has more of, SI: mostly a unit that was forgotten.
+/// Largest plausible values of robot, cell or instrument, SI: beyond, a unit was probably forgotten.
 struct Plausible {
   Quantity quantity;
   double most;

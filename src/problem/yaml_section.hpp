@@ -35,7 +35,7 @@ class Value {
 
   /// Text of a scalar: not empty, no control characters. `expected` describes it in the message.
   std::string text(const std::string& expected = "a text is expected") const;
-  /// The same where nothing may be meant, too: prefix: "".
+  /// Variant that allows an empty text: prefix: "".
   std::string text_or_nothing() const;
   Located<std::string> located_text() const { return {text(), line_, column_}; }
   /// Text that names one thing: no `*` or `?`.

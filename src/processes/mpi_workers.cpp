@@ -58,7 +58,7 @@ class Pool {
     running_ += count;
     for (std::size_t i = 0; i < count; ++i) wanted_.notify_one();
   }
-  /// What is finished after this time, or as soon as there is something and no task in the queue. Throws what a task
+  /// Results finished by this time, or as soon as there is one and the queue is empty. Throws what a task
   /// threw.
   Results take(std::chrono::nanoseconds pause) {
     std::unique_lock lock(mutex_);
@@ -69,7 +69,7 @@ class Pool {
   }
   /// Tasks that were given and not taken.
   std::size_t running() const { return running_; }
-  /// How many more it should be given now.
+  /// Number of further tasks to give it now.
   std::size_t wanted() {
     const std::scoped_lock lock(mutex_);
     const auto threads = double(threads_.size());
@@ -118,7 +118,7 @@ class Pool {
   std::vector<std::jthread> threads_;  // last: they end before what they use
 };
 
-/// How long to wait for the next message.
+/// Time to wait for the next message.
 class Pause {
  public:
   /// @param busy  all threads have something to do
@@ -248,7 +248,7 @@ class MpiWorkers : public Workers {
     outbox_.wait_for_all();
   }
 
-  /// Of a group, as the first process sees it.
+  /// State of a group in the first process.
   struct Open {
     const std::vector<std::size_t>& indices;
     std::size_t next, results;  // to be given, to come

@@ -19,7 +19,7 @@ struct Verdict {
   std::string why;
 };
 
-/// Whether the instruction moves the robot, to whatever.
+/// True if the instruction moves the robot.
 bool is_motion(const Use& use) {
   return use.role != Role::operand && use.role != Role::changed && use.role != Role::passed;
 }
@@ -51,7 +51,7 @@ std::string scope_of(const ReadProgram& program) {
   return "";
 }
 
-/// Where the first of each kind of use is.
+/// Place of the first use of each kind.
 struct Tally {
   std::map<Role, const Use*> first;
   std::vector<FramePair> frames;  ///< that motions to it are in

@@ -24,7 +24,7 @@ struct Accounted {
       measured;  ///< one a point: number of the pose where a remark, as programs of `export` have it, says so
 };
 
-/// What becomes of every point and motion, by the uses of all programs.
+/// Outcome of every point and motion, by the uses of all programs.
 std::vector<Accounted> account_for(const std::vector<ReadProgram>& programs, const ProgramRobot& robot);
 
 }  // namespace posewright::programs

@@ -56,7 +56,7 @@ void AxisCounter::name_axes() {
   axes_.assign(language_.axes.begin(), language_.axes.begin() + std::ptrdiff_t(names_.size()));
 }
 
-/// Of an axis of the language among the joints; their number: it is none of them.
+/// Index of an axis of the language among the joints; their number if it is none.
 std::size_t AxisCounter::index_of(std::size_t axis) const {
   if (axis >= language_.axes.size()) return axes_.size();
   return std::size_t(std::find(axes_.begin(), axes_.end(), language_.axes[axis]) - axes_.begin());

@@ -18,7 +18,7 @@ class AxisCounter {
   AxisCounter(const Language& language, std::vector<std::string> names, std::vector<std::string> units,
               const ControllerSettings& settings, std::optional<double> coupling);
 
-  /// What the program calls the joints, in the robot's order.
+  /// Names of the joints in the program, in the robot's order.
   const std::vector<std::string>& axes() const { return axes_; }
   /// SI, the robot's signs and zeros.
   std::vector<double> joints(const std::vector<double>& values) const;

@@ -28,7 +28,7 @@ struct Expression {
   bool is(Kind k) const { return kind == k; }
 };
 
-/// How a language writes expressions.
+/// Form of expressions in a language.
 struct ExpressionRules {
   char list = '[', index = '[';  ///< brackets that open a list, an index
   bool labels = false;           ///< items of lists have names: {A1 10.0}

@@ -8,7 +8,7 @@
 
 namespace posewright::programs {
 
-/// Where a pose is measured and what is put there.
+/// Frames of a pose: base and tool.
 struct PlacedFrames {
   Eigen::Isometry3d X_BaseUser = Eigen::Isometry3d::Identity();  ///< of the pose, in the robot's base
   Eigen::Isometry3d X_TipTool = Eigen::Isometry3d::Identity();   ///< that is at the pose, in the robot's tip

@@ -9,7 +9,7 @@
 
 namespace posewright::programs {
 
-/// How a language writes a pose, and which of the robot's joints it means by it.
+/// Written form of a pose in a language, and its joints.
 struct PoseForm {
   std::vector<std::string> values;  ///< three in mm, then those of the orientation, deg unless they are a quaternion
   int turn_decimals = 5;

@@ -43,7 +43,7 @@ struct FoundPoint {
   std::string label{};          ///< what people call it, where its name is a number
 };
 
-/// What a motion, or another instruction, does with a point.
+/// Use of a point by a motion or another instruction.
 enum class Role {
   pose,      ///< moves to it
   step,      ///< moves by it
@@ -69,7 +69,7 @@ struct Use {
   bool moves = true;            ///< false: a name within an instruction that is listed by itself
 };
 
-/// Where a remark goes, and how it is written there.
+/// Place and form of a remark.
 struct RemarkPlace {
   std::size_t at = 0;
   std::string before{}, after{};
@@ -86,7 +86,7 @@ struct Reading {
   std::optional<RemarkPlace> remark;  ///< none: there is no place for one
 };
 
-/// What a reader is given; its places are those of the text.
+/// Input of a reader; its places are those of the text.
 struct Source {
   const std::string& text;
   const std::string& file;               ///< for messages
@@ -101,7 +101,7 @@ struct Motion {
   const char* why = "";
 };
 
-/// How a language of expressions writes motions and points.
+/// Form of motions and points in a language of expressions.
 struct Grammar {
   ExpressionRules expressions;
   bool capitals = true;  ///< words are the same in capitals

@@ -24,7 +24,7 @@ struct Token {
   bool is(char c, std::string_view source) const { return kind == Kind::symbol && source[begin] == c; }
 };
 
-/// What a language calls a token.
+/// Tokens of a language.
 struct LexRules {
   std::string_view comment;        ///< begins one that ends with the line
   std::string_view quotes = "\"";  ///< marks that texts stand between, each within its line

@@ -24,7 +24,7 @@ class Tp {
   }
 
  private:
-  /// Where a line begins that is a section's name; the text's size if none is.
+  /// Begin of the line with a section's name; the text's size if none is.
   std::size_t section(std::string_view name) const {
     for (std::size_t at = text_.find(name); at != std::string_view::npos; at = text_.find(name, at + 1))
       if ((at == 0 || text_[at - 1] == '\n') && (at + name.size() >= text_.size() || !is_word(text_[at + name.size()])))

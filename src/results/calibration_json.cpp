@@ -137,7 +137,7 @@ Json covariance_json(const Calibration& c) {
   return rows;
 }
 
-/// How every result of the command begins.
+/// Begin of every result of the command.
 Json begin_calibration(const char* schema, const Problem& problem, const CalibrateOptions& options) {
   Json json = begin_document(schema, problem);
   json["data"] = options.data.string();

@@ -27,7 +27,7 @@ nlohmann::ordered_json requirements_json(const Calibration& calibration);
 nlohmann::ordered_json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy);
 nlohmann::ordered_json steps_json(const Calibration& calibration);
 nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);
-/// Where frames stand by the estimate, as other programs ask for it: position and quaternion.
+/// Estimated frames for other programs: position and quaternion.
 std::string frames_text(const Calibration& calibration);
 nlohmann::ordered_json frames_json(const Calibration& calibration);
 /// Whiteness, a smooth effect, its interpolation, normality.

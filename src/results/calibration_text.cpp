@@ -56,7 +56,7 @@ std::string orientations_text(const Calibration& c) {
   return "\n95 % intervals of orientations, as a rotation of the estimate\n" + table.text();
 }
 
-/// What is worth knowing of one parameter beside its numbers.
+/// Remark on one parameter besides its numbers.
 std::string remark_of(const CalibratedParameter& p) {
   if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
   std::string text = p.weak ? "the data add less than its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
@@ -181,7 +181,7 @@ std::string noise_text(const Calibration& c) {
   return text;
 }
 
-/// Which effect is it? The best of those that are not fitted, and advice.
+/// Table of the best unfitted effects, and advice.
 std::string effects_text(const Calibration& c) {
   constexpr std::size_t most = 5;
   if (c.effects.empty()) return {};

@@ -26,7 +26,7 @@ std::string headline(const Comparison& c) {
   return text;
 }
 
-/// What an end before everything was known leaves out.
+/// Parts that an early end leaves out.
 std::string ended_early(const Comparison& c) {
   if (!c.interrupted) return {};
   std::string text = fmt::format("Ended early: {} of {} plans", c.plans.size(), c.plans.size() + c.not_planned.size());
@@ -98,7 +98,7 @@ std::string scores_text(const Comparison& c) {
   return table.text();
 }
 
-/// What the plans are worth if a variant is not complete.
+/// Errors of the plans for an incomplete variant.
 std::string reliance_text(const Comparison& c) {
   Table table({"plan", "variant", "complete", "1 time", "2 times", "4 times"},
               {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});

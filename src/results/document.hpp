@@ -6,9 +6,9 @@
 
 namespace posewright {
 
-/// How every result begins: schema, version, problem.
+/// Begin of every result: schema, version, problem.
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem);
-/// The same with the seed.
+/// Overload with the seed.
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem, std::uint64_t seed);
 
 }  // namespace posewright

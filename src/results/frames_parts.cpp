@@ -6,7 +6,7 @@
 namespace posewright {
 namespace {
 
-/// Of the two quaternions of a rotation the one with qw ≥ 0.
+/// Quaternion of a rotation with qw ≥ 0.
 Eigen::Quaterniond quaternion_of(const Eigen::Isometry3d& X) {
   Eigen::Quaterniond q(X.linear());
   if (q.w() < 0) q.coeffs() = -q.coeffs();

@@ -72,7 +72,7 @@ std::string required_count(const NextPoses& r) {
   return fmt::format("{} requirement{}", r.requirements.size(), r.requirements.size() == 1 ? "" : "s");
 }
 
-/// How many of those beside the accuracy are not met, and which is farthest off.
+/// Unmet requirements besides the accuracy: their number, and the worst.
 std::string not_met_text(const NextPoses& r) {
   int open = 0;
   const NextRequirement* worst = nullptr;

@@ -66,7 +66,7 @@ std::string near_text(const Observation& o) {
          "  (a parameter on the left mostly looks like those on its right, the largest terms of which are shown)\n";
 }
 
-/// Of a kept parameter: what its value would depend on.
+/// Parameters on which a kept parameter's value would depend.
 const std::vector<std::string>& given_of(const Observation& o, std::size_t kept) {
   return o.given[std::size_t(o.identifiability.kept[kept])];
 }
@@ -113,7 +113,7 @@ std::string practical_text(const Observation& o) {
   return text + recommendation_text(o);
 }
 
-/// What matters first: how many of the parameters that are asked for can be told, and from how many poses.
+/// Headline: number of identifiable parameters, and smallest number of poses.
 std::string verdict_text(const Observation& o) {
   const auto all = [&](Role role) {
     return std::count_if(o.parameters.begin(), o.parameters.end(), [&](const Parameter& p) { return p.role == role; });

@@ -65,7 +65,7 @@ Json parameter_json(const SimulatedParameter& p) {
 // So many bins show the shape of some hundred draws.
 constexpr int distance_bins = 24;
 
-/// How many draws were how far off, from 0 to the worst.
+/// Histogram of the draws' errors, from 0 to the worst.
 Json distances_json(const std::vector<double>& distances) {
   const double width = distances.empty() ? 0.0 : distances.back() / distance_bins;
   std::vector<int> counts(distance_bins, 0);

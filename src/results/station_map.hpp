@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// Where the robot's base stands nominally in the measurement frame, x, y, z in m; null for a robot without one.
+/// Nominal position of the robot's base in the measurement frame, x, y, z in m; null for a robot without one.
 nlohmann::ordered_json base_json(const Problem& problem);
 
 /// Obstacles as a map needs them: name and the points whose convex hull the body is, m, measurement frame; no points

@@ -32,7 +32,7 @@ std::string places_of(const StationRank& rank) {
 /// A full plan that was cut short leaves the quick one.
 bool looked_at(const StationRank& rank) { return !rank.stopped || rank.why_not.empty(); }
 
-/// What an end before everything was known left open; empty: nothing.
+/// Note on an early end; empty: complete.
 std::string ended_early(const std::vector<StationRank>& ranks) {
   const auto count = [&](auto&& which) { return std::count_if(ranks.begin(), ranks.end(), which); };
   if (count([](const StationRank& r) { return r.stopped; }) == 0) return {};

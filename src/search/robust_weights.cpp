@@ -41,7 +41,7 @@ void share_out(std::vector<double>& w, double cap) {
   }
 }
 
-/// Those that are more than a trace, for the candidates' numbers in the pool.
+/// Significant weights, for the candidates' numbers in the pool.
 CandidateWeights more_than_traces(const std::vector<double>& w) {
   CandidateWeights result;
   for (std::size_t i = 0; i < w.size(); ++i)

@@ -19,7 +19,7 @@ constexpr double reference_tolerance = 1e-3;
 constexpr double rounding = 1e-12;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Where weights of a scenario like the nominal one are, ascending: few, because a step costs the cube of their number.
+/// Support of a scenario's weights near the nominal one, ascending: few, because a step costs the cube of their number.
 std::vector<int> first_set(const ApproximateDesign& optimum, std::size_t least) {
   std::vector<int> set = optimum.weighted();
   const std::size_t wanted = std::max(least, 2 * set.size());

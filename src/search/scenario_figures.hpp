@@ -16,7 +16,7 @@ namespace posewright {
 /// Indices by their value, ties by index.
 std::vector<int> by_value(const std::vector<double>& values, bool largest_first);
 
-/// What all scenarios say of plans and weights. Every scenario is looked at with all candidates, and forgotten again
+/// Figures of plans and weights over all scenarios. Every scenario is loaded with all candidates, and released again
 /// but for one number a candidate.
 class ScenarioFigures {
  public:
@@ -49,9 +49,9 @@ class ScenarioFigures {
   std::vector<double> mean_sensitivity(const std::vector<double>& lambda) const;
   /// d of the candidate in scenario k.
   double sensitivity(std::size_t k, int candidate) const { return look_.sensitivity[k][std::size_t(candidate)]; }
-  /// Of the combined efficiency of any plan: the least that any look gave.
+  /// Bound of the combined efficiency of any plan: the smallest so far.
   double bound() const { return bound_; }
-  /// How much better any weights may be than those that were looked from last: ln of the ratio.
+  /// Possible gain of any weights over the last ones: ln of the ratio.
   double gap() const { return std::log(bound_) - combine(look_.values); }
 
   /// The aim over so many of the scenarios, none more likely than another: those that stand for all where the mean
@@ -64,7 +64,7 @@ class ScenarioFigures {
   void whiten(BlockArray& blocks) const;
   /// Whitened, for all poses; empty: none.
   Eigen::MatrixXd prior_of(int scenario) const;
-  /// Of one scenario at some weights.
+  /// Figures of one scenario at given weights.
   struct Seen {
     double log_det, of_prior;  ///< whitened, of as many poses as a plan has; d of what is there before
     std::vector<double> sensitivity;
@@ -72,7 +72,7 @@ class ScenarioFigures {
   /// @param blocks  whitened
   /// @param prior   for all poses, whitened; empty: none
   Seen look(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
-  /// Of a plan; −∞ where parameters are open.
+  /// log det of a plan; −∞ if parameters are not determined.
   double log_det_of(const BlockArray& blocks, const Eigen::MatrixXd& prior, const std::vector<int>& members) const;
   /// ln e of what has this log det (whitened) in scenario k.
   double efficiency(double log_det, std::size_t k) const { return (log_det - references_[k]) / interest_; }

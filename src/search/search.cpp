@@ -44,7 +44,7 @@ ApproximateDesignOptions bound_options(const SearchRequest& request, const Eigen
   return options;
 }
 
-/// What the best plan for this part alone could reach: the measure of its efficiency.
+/// Bound for this part alone: the reference of its efficiency.
 double reference_of(const SearchPart& part, const Eigen::MatrixXd& prior, const SearchRequest& request,
                     const Monitor& monitor) {
   return solve_approximate_design(part.blocks, LogDetFunction(part.nuisance, part.blocks.columns()),

@@ -23,7 +23,7 @@ class TreeSum {
   void add(const TreeSum& other) {
     for (const auto& [node, value] : other.nodes_) add(node, value);
   }
-  /// Of all terms; what has no neighbour is added from the left.
+  /// Tree sum of all terms; a term without neighbour is added from the left.
   Eigen::VectorXd total() const {
     std::map<std::size_t, const Eigen::VectorXd*> by_place;
     for (const auto& [node, value] : nodes_) by_place[node.second << node.first] = &value;

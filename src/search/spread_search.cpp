@@ -65,7 +65,7 @@ void count(Traffic& traffic, const Traffic& before, const Traffic& after) {
 /// A start of the search and where it goes; all processes do the same.
 class SpreadDesign {
  public:
-  /// @param offset  what is added to Φ for people
+  /// @param offset  what is added to Φ for messages
   /// @param so_far  the best Φ of earlier starts, for progress
   SpreadDesign(SpreadCandidates& candidates, const SpreadRequest& request, double offset, double so_far,
                const Monitor& monitor, SpreadTraffic& traffic)
@@ -242,7 +242,7 @@ std::vector<int> rounded(const ApproximateDesign& weights, const SpreadRequest& 
   return members;
 }
 
-/// What the busiest process had to do, told to all.
+/// Work of the busiest process, sent to all.
 void most(Traffic& traffic, Workers& workers) {
   const auto bytes_of = [](const Traffic& one) {
     ByteWriter writer;
@@ -297,7 +297,7 @@ void fill(Certificate& certificate, const ApproximateDesign& weights, const Spre
   certificate.repeats = repeats_text(request.repeats);
 }
 
-/// What Φ keeps without each member.
+/// Φ without each member.
 std::vector<double> kept_without_each(const BlockArray& chosen, const LogDetFunction& function) {
   const Eigen::MatrixXd M = chosen.all().transpose() * chosen.all();
   const double whole = function.value(M);

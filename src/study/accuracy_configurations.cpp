@@ -183,7 +183,7 @@ std::vector<std::string> header_of(const std::filesystem::path& file) {
   return {};
 }
 
-/// Whether the file has columns x, y, z although the robot's coordinates are others: points of a tool path.
+/// True if the file has columns x, y, z although the robot's coordinates are others: points of a tool path.
 bool lists_points(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates) {
   for (const Coordinate& c : coordinates)
     if (c.name == "x") return false;

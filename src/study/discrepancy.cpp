@@ -51,7 +51,7 @@ Eigen::MatrixXd measured_before(const Study& study, const Effects& effects, int 
   return blocks.all().transpose() * blocks.all();
 }
 
-/// What a tolerance says of every fitted column, 1/tolerance; empty: no prior.
+/// Prior information of every fitted column, 1/tolerance; empty: no prior.
 Eigen::VectorXd told_by_tolerances(const Effects& effects, bool prior) {
   Eigen::VectorXd told(prior ? effects.fitted : 0);
   for (Eigen::Index j = 0; j < told.size(); ++j) told[j] = 1 / effects.columns.parameters[std::size_t(j)].tolerance;
@@ -106,7 +106,7 @@ Eigen::MatrixXd find_basis(Discrepancy& result, const Eigen::MatrixXd& rows, con
   return beta;
 }
 
-/// What counts for `bias`: the test poses, or the parameters of interest in units of the scale.
+/// Targets of `bias`: the test poses, or the parameters of interest in units of the scale.
 void fill_errors(Discrepancy& result, const Variant& fitted, const Eigen::MatrixXd& beta) {
   const Effects& effects = result.effects;
   const Eigen::Index own = effects.fitted, nuisance = fitted.columns.nuisance;

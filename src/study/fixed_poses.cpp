@@ -21,7 +21,7 @@ int id_of(const PoseList& list, std::size_t i) {
   return i < list.own_ids.size() && list.own_ids[i] > 0 ? list.own_ids[i] : int(i) + 1;
 }
 
-/// Whether the list fixes its i-th pose: a plan's measured ones are no longer to be measured, and marks say which.
+/// True if the list fixes its i-th pose: measured poses of a plan are not, and marks decide.
 bool is_fixed(const PoseList& list, std::size_t i) {
   if (i < list.measured.size() && list.measured[i]) return false;
   if (list.marks.empty()) return true;

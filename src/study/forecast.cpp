@@ -138,7 +138,7 @@ class ForecastOfError::Sum {
     return (R_.diagonal().cwiseAbs().array() > told_at_all * length.array()).all();
   }
 
-  /// Of the columns, SI.
+  /// Tolerances of the columns, SI.
   Eigen::VectorXd sigmas() const {
     const Eigen::MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m_, m_));
     return noise_.factor * unit_.cwiseProduct(inverse.rowwise().norm());

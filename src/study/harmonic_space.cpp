@@ -17,7 +17,7 @@ constexpr std::size_t most_choices = 64;
 // Columns with cos kq up to here are polynomials of a higher degree; beyond it their phase is free.
 constexpr double highest_harmonic = 2.0;
 
-/// Where a factor's value comes from.
+/// Source of a factor's value.
 struct FactorSource {
   int axis = -1;  ///< that follows the coordinate or has any phase; −1: the value at the coordinate itself
 };

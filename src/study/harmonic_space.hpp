@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What bounds the sensitivity of these parts' blocks, one form for each choice of the discrete axes. Everything
+/// Bound of the sensitivity of these parts' blocks, one form for each choice of the discrete axes. Everything
 /// referred to must outlive it.
 /// @param R  blocks are J_raw R⁻¹
 HarmonicForms harmonic_forms_of(const std::vector<SpacePart>& parts, const std::vector<ConfigurationSpace::Axis>& axes,

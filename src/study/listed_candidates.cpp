@@ -87,7 +87,7 @@ class ListedPoses {
     return {};
   }
 
-  /// Whether every variant's model has a block there, limits or not.
+  /// True if every variant's model has a block there, limits or not.
   bool can_be_told(const std::vector<double>& q) const {
     Linearisation out;
     const std::vector<int> first{0};

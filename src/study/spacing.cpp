@@ -36,7 +36,7 @@ Spacing spacing_by(const std::vector<Coordinate>& coordinates, const Distance& d
   return spacing;
 }
 
-/// Whether so many of the candidates keep the distance from each other and from what is measured. Ten times as many are
+/// True if so many of the candidates keep the distance from each other and from what is measured. Ten times as many are
 /// looked at, evenly among all.
 bool holds(const Spacing& spacing, const Configurations& candidates, const Configurations& measured,
            std::size_t wanted) {

@@ -76,7 +76,7 @@ Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configura
   return (effect.array() > 0).select(effect.cwiseInverse(), tolerances_of(columns));
 }
 
-/// What is known before of the columns of a search: tolerances, poses measured already, the size of an effect.
+/// Prior information on the columns of a search: tolerances, measured poses, the size of an effect.
 void fill_prior(const Study& study, Variant& variant, const Settings& settings) {
   const Configurations known = known_before(study);
   if (!settings.prior && known.count() == 0 && variant.features == nullptr) return;

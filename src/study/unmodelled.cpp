@@ -29,7 +29,7 @@ constexpr std::size_t size_sample = 300, pivot_sample = 2000;
 // Of the effect's variance: what estimated parameters leave of an effect that can be told from them.
 constexpr double told_apart = 0.01;
 
-/// What is left of columns beside others: their residuals by least squares.
+/// Residuals of columns after least squares on others.
 Eigen::MatrixXd left_beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& columns) {
   const Eigen::VectorXd length = others.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd unit = others * length.cwiseInverse().asDiagonal();

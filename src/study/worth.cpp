@@ -33,7 +33,7 @@ Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeature
   return result;
 }
 
-/// What estimates with the covariance V of `worth` miss at the test poses together with the effect. With primes for
+/// Errors at the test poses of estimates with the covariance V of `worth`, with the effect. With primes for
 /// what is whitened by the covariance of all readings: θ̂ − θ = V J'ᵀ(F'u + …), so E[(θ̂ − θ)uᵀ] = V J'ᵀF'; the best u
 /// given the readings has the covariance F'ᵀ(I − J'VJ'ᵀ)F' and is independent of θ̂.
 void fill_place_errors(const Variant& variant, const EffectFeatures& features, const BlockArray& whitened,

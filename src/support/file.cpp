@@ -11,7 +11,7 @@ namespace posewright {
 namespace fs = std::filesystem;
 namespace {
 
-/// What was read: a process must not write over its own inputs, whichever stage opened them.
+/// Files read by the process, which must not overwrite its own inputs.
 struct InputRecord {
   std::mutex mutex;
   std::vector<fs::path> files;

@@ -37,7 +37,7 @@ std::string converted(const std::string& text, const std::string& encoding, cons
   return result;
 }
 
-/// Where the encoding's name stands in <?xml … encoding="NAME" …?>, and its length; 0 if none is declared.
+/// Position of the encoding's name in <?xml … encoding="NAME" …?>, and its length; 0 if none is declared.
 std::pair<std::size_t, std::size_t> declared_encoding(std::string_view text) {
   const std::size_t begin = text.substr(0, 10).find("<?xml");
   if (begin == std::string_view::npos) return {};

@@ -85,7 +85,7 @@ class TemporaryFile {
   }
 
  private:
-  /// Of the file that is replaced; the usual mode if there is none.
+  /// Mode of the replaced file; the usual mode for a new one.
   void take_over_mode() const {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) {

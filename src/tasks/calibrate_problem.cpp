@@ -96,7 +96,7 @@ class CalibrationRun {
   }
 
  private:
-  /// What goes on with the robot needs no more.
+  /// Corrections for further use of the robot.
   Calibration estimate_alone(FitOptions& fit_options) {
     allow_for_unmodelled(fit_options);
     result_.correction = result_.fit.correction;
@@ -154,7 +154,7 @@ class CalibrationRun {
     return campaigns_.empty() ? std::move(model) : with_campaigns(std::move(model), campaigns_);
   }
 
-  /// Where base and tool are before anything else is fitted. Loads then bend the robot as it stands there; how little
+  /// First fit of base and tool alone. Loads then bend the robot as it stands there; how little
   /// that moves it is found by place_again().
   void place(const VariantColumns& all, FitOptions& fit_options) {
     placed_ = placed(*model_, all, of_campaign(0), fit_options);
@@ -186,7 +186,7 @@ class CalibrationRun {
     for (const int i : base) placed_[std::size_t(i)] = found[std::size_t(i)];
   }
 
-  /// What the estimate is judged against has its columns of where things stand and no others.
+  /// Reference of the estimate: columns of base, tool and targets alone.
   void place_again(const FitOptions& fit_options) {
     const VariantColumns place = placing_columns(columns_);
     placed_ = fit_options.start;
@@ -264,7 +264,7 @@ class CalibrationRun {
     if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
   }
 
-  /// What is not estimated has its nominal value, wherever the placing fit had put it.
+  /// Parameters that are not estimated get their nominal value, even after the placing fit.
   void leave_at_nominal_values(const VariantColumns& all, std::vector<double>& start) const {
     for (const int i : all.selected)
       if (std::find(columns_.selected.begin(), columns_.selected.end(), i) == columns_.selected.end())
@@ -335,7 +335,7 @@ class CalibrationRun {
     result_.counted = {size, length};
   }
 
-  /// What the parameters leave, interpolated between the poses.
+  /// Residuals interpolated between the poses.
   void interpolate(const FitOptions& options) {
     if (options.effect == nullptr) {
       result_.interpolation = Interpolation{};
@@ -361,7 +361,7 @@ class CalibrationRun {
         shift->after));
   }
 
-  /// Whether residuals are larger than the noise allows; then σ follow the residuals.
+  /// True if residuals are larger than the noise allows; then σ follow the residuals.
   void judge_noise() {
     const Fit& fit = result_.fit;
     if (!repeated_.empty()) {

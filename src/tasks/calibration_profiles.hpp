@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What a calibration's profiles are of.
+/// Input of a calibration's profiles.
 struct ProfiledFit {
   const IdentificationModel& model;
   const VariantColumns& columns;

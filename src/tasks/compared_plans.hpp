@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// Of all variants to be compared, with the criterion that each is planned by alone. Throws InputError.
+/// Plans of all compared variants, with the criterion of each. Throws InputError.
 Settings comparison_settings(const Problem& problem, const CompareOptions& options);
 
 struct PlansToCompare {
@@ -22,10 +22,10 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
 /// Lists as they are. Throws InputError if one cannot be read.
 PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists);
 
-/// What is asked of a search or bound for one variant alone.
+/// Request for a search or bound for one variant alone.
 SearchRequest request_for(const Study& study, const Variant& variant, const Settings& settings, int poses);
 
-/// The same progress with a name before it.
+/// Progress with a name before it.
 class NamedMonitor {
  public:
   NamedMonitor(const Monitor& monitor, const std::string& name) {

@@ -137,7 +137,7 @@ class Compensator {
     return out;
   }
 
-  /// What a listed compliance is between its positions nobody knows.
+  /// Refuses positions between those of a listed compliance, where it is unknown.
   void require_listed_positions(const PoseList& list) const {
     for (std::size_t k = 0; k < solver_->coordinates().size(); ++k) {
       const Coordinate& c = solver_->coordinates()[k];

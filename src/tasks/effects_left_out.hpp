@@ -12,7 +12,7 @@ namespace posewright {
 /// The model that was fitted, of a problem that says more.
 using ModelMaker = std::function<std::unique_ptr<IdentificationModel>(const Problem&)>;
 
-/// What the residuals of a fit say of effects that it leaves out: every other parameter of the robot's catalogue,
+/// Score tests of unfitted effects: every other parameter of the robot's catalogue,
 /// eccentricity of every joint of a serial arm, and what other variants of the file estimate beyond this one. Empty for
 /// fits that do not weigh readings by their covariance.
 std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,

@@ -17,7 +17,7 @@ std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::s
   return result;
 }
 
-/// What a choice among named things says at q, e.g. the load case; empty if there is no such coordinate.
+/// Label of a choice at q, e.g. the load case; empty without such a coordinate.
 std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Coordinate& c = coordinates[i];
@@ -26,7 +26,7 @@ std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<c
   return {};
 }
 
-/// What else is chosen, where there is a choice.
+/// Other choices of a pose, if there are any.
 Conditions conditions_at(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
   Conditions result;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -101,7 +101,7 @@ std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double>
 
 namespace {
 
-/// What proposed configurations keep from the nearer end.
+/// Margin of proposed configurations to the nearer end.
 double margin_of(const Coordinate& in_force, const Coordinate& proposed) {
   return std::min(proposed.lower - in_force.lower, in_force.upper - proposed.upper);
 }

@@ -7,10 +7,10 @@
 
 namespace posewright {
 
-/// What a judgement says of the whole: log det, indices, accuracy, parameters; names of variant and criterion.
+/// Summary of a judgement: log det, indices, accuracy, parameters; names of variant and criterion.
 void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, const Settings& settings);
 
-/// How many candidates there are, where they came from, why others were rejected.
+/// Statistics of candidates: number, source, reasons of rejections.
 void fill_candidates(PlanStatistics& statistics, const Study& study);
 
 /// Efficiency of every variant; nothing if the plan serves one.
@@ -32,9 +32,9 @@ TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
 
 /// As it is written.
 std::optional<BodyDistance> body_distance(const std::optional<Separation>& found);
-/// What is nearest to each other at q; none if nothing is checked for collision.
+/// Nearest pair of bodies at q; none without collision checks.
 std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
-/// What proposed configurations keep from the limits in force.
+/// Margins of proposed configurations to the limits in force.
 std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem);
 /// "within the joint limits less 1.5 to 2 deg": all configurations that are proposed, in words.
 std::string proposed_within(const Workspace& workspace, const IdentificationModel& model);

@@ -15,17 +15,17 @@ namespace posewright {
 /// interval, and what is written has none.
 class GivenParameters {
  public:
-  /// Those that hang on what was left out of `among`; none where a convention left it out, by which it is zero.
+  /// Parameters that depend on those left out of `among`; none if a convention sets these to zero.
   void take(const std::vector<Dependency>& left_out, const VariantColumns& among);
-  /// Those that an effect would move farther than their intervals reach, `stretch` standard deviations.
-  /// @return a note for people; empty if there are none
+  /// Parameters that an effect would move beyond their intervals, `stretch` standard deviations.
+  /// @return a note for messages; empty if there are none
   std::string take(const ScoreTest& effect, const std::vector<Parameter>& fitted, const Eigen::MatrixXd& covariance,
                    double stretch);
-  /// What people must know of those that hang on what is left out; empty if there are none.
+  /// Note on parameters that depend on left-out ones; empty if there are none.
   std::string note(const std::vector<CalibratedParameter>& left_out) const;
 
   bool contains(const std::string& name) const { return on_.contains(name); }
-  /// Whether one of a frame's angles is among them.
+  /// True if one of a frame's angles is among them.
   bool turn(const std::string& frame) const;
   /// Takes σ and interval from a parameter that is among them.
   void mark(CalibratedParameter& p) const;

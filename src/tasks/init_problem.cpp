@@ -27,7 +27,7 @@ constexpr std::uint64_t home_seed = 1618;
 constexpr double most_room = 0.3;  // m from the nearest body: more makes no home better
 constexpr double to_grid = 20;     // places are on a grid of 50 mm
 
-/// Where it may stand, best first; one if it is given. Shares of the reach.
+/// Possible places, best first; one if it is given. Shares of the reach.
 std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& robot) {
   if (facts.place) return {*facts.place};
   const double floor = floor_of(facts, robot).value_or(robot.lowest);
@@ -46,7 +46,7 @@ std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& rob
   return result;
 }
 
-/// Whether a plan can be made of it: throws as observe_problem(). The ways from home take longer than all the rest.
+/// Checks that a plan is possible: throws as observe_problem(). Motions from home take longest.
 void try_out(const std::string& text, const fs::path& file, const InitFacts& facts, const Monitor& monitor) {
   const Problem problem = without_roadmap(parse_problem(text, file, facts.packages));
   ObserveOptions options;

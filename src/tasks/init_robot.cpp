@@ -51,7 +51,7 @@ Eigen::Vector3d outward_of(const ChainDescription& chain) {
   return outward;
 }
 
-/// How far a body reaches along a direction of its own frame, from its origin.
+/// Extent of a body along a direction of its own frame, from its origin.
 double extent(const DrawnBody& body, const Eigen::Vector3d& d) {
   if (const auto* box = std::get_if<BoxShape>(&body.shape)) return 0.5 * d.cwiseAbs().dot(box->size);
   if (const auto* cylinder = std::get_if<CylinderShape>(&body.shape))
@@ -62,7 +62,7 @@ double extent(const DrawnBody& body, const Eigen::Vector3d& d) {
   return most;
 }
 
-/// How far it reaches along a direction of a frame in which it stands at X.
+/// Extent along a direction of a frame with the body at X.
 double extent_at(const DrawnBody& body, const Eigen::Isometry3d& X, const Eigen::Vector3d& d) {
   return X.translation().dot(d) + extent(body, X.linear().transpose() * d);
 }

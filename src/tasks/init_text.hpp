@@ -13,7 +13,7 @@
 
 namespace posewright {
 
-/// What was found out about the robot.
+/// Facts about the robot.
 struct InitRobot {
   ProposedChain links;
   ChainDescription chain;
@@ -24,17 +24,17 @@ struct InitRobot {
   double face = 0.0;                 ///< m, how far bodies reach beyond the tip along `outward`
 };
 
-/// What the file says. Throws as init_problem().
+/// Text of the file. Throws as init_problem().
 InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
 /// Adds `lowest` and `face`. Throws InputError where meshes are missing.
 void add_bodies(InitRobot& robot, const Problem& problem);
 
-/// Where the instrument, or what it looks at, stands, and whether there is a cell.
+/// Place of the instrument or its target, and presence of a cell.
 struct InitPlace {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   bool cell = true;
   std::string no_cell;  ///< why there is none
-  /// Where the arm keeps its clearances, one value a joint; empty: no motions are looked for.
+  /// Collision-free home, one value per joint; empty: no motions are searched.
   std::vector<double> home{};
 };
 

@@ -58,7 +58,7 @@ void test_against_smaller(const std::vector<Calibration>& models, const Calibrat
 
 bool usable(const Calibration& c) { return c.verdict == Verdict::use_it && c.left_out.groups > 0; }
 
-/// How much worse than another one a model predicts poses left out, in standard errors.
+/// Loss of a model against another one at poses left out, in standard errors.
 double loss_of(const Calibration& model, const Calibration& best) {
   const std::vector<double>&own = model.left_out.squares, &least = best.left_out.squares;
   if (own.size() != least.size()) return std::numeric_limits<double>::infinity();

@@ -26,7 +26,7 @@ class Motions {
   const Motion& between(int i, int j);
   /// Ways that were not found through another hub are looked for again.
   void set_hub(int stop);
-  /// Whether there is a motion from the hub.
+  /// True if there is a motion from the hub.
   bool reachable(int stop);
   /// Seconds that no motion between them can do without.
   double at_least(int i, int j) const { return space_.least_seconds(stops_[std::size_t(i)], stops_[std::size_t(j)]); }
@@ -35,7 +35,7 @@ class Motions {
  private:
   using Pair = std::pair<int, int>;
   Motion direct(int i, int j);
-  /// The same from stop to stop, where it leads from lead to lead.
+  /// Motion from stop to stop, between their leads.
   void add_ends(Motion& motion, int i, int j) const;
   Roadmap& roadmap();
 

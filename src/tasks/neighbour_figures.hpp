@@ -11,13 +11,13 @@
 
 namespace posewright {
 
-/// How far figures of a list with one moved pose are off if its block is interpolated.
+/// Errors of a list's figures with one moved pose if its block is interpolated.
 struct NeighbourErrors {
   double efficiency = 0.0;  ///< |Δ log det| / parameters of interest
   double sigma = 0.0;       ///< largest |Δσ| / σ
   double accuracy = 0.0;    ///< |Δρ0| / ρ0 at the test poses
 
-  /// Whether figures to a hundredth of a percent (of σ and ρ0: a thousandth) may be stated.
+  /// True if figures to a hundredth of a percent (of σ and ρ0: a thousandth) are valid.
   bool small() const;
   void include(const NeighbourErrors& other);
 };

@@ -109,7 +109,7 @@ class FitSoFar {
     result_.fitted = true;
   }
 
-  /// What the residuals hold in place of what was assumed.
+  /// Effect estimated from the residuals in place of the assumed one.
   void allow(std::optional<UnmodelledSpec>& effect, const Calibration& found) const {
     if (!effect || effect->size) return;
     if (found.counted) {

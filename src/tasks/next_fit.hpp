@@ -11,7 +11,7 @@
 
 namespace posewright {
 
-/// What is known of a robot from the poses that were measured so far.
+/// Estimate of a robot from the measured poses.
 struct NextFit {
   Problem problem;  ///< at the estimated values, with the effect that the residuals show
   std::vector<MeasuredPose> poses;

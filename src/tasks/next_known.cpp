@@ -86,7 +86,7 @@ void KnownSoFar::make() {
   place_tests();
 }
 
-/// What was drawn once serves until the first fit says where the robot stands.
+/// Keeps the drawn candidates until the first fit.
 void KnownSoFar::reuse_candidates() {
   const int asked = settings_.candidates;
   if (settings_.candidates_from || !settings_.candidates_file.empty()) return;
@@ -105,7 +105,7 @@ void KnownSoFar::reuse_candidates() {
   settings_.drawn = kept_->configurations;
 }
 
-/// Where accuracy counts, if the problem does not say: through the workspace.
+/// Default test poses: throughout the workspace.
 void KnownSoFar::place_tests() {
   Variant& variant = study_.first();
   places_stated_ = !variant.test_points.empty();

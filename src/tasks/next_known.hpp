@@ -25,10 +25,10 @@ class KnownSoFar {
   const std::vector<PoseRows>& rows() const { return rows_; }
   /// Null if a list of candidates was given.
   const std::shared_ptr<const KeptCandidates>& kept() const { return kept_; }
-  /// Whether the test points are the problem's.
+  /// True if the test points are the problem's.
   bool places_stated() const { return places_stated_; }
   int columns() const { return int(study_.first().columns.selected.size()); }
-  /// How many columns the readings tell, whatever tolerances say.
+  /// Number of columns that the readings determine without tolerances.
   int told() const { return told_; }
   bool determined() const { return told_ == columns(); }
 

@@ -115,7 +115,7 @@ class PlanSearch {
     return settings;
   }
 
-  /// Of the poses of any plan.
+  /// Checks the poses of any plan.
   int fixed() const { return int(study_.fixed.count()); }
 
   int limit() const {
@@ -231,7 +231,7 @@ class PlanSearch {
     return all;
   }
 
-  /// What is left without each fixed pose, which no search has looked at.
+  /// Efficiency without each fixed pose, which no search computed.
   void fill_without_fixed(Plan& plan, const Configurations& chosen, const SearchResult& found, double phi) const {
     if (fixed() == 0) return;
     const int threads = settings_.planner.threads;

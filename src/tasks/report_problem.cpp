@@ -173,7 +173,7 @@ class ReportBuilder {
     }
   }
 
-  /// Where the camera will see the board's points.
+  /// Predicted pixels of the board's points.
   void fill_pictures() {
     if (!report_.camera) return;
     Eigen::VectorXd pixels;

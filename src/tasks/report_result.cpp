@@ -44,7 +44,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// What to do with results that have no page of their own.
+/// Advice for results without a page.
 constexpr std::array<std::pair<std::string_view, const char*>, 3> others = {
     {{"posewright/route/1", "a route is shown with its plan: posewright report PLAN --route FILE"},
      {"posewright/report/1", "these are the numbers of a page already"},

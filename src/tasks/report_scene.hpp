@@ -17,7 +17,7 @@ namespace posewright {
 void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
                 const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file);
 
-/// What is drawn of one configuration.
+/// Drawing of one configuration.
 ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q);
 
 }  // namespace posewright

@@ -26,7 +26,7 @@ RobustPlan figures_of(const RobustResult& result, const Settings& settings, bool
   return plan;
 }
 
-/// What is left of the plan without each of its poses, for the nominal robot.
+/// Efficiency of the plan without each of its poses, for the nominal robot.
 std::vector<double> without_each(const SearchResult& found, const Study& study, const Settings& settings) {
   const Configurations chosen = chosen_by(found.design, study.configurations);
   const auto phi = [&](const Configurations& poses) {

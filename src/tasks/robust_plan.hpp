@@ -11,7 +11,7 @@ namespace posewright {
 RobustPlan plan_robust(const Problem& problem, const Study& study, const Settings& settings, SearchResult& found,
                        const Monitor& monitor);
 
-/// What a list of poses is worth for the same robots, against plans of these candidates.
+/// Efficiency of a list of poses on the same robots, against plans of these candidates.
 /// @param list  by index among the candidates
 RobustPlan judge_robust_list(const Problem& problem, const Study& study, const Settings& settings,
                              const Configurations& candidates, const std::vector<int>& list, const Monitor& monitor);

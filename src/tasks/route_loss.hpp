@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What the poses of a route are worth beside all of the plan; none if they do not identify all parameters.
+/// Efficiency of a route's poses against the whole plan; none if they do not identify all parameters.
 /// @param plan  all poses, with those that are measured already marked
 std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const Route& route,
                                          const Monitor& monitor);

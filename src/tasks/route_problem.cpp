@@ -123,7 +123,7 @@ class Router {
                                          options_.seed, options_.threads, monitor_);
   }
 
-  /// Nobody knows from where the robot comes to a first pose.
+  /// Refuses backlash without a known way to the first pose.
   void require_beginning() const {
     const auto arrives = [](const auto& condition) { return is_approach(condition.first); };
     const Conditions& conditions = stops_.back().pose.conditions;
@@ -227,7 +227,7 @@ class Router {
     if (options_.from_home) open_.insert(open_.begin(), 0);
   }
 
-  /// What moving the instrument or changing the load costs between two stops, s.
+  /// Time of moving the instrument or changing the load between two stops, s.
   double change(int i, int j) const {
     if (i == 0 || j == 0) return 0.0;
     const PlannedPose &a = stops_[std::size_t(i)].pose, &b = stops_[std::size_t(j)].pose;
@@ -339,7 +339,7 @@ class Router {
     return one_reading_ * double(seen);
   }
 
-  /// What comes nearest to each other on the way.
+  /// Nearest pair of bodies on the way.
   std::optional<BodyDistance> nearest_on(const Motion& motion) const {
     std::optional<Separation> nearest;
     for (std::size_t k = 1; cell_->collision != nullptr && k < motion.points.size(); ++k) {

@@ -85,7 +85,7 @@ BlockArray together(const BlockArray& given, const BlockArray& chosen) {
   return all;
 }
 
-/// What is left of the whole list without each of its first blocks, which no search has looked at.
+/// Efficiency of the list without each of its first blocks, which no search computed.
 std::vector<double> without_given(const BlockArray& all, std::size_t given, const SearchRequest& request,
                                   const SelectOptions& options, double degree) {
   std::vector<int> whole(all.count());
@@ -152,7 +152,7 @@ Plan begun_plan(const SelectOptions& options, const std::string& sha256) {
   return plan;
 }
 
-/// What a search over spread candidates does not do is said before anything is read.
+/// Refuses options without support for spread candidates, before anything is read.
 void require_spread(const SelectOptions& options) {
   const auto refuse = [](const std::string& what, const char* instead) {
     throw InputError({}, what + " with --spread", instead);

@@ -69,7 +69,7 @@ class Verdict {
 
  private:
   double freedom() const { return std::max(1.0, double(s_.summary.fitted - 1)); }
-  /// Of an observed σ so many times the predicted one, or farther off, if it is within the margin of it in truth:
+  /// Probability of an observed σ at least so far from the predicted one, if the true one is within the margin:
   /// (n − 1) s²/σ² is χ² of n − 1 degrees.
   double chance_of_sigma(double ratio) const {
     if (std::abs(ratio - 1) <= sigma_margin) return 1;
@@ -205,7 +205,7 @@ class Verdict {
                     along, s_.curvature.largest, curvature_limit));
   }
 
-  /// Whether the σ that calibrations state for themselves explains the difference.
+  /// True if the σ of each calibration explains the difference.
   void other_places() {
     const auto explained = std::count_if(wrong_sigma_.begin(), wrong_sigma_.end(), [&](const SimulatedParameter* p) {
       return !differs(p->errors->observed / p->errors->stated);

@@ -10,7 +10,7 @@ namespace posewright {
 /// not, which causes the figures tell apart.
 void judge_simulation(Simulation& simulation, const SimulateOptions& options);
 
-/// Which of several tests refuse, so that the chance that any of those refuses wrongly is at most `level`, however they
+/// Rejections by several tests, so that the probability of any false rejection is at most `level`, however they
 /// depend on each other: Holm, Scandinavian Journal of Statistics 6 (1979), 65–70.
 /// @param chances  p of each test
 std::vector<bool> refused_together(const std::vector<double>& chances, double level);

@@ -13,7 +13,7 @@ namespace posewright {
 VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const Variant& truth,
                            const Configurations& poses, const Evaluation& evaluation, const Settings& settings);
 
-/// What `with` estimates and `without` does not, indices into the columns of `with`.
+/// Parameters that `with` estimates and `without` does not, indices into the columns of `with`.
 std::vector<int> extra_columns(const Variant& with, const Variant& without);
 
 }  // namespace posewright

@@ -24,7 +24,7 @@ void require_same_coordinates(const IdentificationModel& a, const Identification
         "the two variants differ in their coordinates, actuators or readings: one cannot stand for the other");
 }
 
-/// What only the measurement knows does not move the robot.
+/// Coordinates of the measurement alone do not move the robot.
 std::vector<int> robot_parameters(const IdentificationModel& seen, const IdentificationModel& measured,
                                   const VariantColumns& columns) {
   std::vector<int> from;

@@ -15,7 +15,7 @@ namespace posewright {
 /// The problem with the noise that the measured robot has.
 Problem with_truth_noise(Problem problem, const TruthNoise& noise);
 
-/// Where robot `to` stands when its actuators (the joints of an arm) are as those of `from` at each configuration.
+/// Configurations of robot `to` with the actuators (the joints of an arm) of `from`.
 /// Throws CannotDo if it cannot, or where the two have different coordinates.
 std::vector<std::vector<double>> same_actuators(const IdentificationModel& from, const IdentificationModel& to,
                                                 const std::vector<std::vector<double>>& configurations);

@@ -4,7 +4,7 @@
 
 namespace posewright {
 
-/// The same problem without the roadmap behind `reachable`: for what finds out by itself which poses can be reached, or
+/// Problem without the roadmap behind `reachable`, for code that finds reachable poses itself, or
 /// only compares.
 inline Problem without_roadmap(Problem problem) {
   problem.workspace.motion.reachable = false;

@@ -16,7 +16,7 @@ namespace {
 // What an instrument sees is proposed where less of what is drawn evenly is feasible.
 constexpr double scarce = 0.05;
 
-/// Where little is feasible and the instrument says where to look from, that comes first; the boundary is drawn from
+/// Default shares: views first if little is feasible and the instrument has a direction; the boundary is drawn from
 /// what is found.
 std::vector<std::pair<SamplerKind, double>> shares_of(const Workspace& workspace, const Sampler& sampler) {
   using Kind = SamplerKind;

@@ -8,7 +8,7 @@
 namespace posewright {
 namespace {
 
-/// What the instrument cannot see cannot be measured, and what it sees of the nominal robot alone is soon lost.
+/// Reach and range of the instrument for the nominal robot and for drawn ones.
 class MeasurableCheck : public ValidityCheck {
  public:
   MeasurableCheck(const IdentificationModel& model, std::span<const std::vector<double>> robots)

@@ -12,7 +12,7 @@ namespace posewright {
 
 using Checks = std::vector<std::unique_ptr<ValidityCheck>>;
 
-/// What a constraint may look at. Everything must outlive the checks.
+/// Input of a constraint. All must outlive the checks.
 struct CheckContext {
   const IdentificationModel& model;
   const Problem& problem;
@@ -23,7 +23,7 @@ struct CheckContext {
   std::span<const std::vector<double>> robots{};
 };
 
-/// What must hold on the way from pose to pose too: limits, coupled limits, reach and travel of actuators, collision.
+/// Checks for motions between poses: limits, coupled limits, reach and travel of actuators, collision.
 Checks motion_checks(const CheckContext& context);
 /// All constraints on a measurement, in the order of cost.
 Checks pose_checks(const CheckContext& context);
@@ -36,7 +36,7 @@ void add_approach_check(const CheckContext& context, Checks& checks);
 void add_measurable_check(const CheckContext& context, Checks& checks);
 void add_tool_check(const CheckContext& context, Checks& checks);
 void add_singularity_check(const CheckContext& context, Checks& checks);
-/// What of a sight needs no bodies: most of what is hidden is turned away, and collisions take a hundred times as long.
+/// Parts of line of sight without bodies: most hidden targets face away, and collisions take a hundred times as long.
 void add_direction_check(const CheckContext& context, Checks& checks);
 void add_collision_check(const CheckContext& context, Checks& checks);
 void add_sight_check(const CheckContext& context, Checks& checks);

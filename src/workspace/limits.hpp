@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What is left of `in_force` inside the margin: where configurations are proposed. A margin that nobody asked for is
+/// Limits `in_force` less the margin, for proposed configurations. A default margin is
 /// kept from the robot's own limits only, and leaves out no listed position.
 /// Throws InputError if nothing is left inside a margin that was asked for.
 std::vector<Coordinate> proposed_limits(const IdentificationModel& model, const Problem& problem,

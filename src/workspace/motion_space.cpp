@@ -18,7 +18,7 @@ constexpr double seconds_to_full_speed = 0.5;
 // States at which the actuators of a parallel robot are looked at on the way.
 constexpr int actuator_steps = 50;
 
-/// What has a speed: a coordinate of an arm, an actuator of a parallel robot.
+/// Coordinates with a speed: a coordinate of an arm, an actuator of a parallel robot.
 struct Mover {
   std::string name, unit;
   double speed, acceleration;

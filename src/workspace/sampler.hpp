@@ -19,11 +19,11 @@ class Sampler {
 
   void interior(std::size_t wanted, const Monitor& monitor);
   void boundary(std::size_t wanted, const Monitor& monitor);
-  /// Where the instrument sees its targets: from even draws the joints go to views, drawn by (seed, draw) alone.
+  /// Sampler of views: from even draws the joints go to views, drawn by (seed, draw) alone.
   void views(std::size_t wanted, const Monitor& monitor);
   /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
   void valid_states(SamplerKind kind, std::size_t wanted, const Monitor& monitor);
-  /// What samplers did not find is drawn evenly, or where the instrument sees.
+  /// Draws the missing candidates evenly, or at views.
   void fill_up(std::size_t count, const Monitor& monitor);
 
   /// Share of even draws that is feasible, by a few.

@@ -20,7 +20,7 @@ constexpr int ompl_run = 16;
 constexpr double least_yield = 0.01;
 constexpr const char* out_of_reach_of_view = "no joint angles for a view of the targets";
 
-/// What helps where views were proposed and this rejects most of them.
+/// Advice for a reason that rejects most proposed views.
 std::string cure_of(const std::string& reason) {
   if (reason == out_of_reach_of_view)
     return "; no joint angles lead to where the targets would be seen: move them or the instrument into reach, or "

@@ -10,7 +10,7 @@
 
 namespace posewright {
 
-/// What one run of an OMPL sampler draws from and counts. One a thread at a time: OMPL's samplers know neither seeds of
+/// Source and counters of one run of an OMPL sampler. One a thread at a time: OMPL's samplers know neither seeds of
 /// their own nor why a state is not valid.
 class SamplingSession {
  public:

@@ -62,7 +62,7 @@ class FeasibilityChecker : public ob::StateValidityChecker {
     return found < 0;
   }
 
-  /// What OMPL's sampler of maximal clearance climbs: room beyond what must be kept, m.
+  /// Objective of OMPL's sampler of maximal clearance: room beyond the clearance, m.
   double clearance(const ob::State* state) const override {
     if (collision_ == nullptr) return 0.0;
     const double* values = state->as<Space::StateType>()->values;

@@ -4,7 +4,7 @@
 
 namespace posewright {
 
-/// What a block is made of where its sensitivity d(q) = ‖J(q) T‖² can be bounded over whole boxes of joint angles
+/// Parts of a block whose sensitivity d(q) = ‖J(q) T‖² can be bounded over whole boxes of joint angles
 /// (theory.md eq. (39)): parts B_k(q) whose entries are polynomials in the joints' cosines and sines, and factors that
 /// depend on one squared distance each, d(q) ≤ Σ_k s_k(r_k(q)) ‖B_k(q) T‖².
 
@@ -43,7 +43,7 @@ inline InverseVariance squared(double constant, double slope, double repeats) {
   return {1.0, constant * constant / repeats, 2 * constant * slope / repeats, slope * slope / repeats};
 }
 
-/// Of the squared distance r from one place to one of several targets on one tip: the mean of the squares of all of
+/// Squared distance r from one place to one of several targets on one tip: the mean of the squares of all of
 /// them differs from it by slope √r + constant at most (m², theory.md eq. (57)).
 struct DistanceSpread {
   double slope = 0.0, constant = 0.0;
@@ -59,7 +59,7 @@ struct HarmonicPart {
   double factor(double r) const { return distance < 0 ? plus.weight : plus.value(r) - minus.value(r); }
 };
 
-/// What a column is multiplied by: a function of one coordinate that is no polynomial of its cosine and sine, or one of
+/// Factor of a column: a function of one coordinate that is no polynomial of its cosine and sine, or one of
 /// high degree.
 struct ColumnFactor {
   /// linear: x − constant, which stays within the box; cosine, sine: of constant · x, free to have any phase.

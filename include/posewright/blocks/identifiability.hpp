@@ -45,8 +45,8 @@ Identifiability identifiability(const BlockArray& sample, const std::vector<Para
                                 const IdentifiabilityOptions& options = {});
 
 /// Blocks in an order in which every one brings as many new independent rows as any left could, as long as one brings
-/// some: what few configurations can determine, also where most of them are blind to a parameter (a compliance that
-/// counts at one position only). Columns in units of tolerance.
+/// some: combinations that few configurations determine, even if most of them are blind to a parameter (a compliance
+/// that counts at one position only). Columns in units of tolerance.
 std::vector<int> most_independent(const BlockArray& sample, const std::vector<Parameter>& parameters);
 
 /// "az = −bz + 0.98·l" with units where they differ; the words of every report.

@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// What is nowhere negative where a configuration is feasible, and may be anything elsewhere: with it whole boxes of
+/// Functions that are never negative at feasible configurations: with them whole boxes of
 /// configurations are known to be forbidden (theory.md eq. (58)).
 struct NecessaryLimits {
   /// constant + factor v + root √s, v and s two of the values; s = −1: without the root. Values are of degree 1 in the
@@ -22,7 +22,7 @@ struct NecessaryLimits {
     double constant = 0.0;
   };
 
-  std::vector<std::string> names{};  ///< of what is limited, for people: "tool box"
+  std::vector<std::string> names{};  ///< name of the limit, for messages: "tool box"
   int values = 0;                    ///< how many there are
   std::vector<OfPoints> of_points{};
   std::vector<OfCoordinates> of_coordinates{};

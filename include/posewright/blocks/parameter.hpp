@@ -14,11 +14,11 @@ struct Parameter {
   double tolerance = 0.0;  ///< prior 1σ from manufacture and assembly, in `unit`; > 0
   Role role = Role::interest;
   bool tolerance_stated = false;  ///< the user wrote the tolerance; else it is assumed
-  bool places = false;            ///< says where things stand (base, tool, targets, instruments), not what the robot is
+  bool places = false;  ///< places things (base, tool, targets, instruments), and is no parameter of the robot
 };
 
-/// Which tolerances count as one more measurement of their parameter (1σ): none, those of parameters that were
-/// manufactured and those that the user stated (nobody knows where a base stands unless he says so), or all.
+/// Tolerances used as one more measurement of their parameter (1σ): none, those of parameters that were
+/// manufactured and those that the user stated (the pose of a base is unknown by default), or all.
 enum class Prior { none, manufactured, every };
 
 inline bool counts(const Parameter& parameter, Prior prior) {

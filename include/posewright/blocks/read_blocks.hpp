@@ -22,7 +22,7 @@ struct BlockFile {
 /// (n·r) × m together with `rows`) or CSV (n·r rows × m columns, optional header line, '#' comments).
 /// Which of the two it is, the file's first bytes tell.
 /// @param rows  r; required for CSV and two-dimensional .npy, otherwise it must agree with the file
-/// Throws InputError (file:line, what, what is allowed) on anything malformed, NaN or infinite.
+/// Throws InputError (file:line, error, allowed values) on anything malformed, NaN or infinite.
 BlockFile read_blocks(const std::filesystem::path& file, std::optional<int> rows);
 
 /// Blocks of a file that one of several processes holds.
@@ -45,7 +45,7 @@ std::size_t first_of_share(std::size_t total, int rank, int processes);
 BlockShare read_block_share(const std::filesystem::path& file, std::optional<int> rows, int rank, int processes,
                             std::size_t spare);
 
-/// The same of a .npy that is in memory already.
+/// Overload for a .npy in memory.
 BlockArray parse_npy(std::string_view bytes, std::optional<int> rows, const SourcePlace& place);
 
 }  // namespace posewright

@@ -25,12 +25,12 @@ struct AxisErrors {
 std::vector<AxisErrors> errors_by_axis(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                                        const std::vector<Eigen::VectorXd>& residuals);
 
-/// How far one pose is off: root mean square over its targets of the norm of x, y, z (m), and norm of the turn (rad).
+/// Error of one pose: root mean square over its targets of the norm of x, y, z (m), and norm of the turn (rad).
 struct PoseError {
   double position = 0.0, rotation = 0.0;  ///< NaN if nothing of that kind is read
 };
 
-/// What the covariance of the estimate makes of the poses, J C Jᵀ, in the rows that were read, and the same with the
+/// Errors of the poses by the covariance of the estimate, J C Jᵀ, in the rows that were read, and the same with the
 /// noise of the readings themselves: J C Jᵀ + s² V, s = fit.noise_factor (or fit.scale where the residuals told the
 /// noise). For poses that were not fitted. Klimchik et al. (2013), Tables X and XII, have it as "model".
 struct PredictedError {
@@ -38,7 +38,7 @@ struct PredictedError {
 };
 std::vector<PredictedError> predicted_errors(const IdentificationModel& model, const VariantColumns& columns,
                                              const std::vector<MeasuredPose>& poses, const Fit& fit);
-/// The same of residuals: what the pose is really off by, noise included. Orientations as read.
+/// Observed error of a pose from its residuals, noise included. Orientations as read.
 std::vector<PoseError> observed_errors(const IdentificationModel& model, const std::vector<Eigen::VectorXd>& residuals);
 
 }  // namespace posewright

@@ -14,7 +14,7 @@ struct ListedCompliances {
   Eigen::MatrixXd covariance;  ///< of them
 };
 
-/// What a gravity compensator's spring and its joint are, from the joint's compliances.
+/// Spring and joint stiffness of a gravity compensator, from the joint's compliances.
 struct CompensatorConstants {
   double joint_stiffness = 0.0;  ///< K2⁰, N·m/rad
   double stiffness = 0.0;        ///< Kc, N/m
@@ -22,7 +22,7 @@ struct CompensatorConstants {
   double free_length = 0.0;      ///< s0, m
   Eigen::Matrix3d covariance;    ///< of K2⁰, Kc, s0·Kc
   double free_length_sigma = 0.0;
-  double chi_square = 0.0;  ///< of what the compliances leave
+  double chi_square = 0.0;  ///< of the compliances' residuals
   int freedom = 0;          ///< compliances − 3
 };
 

@@ -11,18 +11,18 @@ namespace posewright {
 
 /// A convention that the file does not keep, as one of a table of hypotheses.
 struct Convention {
-  std::string condition;  ///< what would be the case: "joint_5 counts the other way"
-  std::string remedy;     ///< what to write in the problem file or the readings' file
-  double left = 0.0;      ///< what base and tool alone then leave, m
+  std::string condition;  ///< hypothesis: "joint_5 counts the other way"
+  std::string remedy;     ///< line for the problem file or the readings' file
+  double left = 0.0;      ///< residual with base and tool alone, m
 };
 
-/// What base and tool alone leave of a robot's poses and its instrument's readings.
+/// Residuals of a robot's poses and its instrument's readings with base and tool alone fitted.
 struct ConventionSearch {
   double left = 0.0;              ///< root mean square distance as the file is read, m
   std::vector<Convention> found;  ///< empty: no convention explains it
 };
 
-/// Asks of each hypothesis what hand_eye() leaves under it. Named are those that leave less than a tenth, and less than
+/// Fits hand_eye() under each hypothesis. Named are those that leave less than a tenth, and less than
 /// twice as much as the best; of several with one remedy the first of the table. Poses and points in space and pictures
 /// of a board are judged, of one station and one campaign; of other instruments nothing is found.
 /// @param form  how the file of readings wrote its orientations

@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// How far the problem is from linear within the confidence region (after Bates & Watts 1980, J. R. Stat. Soc. B 42).
+/// Nonlinearity of the problem within the confidence region (after Bates & Watts 1980, J. R. Stat. Soc. B 42).
 struct Curvature {
   double largest = 0.0;  ///< ‖f(x + v) − 2f(x) + f(x − v)‖ / 2 / ‖Jv‖ over the principal axes v of the region: share of
                          ///< the step of one σ that the linear model misses; infinite if the axis leaves the reach

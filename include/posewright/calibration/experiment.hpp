@@ -32,7 +32,7 @@ struct VirtualRobot {
   std::vector<char> asked{};
 };
 
-/// Where the calibrated robot is sent to see how far it is off. Instruments of both models read the tip's pose.
+/// Validation poses of the calibrated robot. Instruments of both models read the tip's pose.
 struct CheckPlaces {
   const IdentificationModel *fitted = nullptr, *truth = nullptr;
   /// Per parameter of these models: its index in the calibrated (in the true) one; −1: stays nominal, as what only
@@ -54,7 +54,7 @@ struct VirtualExperiment {
   ExperimentOptions options;
 };
 
-/// What one draw gave.
+/// Result of one draw.
 struct VirtualCalibration {
   enum class End { not_run, fitted, not_converged, failed };
   End end = End::not_run;

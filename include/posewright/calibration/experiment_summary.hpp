@@ -21,7 +21,7 @@ struct ParameterErrors {
 };
 
 struct ExperimentSummary {
-  int asked = 0, fitted = 0, not_converged = 0, failed = 0;  ///< draws; what is left of `asked` was not run
+  int asked = 0, fitted = 0, not_converged = 0, failed = 0;  ///< finished draws; the rest of `asked` was not run
   std::string first_failure;                                 ///< why the first of the failed ones did
   std::vector<ParameterErrors> parameters;                   ///< in the columns' order; empty without one catalogue
   double sigma_error = 0.0;           ///< Monte Carlo error of an observed σ, relative: 1/√(2 draws)

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// One configuration and what the instrument read there.
+/// One configuration and its readings.
 struct MeasuredPose {
   int id = 0;             ///< of the user's list
   std::vector<double> q;  ///< SI, in the order of the model's coordinates
@@ -19,7 +19,7 @@ struct MeasuredPose {
   Eigen::MatrixXd reading_share{};
 };
 
-/// What a residual counts: `ordinary` the same for all readings of a unit, `weighted` the instrument's covariance,
+/// Weights of residuals: `ordinary` the same for all readings of a unit, `weighted` the instrument's covariance,
 /// `robust` that covariance and less where a target lies far off.
 enum class Weighting { ordinary, weighted, robust };
 
@@ -40,7 +40,7 @@ struct FitOptions {
   /// Assumed tolerances that count are a shape only: how large they are, the readings tell, group by group (lengths,
   /// angles, zeros of joints, …), by restricted maximum likelihood; a parameter beyond its group has a size of its own.
   bool components = false;
-  /// Of every parameter of the model: how many times its tolerance counts to begin with, or as it is without
+  /// For every parameter of the model: initial multiple of its tolerance, or as it is without
   /// `components`. Empty: once.
   std::vector<double> spreads{};
   /// Weighted fits: readings are correlated from pose to pose by this effect, too (generalised least squares). Null:
@@ -54,21 +54,21 @@ struct Fit {
   std::vector<double> correction;  ///< ξ − nominal of every parameter of the model; as at the start if not estimated
   Eigen::VectorXd change;          ///< the same of the columns alone
   Eigen::MatrixXd covariance;      ///< of `change`, SI, with the noise that `scale_known` says
-  /// Whether the covariance is that of the stated noise; else the residuals told its size.
+  /// True if the covariance uses the stated noise; else its size comes from the residuals.
   bool scale_known = true;
   double chi_square = 0.0;  ///< sum of squares of the whitened residuals (weighted where robust) and of prior terms
   int readings = 0;         ///< how many were read
   int freedom = 0;          ///< readings − columns, plus the tolerances that count
-  /// Degrees of freedom of the readings' residuals alone: readings − tr(H), H = J C Jᵀ what the estimate takes up of
+  /// Degrees of freedom of the readings' residuals alone: readings − tr(H), H = J C Jᵀ the share of the estimate in
   /// them; `freedom` where no tolerance counts.
   double left = 0.0;
   double scale = 0.0;  ///< √(chi_square/freedom); robust: of the central part
-  /// Weighted: what the stated noise was multiplied by because the residuals refuse it (less than 1 % chance); else 1.
+  /// Weighted: factor of the stated noise if the residuals reject it (less than 1 % chance); else 1.
   /// The covariance counts it, and where tolerances count so do the estimates.
   double noise_factor = 1.0;
   std::vector<double> spreads;    ///< of every parameter: how many times its tolerance counted; FitOptions::spreads
   std::vector<int> contradicted;  ///< columns whose stated tolerance the readings refuse, with `components`
-  /// R of the readings' Jacobian J = Q R with columns in units of tolerance, noise as stated: what the data alone tell.
+  /// R of the readings' Jacobian J = Q R with columns in units of tolerance, noise as stated: without prior.
   Eigen::MatrixXd root;
   std::vector<Eigen::VectorXd> residuals;    ///< per pose: measured less predicted, SI; NaN if not read
   std::vector<Eigen::VectorXd> whitened;     ///< per pose: unit variance if model and noise are right; NaN if not read
@@ -85,7 +85,7 @@ struct Fit {
 /// robust: iteratively reweighted, Huber's ψ (c = 1.345) until the weights settle, then Tukey's biweight (c = 4.685),
 /// on the norm of each target's whitened residual, in units of their median; covariance by Huber (Robust Statistics
 /// 1981, eq. 7.6.6).
-/// @param columns  what is estimated; independent over these poses (see undetermined())
+/// @param columns  estimated columns; independent over these poses (see undetermined())
 /// Throws CannotDo if a pose is out of reach at the nominal parameters, where the readings are fewer than the
 /// columns, where the columns are dependent at the solution, or where an effect is to count and weights are others.
 Fit fit(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
@@ -96,7 +96,7 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
 std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, const std::vector<double>& correction,
                                           const std::vector<MeasuredPose>& poses);
 
-/// Whitened blocks of the poses at these corrections of all parameters (empty: zero), rows of what was not read zero:
+/// Whitened blocks of the poses at these corrections of all parameters (empty: zero), rows of missing readings zero:
 /// what tells which columns the data can determine. Throws CannotDo if a pose is out of reach.
 BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& columns,
                      const std::vector<MeasuredPose>& poses, const std::vector<double>& correction = {});

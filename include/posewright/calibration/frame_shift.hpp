@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// Where poses of another day lie to those that were fitted: the motion of the base that explains most of what the
+/// Displacement of later poses against the fitted ones: the motion of the base that explains most of what the
 /// estimate leaves of their readings. An instrument that was moved in between has another frame.
 struct FrameShift {
   double before = 0.0, after = 0.0;  ///< root mean square of their whitened residuals, without and with the motion

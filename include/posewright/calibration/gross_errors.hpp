@@ -12,7 +12,7 @@ namespace posewright {
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
 
-/// Root mean square of whitened residuals over all readings, and of what noise and all tolerances explain of them.
+/// Root mean square of whitened residuals over all readings, and of their part explained by noise and all tolerances.
 struct ResidualSize {
   double found = 0.0, explained = 0.0;
   /// Beyond ten times: no error of a robot gives them.

@@ -11,7 +11,7 @@ struct SeenPoints {
   Eigen::Matrix3Xd points;  ///< one column a point, instrument's frame, m; NaN: not seen
 };
 
-/// How well base and tool alone explain what was seen.
+/// Fit of base and tool alone to the readings.
 struct HandEye {
   double rms = 0.0;    ///< of the distances that are left, in the robot's lengths, m; infinite: too few were seen
   double scale = 1.0;  ///< by which the instrument's lengths were multiplied

@@ -14,7 +14,7 @@ struct IdentificationStep {
   double scale = 0.0;  ///< √(χ²/readings) after it: residuals in units of the stated noise
 };
 
-/// Estimates that follow one another, each with what was found before it held fast.
+/// Successive estimates, each with the earlier ones held fixed.
 struct StepwiseFit {
   std::vector<IdentificationStep> steps;
   std::vector<double> correction;  ///< of all parameters of the model, after the last step
@@ -22,10 +22,10 @@ struct StepwiseFit {
   bool settled = false;            ///< another round changes nothing worth mentioning
 };
 
-/// Where things stand (base, tool, targets, nuisance), then the geometry, then what gives way under load (compliances,
+/// Groups of parameters: base, tool, targets and nuisance, then geometry, then stiffness (compliances,
 /// stiffnesses): Klimchik et al. (2013), section III, gone through again until no parameter moves by more than a
 /// thousandth of its σ in the joint fit. Steps without columns are left out.
-/// @param columns  what the joint fit estimates
+/// @param columns  columns of the joint fit
 /// Throws CannotDo if one step cannot be estimated.
 StepwiseFit fit_in_steps(const IdentificationModel& model, const VariantColumns& columns,
                          const std::vector<MeasuredPose>& poses, const FitOptions& options, const Fit& joint);

@@ -8,15 +8,15 @@
 
 namespace posewright {
 
-/// Predicting with what the parameters leave as well: interpolated between the poses of the fit as a smooth effect.
+/// Prediction with the residuals, interpolated between the poses of the fit as a smooth effect.
 struct Interpolation {
   std::string why_not;  ///< why it cannot be done; empty: it was
   std::string unit;     ///< of the readings that judge: lengths if there are any
   /// Root mean square over the poses, each left out of estimate and interpolation, per reading, SI.
   double alone = 0.0;         ///< by the parameters alone
-  double interpolated = 0.0;  ///< with what they leave
+  double interpolated = 0.0;  ///< with their residuals
   double gain = 0.0;          ///< mean of both squares' difference, paired, in its own standard errors
-  /// What interpolation leaves of the residuals of other poses, SI, NaN if not read.
+  /// Residuals of other poses after interpolation, SI, NaN if not read.
   std::vector<Eigen::VectorXd> others;
 
   /// Above two standard errors it is no accident.

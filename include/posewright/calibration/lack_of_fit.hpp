@@ -7,20 +7,20 @@
 
 namespace posewright {
 
-/// What was read more than once without moving.
+/// Repeated readings without motion.
 struct RepeatedReadings {
   std::vector<double> q;
   Eigen::MatrixXd deviations;  ///< readings × rows of the data: each less their mean, SI; NaN if not read
 };
 
-/// Residuals of poses against the scatter of the readings within them *and* what is stated to stay at a pose.
+/// Residuals of poses against the scatter of the readings within them *and* the stated repeatability.
 ///
 /// With E the covariance of one reading (up to one factor s²) and C = S + E/n that of a pose's mean: s² = Σ‖E^{-1/2}
 /// d‖²/ν over all deviations d, ν = (rows − 1) a reading; V = S + s² E/n; F = Σ rᵀ V⁻¹ r/f with f the fit's degrees of
 /// freedom. Where nothing stays at a pose F is exactly Fisher's (f, ν). Otherwise only the share φ = Σ tr(V⁻¹ s² E/n)/Σ
 /// rows of V rests on s², so that the variance of its logarithm is φ² 2/ν: (f, ν/φ²) after Satterthwaite 1946.
 /// @param model       that was fitted: C
-/// @param instrument  the same with what stays at a pose left out: E/n
+/// @param instrument  without repeatability: E/n
 /// @param repeats     readings a pose that both count with
 /// f is Fit::left. Not possible if nothing was read twice, without degrees of freedom, and for robust fits.
 TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What estimates from some of the poses say of the others.
+/// Cross-validation: estimates from some of the poses predict the others.
 struct LeaveOut {
   int groups = 0;          ///< 0: not judged, `why_not` says why
   double estimated = 0.0;  ///< root mean square of whitened residuals of poses left out, all columns estimated
@@ -25,10 +25,10 @@ struct LeaveOut {
 };
 
 /// Leaves out one pose after the other (above 30 poses one of ten groups: every tenth pose), estimates from the rest
-/// and predicts what was left out, once with all columns and once with the placing columns alone (placing_columns()).
-/// Judged by the lengths among the readings if there are any. A predicted variance cannot judge this: a prior always
-/// lowers it, and the noise may not be as stated. With robust weights medians take the place of means, and the gain is
-/// that of a sign test.
+/// and predicts the left-out readings, once with all columns and once with the placing columns alone
+/// (placing_columns()). Judged by the lengths among the readings if there are any. A predicted variance cannot judge
+/// this: a prior always lowers it, and the noise may not be as stated. With robust weights medians take the place of
+/// means, and the gain is that of a sign test.
 /// @param start  corrections of all parameters: things placed, nothing else estimated
 /// @param whole  the estimate from all poses
 LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& columns,

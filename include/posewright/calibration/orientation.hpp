@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// How a frame is turned, where its three angles rx, ry, rz were estimated. Intervals of angles about axes that turn
+/// Orientation of a frame with three estimated angles rx, ry, rz. Intervals of angles about axes that turn
 /// with each other mean little once the frame is turned far, and the angles have two branches: σ and intervals are
 /// those of a small rotation of the estimate about the axes of the frame's parent.
 struct CalibratedOrientation {
@@ -17,7 +17,7 @@ struct CalibratedOrientation {
   Eigen::Vector3d half_width;  ///< of its intervals, rad
 };
 
-/// Of every frame that says where things stand (Parameter::places) and whose three angles are columns.
+/// For every placed frame (Parameter::places) with its three angles among the columns.
 /// @param stretch  half the width of an interval in σ, see interval_factor()
 std::vector<CalibratedOrientation> orientations(const IdentificationModel& model, const VariantColumns& columns,
                                                 const Fit& result, double stretch);

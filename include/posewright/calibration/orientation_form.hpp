@@ -4,7 +4,7 @@
 
 namespace posewright {
 
-/// How a file of readings writes an orientation.
+/// Forms of an orientation in a file of readings.
 struct OrientationForm {
   enum Kind { vector, quaternion, angles };
   Kind kind = vector;

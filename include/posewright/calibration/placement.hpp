@@ -4,12 +4,12 @@
 
 namespace posewright {
 
-/// Of the columns those that say where things stand, not what the robot is: base.*, tool.*, target.*, station.*,
+/// Columns that place things, without parameters of the robot: base.*, tool.*, target.*, station.*,
 /// anchor.*, camera.* and board.* displacements (Parameter::places), and whatever the variant calls nuisance.
 VariantColumns placing_columns(const VariantColumns& columns);
 
 /// The columns that these poses and the tolerances that count determine, by identifiability() at the corrections `at`.
-/// @param dependencies  of what is left out; null: not asked for
+/// @param dependencies  of left-out parameters; null: not needed
 /// @param threshold     IdentifiabilityOptions::threshold; 0: its default
 VariantColumns determined(const IdentificationModel& model, const VariantColumns& columns,
                           const std::vector<MeasuredPose>& poses, const std::vector<double>& at, Prior prior,
@@ -22,13 +22,13 @@ VariantColumns determined(const IdentificationModel& model, const VariantColumns
 std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const FitOptions& options);
 
-/// The same for one base alone, everything else as `from` says: where the instrument of another campaign stands.
+/// Variant for one base alone, all else as in `from`: the place of the instrument in another campaign.
 /// @param base  columns of one base
 std::vector<double> placed_base(const IdentificationModel& model, const VariantColumns& base,
                                 const std::vector<MeasuredPose>& poses, const FitOptions& options,
                                 const std::vector<double>& from);
 
-/// The same orientation of a frame by rx and rz from −180 to 180 deg, ry from −90 to 90 deg, where its nominal angles
+/// Equivalent orientation of a frame by rx and rz from −180 to 180 deg, ry from −90 to 90 deg, where its nominal angles
 /// are zero: an estimate from another side would state it by other angles.
 /// @param frame  "base"
 void take_canonical_angles(const IdentificationModel& model, const std::string& frame, std::vector<double>& correction);

@@ -13,7 +13,7 @@ struct PlatformImage {
   Eigen::VectorXd actuators;  ///< how far each stands from the reference (Δρ), one per joint centre
 };
 
-/// How one joint centre moves on its platform, along the platform's z axis: Δb = κ Δρ of its own leg, and
+/// Motion of one joint centre on its platform, along the platform's z axis: Δb = κ Δρ of its own leg, and
 /// Δb = Σ_j K_j Δρ_j. Ordinary least squares with an intercept (the centre's mean place).
 struct JointDeformation {
   double largest = 0.0;                         ///< of the displacement in z from the mean place, m

@@ -15,7 +15,7 @@ struct ProfileInterval {
   double lower = 0.0, upper = 0.0;
 };
 
-/// How the sum of squares rises along one parameter while all others are estimated anew.
+/// Profile: rise of the sum of squares along one parameter, with all others estimated anew.
 ///
 /// Profile t (Bates & Watts 1988, Nonlinear Regression Analysis and Its Applications, sec. 6.1.2):
 /// τ(θ) = sign(θ − θ̂) √(S̃(θ) − S(θ̂)) / s, S̃(θ) the least sum of squares of whitened residuals and prior terms with the
@@ -26,7 +26,7 @@ struct ProfileInterval {
 class Profile {
  public:
   /// All are those of the estimate, which has converged. `model` and `poses` must outlive it. Throws CannotDo for
-  /// robust weights: what their sum of squares rises by follows no such law.
+  /// robust weights, whose sum of squares follows no such law.
   Profile(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
           const FitOptions& options, const Fit& fit);
   ~Profile();
@@ -36,11 +36,11 @@ class Profile {
   /// τ with the column's correction at `value` (SI), the others estimated from the fit on. None: nothing can be
   /// estimated there (a pose is out of reach, it does not converge), or it was stopped.
   std::optional<double> tau(int column, double value, const Monitor& monitor);
-  /// Where |τ| is `factor` for the first time on either side: steps outwards until the root lies between two of them,
+  /// Values at which |τ| first reaches `factor` on either side: steps outwards until the root lies between two of them,
   /// then false position. None: nothing can be estimated beside the fit, or it was stopped.
   std::optional<ProfileInterval> interval(int column, double factor, const Monitor& monitor);
-  /// How far below the estimate's the sum of squares was seen so far, in units of the noise's variance. Above 0 it is
-  /// not the best estimate.
+  /// Largest decrease of the sum of squares below the estimate's so far, in units of the noise's variance. Above 0 it
+  /// is not the best estimate.
   double better() const;
   /// The corrections of all parameters where that was.
   const std::vector<double>& better_estimate() const;

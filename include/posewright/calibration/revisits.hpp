@@ -9,7 +9,7 @@
 namespace posewright {
 
 /// Configurations that were measured again after others: each time a pose of its own in the fit, since robot and
-/// instrument came back. What the visits differ by is noise and drift, whatever the model of the robot.
+/// instrument came back. Differences of visits are noise and drift, for any model of the robot.
 struct Revisits {
   int places = 0, visits = 0;  ///< configurations that were visited more than once, and how often in all
   /// Differences between visits in units of the stated noise (instrument and repeatability), drift taken out.

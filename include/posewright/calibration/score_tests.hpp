@@ -14,7 +14,7 @@ struct EffectToTest {
   std::vector<int> parameters;  ///< of the model's catalogue
 };
 
-/// What the residuals of a fit say of an effect that is not in it.
+/// Score test of an unfitted effect by the residuals of a fit.
 struct ScoreTest {
   std::string name;
   double gain = 0.0;         ///< by how much fitting it too would lower the sum of squared whitened residuals
@@ -30,11 +30,11 @@ struct ScoreTest {
 };
 
 /// Score tests (Rao 1948) of effects beside a fit, one by one, on its linearisation: with r the whitened residuals and
-/// X the effect's columns less what the fitted ones imitate, gain = ‖X(XᵀX)⁻¹Xᵀr‖² and F = (gain/k)/((‖r‖² − gain)/(ν −
-/// k)) of k and ν − k degrees of freedom, ν = readings − fitted parameters: right for noise of any size. Best first;
+/// X the effect's columns less their part in the fitted ones, gain = ‖X(XᵀX)⁻¹Xᵀr‖² and F = (gain/k)/((‖r‖² − gain)/(ν
+/// − k)) of k and ν − k degrees of freedom, ν = readings − fitted parameters: right for noise of any size. Best first;
 /// effects of which the fitted parameters leave nothing, and those for which no degree of freedom is left, are not
 /// listed.
-/// @param columns  what was fitted, as columns of `model`
+/// @param columns  fitted columns of `model`
 /// @param correction  of all parameters of `model`
 std::vector<ScoreTest> score_tests(const IdentificationModel& model, const VariantColumns& columns,
                                    const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// How large and how smooth an effect is that the residuals of a fit hold: theory.md eq. (33), translations alone.
+/// Size and length of a smooth effect in the residuals of a fit: theory.md eq. (33), translations alone.
 struct SmoothEffect {
   std::string why_not;  ///< why nothing can be said; empty: it can
   double size = 0.0;    ///< τ, 1σ along each axis, m; 0: the residuals show none

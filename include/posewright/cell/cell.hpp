@@ -9,13 +9,13 @@
 
 namespace posewright {
 
-/// The cell around the robot: what it may touch and what the instrument sees. Made once for a problem, shared by all
+/// The cell around the robot: bodies and lines of sight. Made once for a problem, shared by all
 /// variants: bodies and sights follow the nominal model, whose errors are far below any clearance.
 struct Cell {
   std::shared_ptr<const IdentificationModel> model;  ///< nominal one of the planned variant
   std::unique_ptr<const Collision> collision;        ///< null: nothing is checked
   std::unique_ptr<const LineOfSight> sight;          ///< null: the instrument has no stations
-  /// What a robot that is not calibrated yet may stand beside its readings, per coordinate's name (rad or m): kept from
+  /// Deviation of an uncalibrated robot from its readings, per coordinate's name (rad or m): kept from
   /// its limits beside the margin.
   std::map<std::string, double> joint_margin;
   bool sight_is_asked = false;  ///< whether line of sight constrains configurations and blocks

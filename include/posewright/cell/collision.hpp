@@ -22,16 +22,16 @@ struct ReducedClearance {
   double clearance = 0.0;  ///< m, that is kept
 };
 
-/// How far two bodies are apart.
+/// Distance of two bodies.
 struct Separation {
   double distance = 0.0;  ///< m; 0: they touch
   std::string first, second;
-  /// Where they are nearest, a point of the first and one of the second, measurement frame, m; none where they touch or
+  /// Nearest points, one of the first and one of the second body, measurement frame, m; none where they touch or
   /// no pair of points is as far apart as they are.
   std::optional<std::array<Eigen::Vector3d, 2>> points{};
 };
 
-/// Robot, tool and obstacles: what collides with what. Const and callable from several threads.
+/// Collisions of robot, tool and obstacles. Const and callable from several threads.
 class Collision {
  public:
   /// @param model  nominal one of the problem (Problem::workspace has a collision block); must outlive this
@@ -50,9 +50,9 @@ class Collision {
   /// Largest margin (m) that was added to a clearance for a robot that is not calibrated yet.
   double margin() const;
 
-  /// Index into reasons() of what q collides with, or −1. Bodies keep their clearance, and half a millimetre more.
+  /// Index into reasons() of a collision at q, or −1. Bodies keep their clearance, and half a millimetre more.
   int violation(std::span<const double> q) const;
-  /// What is nowhere negative where violation() is −1: balls within bodies are above half spaces.
+  /// Functions that are never negative where violation() is −1: balls within bodies are above half spaces.
   NecessaryLimits necessary_limits() const;
   void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// "link_3 and table" for the first pair that is too near; empty if q is free.
@@ -62,17 +62,17 @@ class Collision {
 
   /// The two bodies that are nearest to each other, of all pairs that are checked; none if nothing is.
   std::optional<Separation> nearest(std::span<const double> q) const;
-  /// The same without the points where they are nearest, which take as long again.
+  /// Variant without the nearest points, which take as long again.
   std::optional<Separation> nearest_bodies(std::span<const double> q) const;
-  /// The same on the straight motion, where the smallest distance is at most half a millimetre below the one returned.
+  /// Variant for the straight motion, where the smallest distance is at most half a millimetre below the one returned.
   std::optional<Separation> nearest(std::span<const double> from, std::span<const double> to) const;
 
-  /// Whether the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: a pair
+  /// True if the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: a pair
   /// that is d apart keeps its clearance until its bodies can have moved by what d has to spare (bounds on the motion
   /// of a link as Schwarzer, Saha & Latombe 2005; steps as conservative advancement, Mirtich 1996).
   bool motion_is_free(std::span<const double> from, std::span<const double> to) const;
 
-  /// Whether a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.
+  /// True if a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.
   bool blocked(std::span<const double> q, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
                const std::string& station) const;
   /// Name of a body, other than those of `station`, that a point (measurement frame) is in at q; empty: none.

@@ -36,7 +36,7 @@ struct DrawnPose {
   std::vector<std::optional<Eigen::Vector3d>> targets;
 };
 
-/// A serial arm as a page needs it to follow a joint: what BodyFrames::poses does.
+/// A serial arm for a page that follows a joint, as BodyFrames::poses does.
 struct DrawnChain {
   struct Joint {
     Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
@@ -60,7 +60,7 @@ struct DrawnCamera {
   std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
 };
 
-/// What a picture of the cell needs, for robots with and without link shapes. Links look as the URDF's <visual> shapes
+/// Data for a picture of the cell, for robots with and without link shapes. Links look as the URDF's <visual> shapes
 /// where they can be read, else as those that are checked for collision. Meshes are thinned to 3,000 triangles each and
 /// 30,000 together. Nothing here judges anything: missing
 /// meshes leave a skeleton and a warning.
@@ -76,9 +76,9 @@ class Drawing {
   const std::vector<std::string>& targets() const { return target_names_; }
   /// Instruments that stand still.
   const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
-  /// Of a serial arm measured at one configuration at a time; none of others.
+  /// For a serial arm measured at one configuration at a time; none for others.
   const std::optional<DrawnChain>& chain() const { return chain_; }
-  /// Of an instrument that takes pictures; none of others.
+  /// For an instrument that takes pictures; none for others.
   const std::optional<DrawnCamera>& camera() const { return camera_; }
   /// As its URDF calls it; empty: it has none.
   const std::string& robot() const { return robot_; }

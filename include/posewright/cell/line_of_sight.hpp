@@ -29,14 +29,14 @@ struct Sight {
   int hidden_by = -1;                     ///< index into LineOfSight::reasons(); −1: visible
 };
 
-/// What the instrument sees: from a station to each target, by range, angles, acceptance cone and what stands between.
+/// Line of sight from a station to each target, by range, angles, acceptance cone and bodies in between.
 /// Const and callable from several threads.
 class LineOfSight : public Visibility {
  public:
   /// @param model      nominal one of the problem; must outlive this
   /// @param collision  bodies that may hide a target; null: nothing does. Must outlive this.
   /// Null for an instrument without stations and targets. Throws InputError if the problem's line_of_sight asks for
-  /// what the instrument does not have.
+  /// parts that the instrument lacks.
   static std::unique_ptr<LineOfSight> make(const Problem& problem, const IdentificationModel& model,
                                            const Collision* collision);
 
@@ -49,17 +49,17 @@ class LineOfSight : public Visibility {
   const std::vector<std::string>& reasons() const { return reasons_; }
   /// −1 where as many targets are visible as must be; else the reason that hides the first hidden one.
   int violation(std::span<const double> q, bool past_bodies = true) const;
-  /// What is nowhere negative where violation() is −1: ranges, angles and cones of single targets where all must be
-  /// seen, of the targets' mean with room for their distances from it where some are enough (theory.md eq. (59)).
+  /// Functions that are never negative where violation() is −1: ranges, angles and cones of single targets if all must
+  /// be visible, else of the targets' mean with room for their distances from it (theory.md eq. (59)).
   NecessaryLimits necessary_limits() const;
   void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// Every target from one station, also where q belongs to another.
   std::vector<Sight> sights(std::span<const double> q, int station) const;
-  /// Whether the problem asks for line of sight; else every target counts as visible.
+  /// True if the problem limits the line of sight; else every target is visible.
   bool judges() const { return judges_; }
   /// First and last of the stations that look at q: all of them (photogrammetry) or the one that is chosen.
   std::pair<int, int> stations_of(std::span<const double> q) const;
-  /// Whether the stations ride on the tip (a camera in the hand).
+  /// True if the stations move with the tip (a camera in the hand).
   bool rides_on_tip() const { return station_on_tip_; }
   /// Index of the station that q is measured from.
   int station_of(std::span<const double> q) const;
@@ -68,7 +68,7 @@ class LineOfSight : public Visibility {
 
   Eigen::Isometry3d X_MeasureStation(std::span<const double> q, int station) const;
 
-  /// Whether propose_tip() knows more than chance: an instrument that looks along an axis, or targets with a front.
+  /// True if propose_tip() is better than random draws: an instrument with an axis, or targets with a front.
   bool can_propose() const;
   /// A pose of the tip in the measurement frame from which the instrument sees its targets as far as distance, field of
   /// view and incidence go, drawn evenly over them; what they leave open stays as it is at q. For a camera in the hand:
@@ -96,7 +96,7 @@ class LineOfSight : public Visibility {
   void add_normals(const Problem& problem);
   bool seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
                  bool past_bodies) const;
-  /// What this thread knows of q: a block and the checks ask for the same q one after the other.
+  /// Cache of this thread for q: a block and the checks use the same q one after the other.
   Looked& looked_at(std::span<const double> q) const;
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
               bool on_tip, bool past_bodies) const;

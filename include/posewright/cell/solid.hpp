@@ -27,7 +27,7 @@ class Solid {
   double radius() const { return radius_; }
   /// Lower bound of the distance of a point (own frame) from it: from a box around it, or exact.
   virtual double at_least(const Eigen::Vector3d& point) const = 0;
-  /// Whether a point (own frame) is in it or on it; for open meshes false.
+  /// True if a point (own frame) is in it or on it; for open meshes false.
   virtual bool holds(const Eigen::Vector3d& point) const = 0;
   /// Points whose convex hull has the solid in it: corners, or vertices of a mesh. Empty for a half space.
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
@@ -64,10 +64,10 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                          double cap);
 
-/// Whether the distance of two solids takes no longer than that of their hulls.
+/// True if the distance of two solids takes no longer than the distance of their hulls.
 bool are_convex(const Solid& a, const Solid& b);
 
-/// Whether a solid comes nearer than `radius` to the segment.
+/// True if a solid comes nearer than `radius` to the segment.
 bool blocks(const Solid& solid, const Eigen::Isometry3d& X, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
             double radius);
 

@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// What programs call their axes: six that turn, then the external ones, in the order of the controller.
+/// Names of axes in programs: six that turn, then the external ones, in the order of the controller.
 const std::vector<std::string>& krl_axis_names();
 const std::vector<std::string>& rapid_axis_names();
 /// E1 to E3 move with the arm's group; those of a positioner are a group of its own, GP2.

@@ -10,7 +10,7 @@
 
 namespace posewright {
 
-/// What a controller needs to know beyond the joint values, from a YAML file (docs/export.md). Lists are in the order
+/// Settings of a controller besides the joint values, from a YAML file (docs/export.md). Lists are in the order
 /// of the plan's joints, empty if the file has none.
 struct ControllerSettings {
   std::string file;                  ///< as messages call it
@@ -19,10 +19,10 @@ struct ControllerSettings {
   std::vector<double> sign;          ///< +1 or −1
   std::vector<double> zero_deg;
   std::vector<double> pulses_per_degree;
-  /// What each axis may be, as the controller counts it: deg, mm of an axis that slides.
+  /// Range of each axis in the controller's count: deg, mm of an axis that slides.
   std::vector<std::array<double, 2>> range_deg;
   std::optional<double> coupling;  ///< f in J3 = J3_urdf − f · J2_urdf
-  std::vector<std::string> axes;   ///< what the controller calls the joints
+  std::vector<std::string> axes;   ///< names of the joints on the controller
   std::optional<int> decimals;
   std::optional<std::array<double, 3>> pivot_mm;  ///< platform origin as the hexapod counts it
 

@@ -9,7 +9,7 @@
 
 namespace posewright::yaml {
 
-/// Short YAML files beside the problem: values by what they are called. Everything here throws InputError with file and
+/// Short YAML files beside the problem: values by name. Everything here throws InputError with file and
 /// line.
 class Document {
  public:

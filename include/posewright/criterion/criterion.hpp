@@ -13,7 +13,7 @@ namespace posewright {
 
 class InformationFunction;
 
-/// What a criterion sees of a design problem: candidate blocks, well conditioned (see planning/whiten.hpp).
+/// Data of a design problem for criteria: candidate blocks, well conditioned (see planning/whiten.hpp).
 struct CandidateView {
   const BlockArray* blocks = nullptr;
   int nuisance = 0;     ///< the leading columns that are nuisance; eliminated by Schur complement
@@ -46,7 +46,7 @@ class DesignState {
 
   /// Φ from the running quantities; −∞ where the information is singular.
   virtual double value() const = 0;
-  /// Estimate of what Φ loses without the member at `position`: the order in which positions are tried.
+  /// Estimated loss of Φ without the member at `position`: the order in which positions are tried.
   virtual double loss(int position) const = 0;
   /// Best candidate for `position` with a gain above min_gain; never the member that is there.
   Swap best_swap(int position, double min_gain);
@@ -60,7 +60,7 @@ class DesignState {
 
   /// A banned candidate may not enter.
   void ban(int candidate, bool banned);
-  /// Whether the candidate may enter now under the repeat policy, the spacing and the bans.
+  /// True if the candidate may enter now under the repeat policy, the spacing and the bans.
   bool may_enter(int candidate) const { return blocked_[std::size_t(candidate)] == 0; }
 
  protected:
@@ -89,7 +89,7 @@ class Criterion {
   virtual std::string name() const = 0;
   /// Φ as a function of the information alone.
   virtual const InformationFunction& function() const = 0;
-  /// Whether Φ of a design is function() of its information: not where losses of single poses count too.
+  /// True if Φ of a design is function() of its information: false if losses of single poses count too.
   virtual bool of_information_alone() const { return true; }
   /// A state that starts from `members` (indices into the view's blocks), maybe none.
   virtual std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const = 0;

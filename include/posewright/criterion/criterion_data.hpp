@@ -9,7 +9,7 @@ namespace posewright {
 struct TestPoint {
   Eigen::MatrixXd A;       ///< rows × m, raw coordinates (SI), zero for nuisance columns
   double weight = 1.0;     ///< > 0
-  Eigen::MatrixXd turn{};  ///< 3 × m: the same of the orientation (rotation vector), for what is stated of a plan
+  Eigen::MatrixXd turn{};  ///< 3 × m: the same of the orientation (rotation vector), for the figures of a plan
 };
 
 /// One of several variants that a plan serves at once: its columns in the blocks.
@@ -20,17 +20,17 @@ struct VariantGroup {
   double reference = 0.0;  ///< log det of its interest information that no plan of as many poses exceeds, whitened
 };
 
-/// What a variant that may be the case has and the fitted one lacks. The trailing columns of the blocks span what its
+/// Effects of an alternative variant that the fitted one lacks. The trailing columns of the blocks span what its
 /// effects do to the readings beyond what the fitted columns, all others, imitate over the candidates. Effects are
 /// independent of one another, each of size one.
 struct EffectGroup {
   int columns = 0;      ///< trailing ones; 0: no effects are known
   Eigen::MatrixXd mix;  ///< columns × effects, raw: effect e moves the readings by (trailing columns) mix.col(e)
   Eigen::MatrixXd error_rows{};    ///< for `bias`: error that counts = error_rows · (error of the fitted), raw
-  Eigen::MatrixXd error_offset{};  ///< rows × effects: what each effect does there that is not a trailing column's
+  Eigen::MatrixXd error_offset{};  ///< rows × effects: each effect there, less the trailing columns' part
 };
 
-/// What criteria need beyond the blocks. Blocks are whitened, J = J_raw R⁻¹, so M_raw = Rᵀ M R.
+/// Data of criteria besides the blocks. Blocks are whitened, J = J_raw R⁻¹, so M_raw = Rᵀ M R.
 struct CriterionData {
   Eigen::MatrixXd R;                     ///< m × m, upper triangular; see planning/whiten.hpp
   Eigen::VectorXd scale;                 ///< unit of every parameter (its tolerance, …), raw coordinates

@@ -29,7 +29,7 @@ class LogDetFunction : public InformationFunction {
 /// for the exchange.
 class DeterminantCriterion : public Criterion {
  public:
-  /// @param name  what users call it: o1, or ds where the elimination is meant to show
+  /// @param name  name for users: o1, or ds where the elimination is meant to show
   DeterminantCriterion(std::string name, int nuisance, int columns)
       : name_(std::move(name)), function_(nuisance, columns) {}
   std::string name() const override { return name_; }

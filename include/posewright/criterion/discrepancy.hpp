@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// Φ = ln T, T = tr(Zᵀ S Z): what the fitted columns (A, the leading ones) cannot imitate of the effects, S = M_ff −
+/// Φ = ln T, T = tr(Zᵀ S Z): the part of the effects outside the fitted columns (A, the leading ones), S = M_ff −
 /// M_fa M_aa⁻¹ M_af the Schur complement of the trailing columns (f). T is the least sum of squared residuals that
 /// fitting leaves of one effect, the expected one for several that are independent. It is concave and of degree one in
 /// M, so degree() is 1. −∞ where the fitted columns are not determined or no residual is left. Atkinson & Fedorov
@@ -38,9 +38,9 @@ class DiscriminateFunction : public InformationFunction {
 /// for the minimal aliasing of a design.
 class BiasFunction : public InformationFunction {
  public:
-  /// @param rows    L, what counts × fitted columns
+  /// @param rows    L, targets × fitted columns
   /// @param mix     Z, trailing columns × effects
-  /// @param offset  b, what counts × effects
+  /// @param offset  b, targets × effects
   BiasFunction(const Eigen::MatrixXd& rows, Eigen::MatrixXd mix, const Eigen::MatrixXd& offset);
   double value(const Eigen::MatrixXd& information) const override;
   Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// Φ near one information matrix M: what a solver for optimal weights needs (planning/approximate_design.hpp).
+/// Φ near one information matrix M, for a solver of optimal weights (planning/approximate_design.hpp).
 class Expansion {
  public:
   virtual ~Expansion() = default;
@@ -27,7 +27,7 @@ class InformationFunction {
   virtual double value(const Eigen::MatrixXd& information) const = 0;
   /// S = ∂Φ/∂M, symmetric: Φ grows by tr(J S Jᵀ) per unit of weight on J. Only where value() is finite.
   virtual Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const = 0;
-  /// Whether Φ is concave: no swap then gains more than its derivative promises.
+  /// True if Φ is concave: no swap then gains more than its derivative.
   virtual bool concave() const = 0;
   /// h of Φ(cM) = Φ(M) + h ln c where e^{Φ/h} is concave: then Φ(v) ≤ Φ(w) + h ln(Σ v_i d_i(w) / h) for all weights v,
   /// w, and exp((Φ − bound)/h) is an efficiency. 0: Φ has no such bound, and expand() must not be called.

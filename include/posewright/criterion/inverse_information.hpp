@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// What a change of M took from X V Xᵀ, all candidates' rows of one row each being X: Σ_l signs[l] terms_l terms_lᵀ.
+/// Reduction of X V Xᵀ by a change of M, with candidates of one row each as X: Σ_l signs[l] terms_l terms_lᵀ.
 struct RankChange {
   Eigen::MatrixXd terms;     ///< n × number of terms
   Eigen::VectorXd signs;     ///< 1 or −1
@@ -44,7 +44,7 @@ class InverseInformation {
   void measure(int candidate);
   /// M ← M − J_leaveᵀJ_leave + J_enterᵀJ_enter; −1 for nobody. Returns false if the update would lose all accuracy:
   /// nothing has changed then and the caller refreshes instead.
-  /// @param made  blocks of one row: takes what the change was; null: nobody asks
+  /// @param made  blocks of one row: receives the change; null: not needed
   bool change(int leave, int enter, RankChange* made = nullptr);
 
  private:

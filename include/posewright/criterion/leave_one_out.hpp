@@ -22,7 +22,7 @@ class LeaveOneOut {
   void exchange(int leave, int enter);
   /// ln det S(M) now; −∞ where singular.
   double value() const { return value_; }
-  /// The same; where M is singular, of M plus a ridge: what gains count from.
+  /// Variant with a ridge for a singular M: the reference of gains.
   double reference() const { return reference_; }
   /// d of the interest information for every candidate, from a fresh factor of M; computed when it is first asked for.
   const std::vector<double>& sensitivities() const;

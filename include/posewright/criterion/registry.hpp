@@ -10,24 +10,24 @@
 
 namespace posewright {
 
-/// One row a criterion: the name users write, what it maximises, what it needs. Nobody else knows a criterion's name.
+/// One row a criterion: name for users, objective, needed data. No other code knows a criterion's name.
 struct CriterionEntry {
   std::string name;
   std::string summary;
-  /// Throws CannotDo if the data lack what it needs.
+  /// Throws CannotDo if needed data are missing.
   std::unique_ptr<Criterion> (*make)(const CriterionData& data);
   /// Φ of a design in the criterion's own terms (docs/plan-file.md); `indices` are those of the same design.
   double (*shown)(double phi, const ObservabilityIndices& indices);
-  bool determinant = false;       ///< Φ is what `log_det` in a plan says
+  bool determinant = false;       ///< Φ is `log_det` of a plan
   bool scaled = false;            ///< Φ depends on the scale of the columns
   bool several_variants = false;  ///< needs CriterionData::variants
   bool needs_test_poses = false;  ///< needs CriterionData::test_points
   bool needs_truth = false;       ///< needs CriterionData::effects
   bool needs_residual = false;    ///< needs more readings than there are parameters
-  bool accuracy = false;          ///< if there are test poses, what is shown is −(squared position error, m²)
+  bool accuracy = false;          ///< if there are test poses, the shown value is −(squared position error, m²)
 };
 
-/// What `shown` of a row may be: Φ itself, e^Φ, −e^{−Φ} (Φ = −ln of a variance).
+/// Forms of `shown` of a row: Φ itself, e^Φ, −e^{−Φ} (Φ = −ln of a variance).
 double shown_phi(double phi, const ObservabilityIndices&);
 double shown_exponential(double phi, const ObservabilityIndices&);
 double shown_variance(double phi, const ObservabilityIndices&);
@@ -41,7 +41,7 @@ void register_criterion(CriterionEntry entry);
 const CriterionEntry* find_criterion(const std::string& name);
 /// nullptr if no criterion has that name.
 std::unique_ptr<Criterion> make_criterion(const std::string& name, const CriterionData& data);
-/// "o1, …": for messages that say what is allowed.
+/// "o1, …": for messages with the allowed values.
 std::string criterion_names();
 
 }  // namespace posewright

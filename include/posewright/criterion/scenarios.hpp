@@ -30,7 +30,7 @@ class ScenarioCriterion : public Criterion {
   /// @param whole  weight of all scenarios that there are, where these are the worst of them
   ScenarioCriterion(std::vector<Scenario> scenarios, const RobustAim& aim, double whole);
   std::string name() const override { return "robust"; }
-  /// That of the view's own blocks: Φ is no function of their information.
+  /// Information of the view's own blocks: Φ is no function of it.
   const InformationFunction& function() const override { return function_; }
   bool of_information_alone() const override { return false; }
   std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override;

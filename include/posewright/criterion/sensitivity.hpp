@@ -13,7 +13,7 @@ namespace posewright {
 void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse_factor, int columns,
                         std::vector<double>& d, int threads = 1);
 
-/// d_i = tr(J_i S J_iᵀ) of every candidate for S = T Tᵀ: what a unit of weight on i adds to Φ (see Expansion). One pass
+/// d_i = tr(J_i S J_iᵀ) of every candidate for S = T Tᵀ: gain of Φ by a unit of weight on i (see Expansion). One pass
 /// over the blocks, O(n r m²/2), on `threads` threads (0 = all).
 /// @param T  m × m, upper triangular
 /// @param d  resized to blocks.count()

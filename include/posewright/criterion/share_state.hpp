@@ -23,7 +23,7 @@ class ShareState {
   int size() const;
   /// −∞ where M is singular.
   double value() const;
-  /// What Φ loses, roughly, without the member at a position.
+  /// Approximate loss of Φ without the member at a position.
   double loss(int position) const;
   /// The member at a position: r rows of the blocks' stride.
   const double* member(int position) const;

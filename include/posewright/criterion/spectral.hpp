@@ -15,7 +15,7 @@ namespace posewright {
 /// The search maximises the logarithm. They depend on the scale of the columns. ln o3 and ln o5 are concave in M and
 /// bounded (squared, both are matrix means of degree 1: Pukelsheim 2006, Optimal Design of Experiments, 6.7); o2 and o4
 /// are not.
-/// `mean` stands between: (Σ λᵢ⁻ᵖ)^{−1/2p}, o5 at p = ½ and o3 for p → ∞. It is what o3 is settled under first.
+/// `mean` stands between: (Σ λᵢ⁻ᵖ)^{−1/2p}, o5 at p = ½ and o3 for p → ∞. o3 is first settled under it.
 enum class SpectralIndex { o2, o3, o4, o5, mean };
 
 /// Φ of the eigenvalues λ = σ², ascending, of the scaled information with nuisance eliminated.
@@ -52,7 +52,7 @@ class SpectralFunction : public InformationFunction {
   /// ∂Φ/∂λ_i, λ ascending.
   Eigen::VectorXd by_eigenvalue(const Eigen::VectorXd& lambda) const;
   SpectralIndex index() const { return index_; }
-  /// Whether every eigenvalue counts: Φ = −ln(Σ λ⁻ᵖ)/2p.
+  /// True if every eigenvalue counts: Φ = −ln(Σ λ⁻ᵖ)/2p.
   bool of_all() const { return index_ == SpectralIndex::o5 || index_ == SpectralIndex::mean; }
   /// Blocks times this are in units of the scale.
   const Eigen::MatrixXd& to_scaled() const { return C_; }

@@ -33,7 +33,7 @@ class TraceFunction : public InformationFunction {
   Eigen::MatrixXd A_;
 };
 
-/// The same with exact rank-r swaps (src/criterion/trace_state.cpp). The logarithm makes gains independent of units.
+/// Variant with exact rank-r swaps (src/criterion/trace_state.cpp). The logarithm makes gains independent of units.
 class TraceCriterion : public Criterion {
  public:
   TraceCriterion(std::string name, Eigen::MatrixXd A) : name_(std::move(name)), function_(std::move(A)) {}

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// Whether a CSV file lists compliances of a joint (its header has a column `compliance`) in place of readings.
+/// True if a CSV file lists compliances of a joint (its header has a column `compliance`) in place of readings.
 /// Throws InputError if it cannot be read.
 bool lists_compliances(const std::filesystem::path& file);
 

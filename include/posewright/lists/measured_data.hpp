@@ -24,7 +24,7 @@ struct MeasuredData {
   std::vector<RepeatedReadings> repeated;  ///< poses of more than one row
   std::vector<PlatformImage> images;       ///< of a six-legged platform whose joint centres are read, too; row by row
   OrientationForm orientation{};           ///< as the columns have it
-  std::vector<std::string> notes;          ///< what the user must know of how it was read
+  std::vector<std::string> notes;          ///< notes on the reading, for the user
 };
 
 /// CSV with a header: one column for every coordinate as in a list of poses (names, maybe with units), one for every
@@ -37,11 +37,11 @@ struct MeasuredData {
 /// platform (leg_1.x, …) beside its points make images of how it deforms. Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);
-/// The same for text already in memory; `file` names it in messages.
+/// Overload for text in memory; `file` names it in messages.
 MeasuredData parse_measured_data(const std::string& text, const std::filesystem::path& file, const Problem& problem,
                                  const IdentificationModel& model);
 
-/// The same format, SI, values to their last digit.
+/// Text in the same format, SI, values to their last digit.
 std::string measured_data_csv(const IdentificationModel& model, const std::vector<MeasuredPose>& poses);
 
 }  // namespace posewright

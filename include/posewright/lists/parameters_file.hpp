@@ -14,17 +14,17 @@ namespace posewright {
 /// Bytes of the largest plan or route that is read.
 inline constexpr std::size_t plan_size_limit = 200'000'000;
 
-/// What a plan states of the parameters that a problem was read with.
+/// Parameters of a problem, as stated in a plan.
 ParametersFile parameters_of(const Problem& problem);
 
-/// What a plan, route or evaluation states of the parameters it was made at, the file as it is found from here or from
+/// Parameters of a plan, route or evaluation; the file as found from here or from
 /// the plan's folder. Empty if it states none or is no such file.
 /// Throws InputError if the file is not there.
 ParametersFile parameters_of_plan(const std::filesystem::path& plan);
 
-/// What the user must know where the plan `name` was made at other parameters than the problem has now; else empty.
+/// Note for the user if the plan `name` was made at other parameters than the problem's; else empty.
 std::string parameters_note(const std::string& name, const ParametersFile& made_at, const Problem& problem);
-/// The same for a list, added to `notes`; a list that names no problem says nothing.
+/// Variant for a list, added to `notes`; a list without a problem gives no note.
 void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes);
 
 /// A calibrated parameter and its 1σ, SI, where it was estimated.

@@ -17,10 +17,10 @@ struct PlatformPoints {
   std::vector<std::string> joints;  ///< "leg_1", …
 };
 
-/// Nothing for robots without six legs and instruments that read no points of the platform.
+/// Empty for robots without six legs and instruments without points of the platform.
 std::optional<PlatformPoints> platform_points(const Problem& problem, const IdentificationModel& model);
 
-/// How far the actuators stand from where the nominal robot has them at the reference. Empty if q is out of reach.
+/// Actuator positions less those of the nominal robot at the reference. Empty if q is out of reach.
 Eigen::VectorXd actuator_moves(const IdentificationModel& model, const std::vector<double>& q);
 
 }  // namespace posewright

@@ -15,7 +15,7 @@
 
 namespace posewright {
 
-/// How a file of poses is read.
+/// Options for reading a file of poses.
 struct DocumentOptions {
   std::string format;  ///< as `export` calls it; empty: by the file's ending and first character
   ControllerSettings controller;
@@ -34,7 +34,7 @@ struct OtherValues {
 
 /// A file that has poses, to be written again with other values for them: a plan or route (its via points are poses
 /// too; home, where a robot rests, is none), a list in one of the formats that are read, CSV, a robot program. JSON,
-/// CSV and programs keep everything else that they say; other lists are written anew, with what their format's reader
+/// CSV and programs keep all other text; other lists are written anew, with the data of their format's reader
 /// takes.
 class PoseDocument {
  public:
@@ -42,14 +42,14 @@ class PoseDocument {
 
   /// All points in the order of the file; those of a route's motions come last.
   const PoseList& poses() const { return poses_; }
-  /// What the user must know of how it was read.
+  /// Notes on the reading, for the user.
   const std::vector<std::string>& notes() const { return poses_.notes; }
 
   /// The file with other values. Poses that are not to be touched have their listed ones.
   /// @param remark  of one line, put where the format has a place for a comment
   /// Throws CannotDo if the format cannot hold them.
   virtual std::string text(const OtherValues& values, const std::string& remark) const = 0;
-  /// Of a program; null: it is none. Points of its entries are poses().
+  /// Account of a program; null for other files. Points of its entries are poses().
   virtual const ProgramAccount* account() const { return nullptr; }
 
  protected:
@@ -70,7 +70,7 @@ struct DocumentFile {
 std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<DocumentFile>& files,
                                                            const std::vector<Coordinate>& coordinates,
                                                            const DocumentOptions& options);
-/// The same for files. The motions to points of a .dat or .dtx are sought in the .src or .pgx beside it, too.
+/// Overload for files. The motions to points of a .dat or .dtx are sought in the .src or .pgx beside it, too.
 std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std::filesystem::path>& paths,
                                                           const std::vector<Coordinate>& coordinates,
                                                           const DocumentOptions& options);

@@ -20,7 +20,7 @@ struct PoseList {
   std::vector<int> own_ids{};          ///< of a column `id` or `pose`, 0: it is not a number; empty: there is none
   std::vector<std::string> marks{};    ///< cells of a column `fixed`; empty: there is none
   std::vector<std::string> columns{};  ///< names of all columns of the list
-  std::vector<std::string> notes{};    ///< what the user must know of how the list was read
+  std::vector<std::string> notes{};    ///< notes on the reading of the list, for the user
   std::string name{};                  ///< of the list, for messages: its file
   std::string problem_sha256{};        ///< of the problem it was made for; empty: not known
   ParametersFile parameters_file{};    ///< that it was made at

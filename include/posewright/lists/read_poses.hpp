@@ -17,14 +17,14 @@ namespace posewright {
 /// value outside `coordinates`, an unknown format.
 PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates,
                     const std::string& format = "");
-/// The same for text in memory; `name` stands for the file in messages.
+/// Overload for text in memory; `name` is the file in messages.
 PoseList read_poses_text(std::string text, const std::string& name, const std::vector<Coordinate>& coordinates,
                          const std::string& format = "");
 
-/// The same coordinates with limits that no value meets: what was measured was there, whatever the limits say.
+/// Coordinates without limits: measured poses may exceed the limits.
 std::vector<Coordinate> without_limits(std::vector<Coordinate> coordinates);
 
-/// Whether a value keeps the limits of c, but for rounding.
+/// True if a value keeps the limits of c, up to rounding.
 bool inside(double value, const Coordinate& c);
 /// A value that is inside() as the workspace takes it: at a limit that it passes by a hair, at the listed position that
 /// it means. What is neither stays.
@@ -32,7 +32,7 @@ double as_allowed(double value, const Coordinate& c);
 /// Throws InputError for a value that is not inside().
 void require_inside(double value, const Coordinate& c, const SourcePlace& place);
 
-/// "FILE: 3 poses are nearer to a limit than what is proposed would be: 4, 9, 12".
+/// "FILE: 3 poses are nearer to a limit than proposed poses would be: 4, 9, 12".
 std::string margin_note(const std::string& file, const std::vector<int>& ids);
 
 }  // namespace posewright

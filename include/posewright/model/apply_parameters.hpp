@@ -11,7 +11,7 @@ namespace posewright {
 /// one Denavit–Hartenberg convention: all variants that have the same. In the variant that was calibrated, or the first
 /// one asked for in its place, they win over its `nominal`; in others what the variant says of itself stands.
 /// @param asked  variants that the user named; empty: none
-/// @return what the user must know: variants with other parameters, which stay as they are
+/// @return notes for the user: variants with other parameters, which stay as they are
 /// Throws InputError with the parameters file's line: no such variant, another kind of parameters, unknown names, units
 /// that are not the parameter's.
 std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters parameters,

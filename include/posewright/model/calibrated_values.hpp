@@ -26,7 +26,7 @@ struct CalibratedValue {
 std::vector<CalibratedValue> calibrated_values(const Problem& problem, const VariantSpec& variant,
                                                const IdentificationModel& model, std::span<const double> correction);
 
-/// What stands behind a frame of a chain because of corrections, and the parameters that put it there.
+/// Displacement behind a frame of a chain by corrections, with their parameters.
 struct FrameCorrection {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   std::vector<CalibratedValue> by;  ///< those that are not nominal; empty: X is exactly the identity
@@ -48,7 +48,7 @@ ChainCorrection chain_correction(const ChainDescription& chain, VariantSpec::Con
 /// The chain with base, joints and tip corrected.
 ChainDescription corrected_chain(ChainDescription chain, const ChainCorrection& correction);
 
-/// "joint_a2.gear = 0.0012: why", as lists of what a file cannot hold say it.
+/// "joint_a2.gear = 0.0012: why", as in lists of corrections that a file cannot hold.
 std::string left_out_text(const CalibratedValue& value, const std::string& why);
 
 }  // namespace posewright

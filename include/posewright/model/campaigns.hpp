@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// A robot measured in several campaigns: between them the instrument was moved, the robot stayed what it is. Wraps a
+/// A robot measured in several campaigns: between them the instrument was moved, the robot is unchanged. Wraps a
 /// model with one more coordinate `campaign`, the last, and for every campaign but the first six more parameters behind
 /// the model's own, base@NAME.{x, y, z, rx, ry, rz}, which take the place of base.* there.
 /// @param names  of all campaigns, two at least, no two alike

@@ -27,7 +27,7 @@ class ClosedChain : public TipModel {
   /// By theory.md eq. (50) where the robot gives the derivative of its loops, else TipModel's differences.
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const final;
-  /// None: the platform is no polynomial of its actuators. enclose_residual() is what bounds some of these robots.
+  /// None: the platform is no polynomial of its actuators. enclose_residual() bounds some of these robots.
   HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const final;
   bool actuator_values(const Point& at, std::span<double> values) const final;
 
@@ -92,15 +92,15 @@ class ClosedChain : public TipModel {
   /// `out` has the right sizes and is all zero.
   virtual void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                         std::span<const int> selected, Loops& out) const = 0;
-  /// How h = ⟨slope.parameter, F_ξ⟩ + ⟨slope.platform, F_X⟩ + ⟨slope.actuator, F_ρ⟩ of do_loops() changes along spatial
-  /// twists of the platform (base frame), and with the actuators: adds to both, which have the right sizes. False: the
-  /// robot does not say.
+  /// Derivatives of h = ⟨slope.parameter, F_ξ⟩ + ⟨slope.platform, F_X⟩ + ⟨slope.actuator, F_ρ⟩ of do_loops() along
+  /// spatial twists of the platform (base frame), and with the actuators: adds to both, which have the right sizes.
+  /// False: the robot does not say.
   virtual bool do_loops_change(std::span<const double> q, std::span<const double> actuators,
                                std::span<const double> own, std::span<const int> selected, const Loops& slope,
                                Twist& by_platform, Eigen::VectorXd& by_actuators) const;
   /// Legs and rims in the base frame, nominal.
   virtual std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const = 0;
-  /// What the redundant sensors read and the same derivatives of it, for robots that have some.
+  /// Values of the redundant sensors and their derivatives, for robots with sensors.
   virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
                           std::span<const int> selected, Loops& out) const;
   /// Fills `out`, whose loops have the right sizes and are zero, for all configurations of a box. False if there is no

@@ -9,13 +9,13 @@
 
 namespace posewright {
 
-/// How far the tip is from where it is wanted.
+/// Error of the tip against its target pose.
 struct TipError {
   double position = std::numeric_limits<double>::quiet_NaN();  ///< m
   double rotation = std::numeric_limits<double>::quiet_NaN();  ///< rad, 0 to π
 };
 
-/// What to command so that a robot as it was calibrated stands where the nominal one would: u' with
+/// Commands for the calibrated robot to reach the pose of the nominal one: u' with
 ///   X_calibrated(u') = X_nominal(u),
 /// u the joints of an arm or the actuators of a parallel robot. Gauss–Newton from u on the twists of the readings about
 /// the tip, with the smallest change of u that does it: Δu = (u₀ − u) + J⁺ (e − J (u₀ − u)), so that the null space of
@@ -29,7 +29,7 @@ class CommandSolver {
   struct Options {
     bool with_base = false;      ///< where the base was found to stand counts; else poses are in the robot's own base
     bool with_tool = true;       ///< where the tool was found to be counts; else it stays nominal
-    bool position_only = false;  ///< the tip's orientation may be what it will
+    bool position_only = false;  ///< the tip's orientation is free
     double most_angle = 0.17453292519943295;  ///< rad: a joint that has to turn further is not a correction
     double most_length = 0.1;                 ///< m, of one that slides
   };
@@ -53,7 +53,7 @@ class CommandSolver {
 
   /// @param nominal     the robot as its controller knows it; its coordinates are the first ones of `calibrated`
   /// @param calibrated  the same robot with its parameters
-  /// @param correction  calibrated less nominal, for every parameter of `calibrated`; what loads do is taken with all
+  /// @param correction  calibrated less nominal, for every parameter of `calibrated`; the effect of loads includes all
   ///                    of it
   /// @param limits      of the coordinates of `calibrated`, in their order
   /// Throws CannotDo for a robot of fewer than six axes, unless positions alone are asked for.
@@ -62,20 +62,20 @@ class CommandSolver {
 
   /// Coordinates of a configuration: joints or platform, then choices.
   const std::vector<Coordinate>& coordinates() const { return limits_; }
-  /// What is commanded: the joints of an arm, the actuators of a parallel robot.
+  /// Commanded coordinates: the joints of an arm, the actuators of a parallel robot.
   const std::vector<Coordinate>& commanded() const { return commanded_; }
   bool is_parallel() const { return !calibrated_->actuators().empty(); }
 
   /// @param q              configuration as listed, size coordinates()
   /// @param configuration  the one to command, size coordinates(); as listed unless reached
-  /// @param change         of every commanded() one, less what the nominal robot has at q; 0 unless reached
+  /// @param change         of every commanded() one, less the nominal robot's at q; 0 unless reached
   /// @param actuators      of a parallel robot, size commanded(); empty for arms
   Solution solve(std::span<const double> q, std::span<double> configuration, std::span<double> change,
                  std::span<double> actuators = {}) const;
 
-  /// Where the nominal robot has its tip at q, measurement frame; false if q is out of reach.
+  /// Tip of the nominal robot at q, measurement frame; false if q is out of reach.
   bool target(std::span<const double> q, Eigen::Isometry3d& X_MeasureTip) const;
-  /// Where the calibrated arm has it when q is commanded.
+  /// Tip of the calibrated arm with q commanded.
   bool reached(std::span<const double> q, Eigen::Isometry3d& X_MeasureTip) const;
 
  private:

@@ -10,7 +10,7 @@ namespace posewright {
 /// A URDF that has a calibrated robot's kinematics.
 struct CorrectedUrdf {
   std::string text;
-  std::vector<std::string> left_out;  ///< what a URDF cannot say: "NAME = VALUE UNIT: why"
+  std::vector<std::string> left_out;  ///< corrections that a URDF cannot hold: "NAME = VALUE UNIT: why"
 };
 
 /// The arm's URDF file with the <origin> of joints between base and tip changed and not one byte else: displacements of
@@ -22,7 +22,7 @@ struct CorrectedUrdf {
 CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
                              const std::vector<CalibratedValue>& values);
 
-/// The same for the xacro file that the URDF was made of: comments, macros and everything else stay, an origin that was
+/// Variant for the xacro file of the URDF: comments, macros and all else stay, an origin that was
 /// an expression becomes numbers. Lengths and angles that other lines compute from the same properties stay as they
 /// are. Throws as corrected_urdf(); CannotDo for a joint that this file has not exactly once (an included file has it,
 /// a macro makes several of it) or whose origin comes from a macro; InputError for a robot that is no xacro file.

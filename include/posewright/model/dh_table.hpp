@@ -28,7 +28,7 @@ struct DhTable {
   Eigen::Isometry3d X_BaseFirst = Eigen::Isometry3d::Identity();  ///< frame on the first joint's axis in the base link
   std::vector<DhRow> rows;
   Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
-  std::vector<std::string> left_out;  ///< what a table cannot say: "NAME = VALUE UNIT: why"
+  std::vector<std::string> left_out;  ///< corrections that a table cannot hold: "NAME = VALUE UNIT: why"
 
   /// Tip in the measurement frame. @param q  one reading a row, rad or m
   Eigen::Isometry3d tip(std::span<const double> q) const;

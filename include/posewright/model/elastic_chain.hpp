@@ -13,7 +13,7 @@ namespace posewright {
 /// followed the sorted positions and not the file's, so they cannot be taken for anything.
 bool is_numbered_place(std::string_view name);
 
-/// How far the torque of a compensator bends its joint without any load (`effect: torque`), if that is not a small
+/// Deflection of the unloaded joint by the torque of its compensator (`effect: torque`), if that is not a small
 /// angle in which springs are linear: one line for the user. Empty if nothing is to be said.
 std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates);
 
@@ -26,7 +26,7 @@ std::string compensator_warning(const Problem& problem, const std::vector<Coordi
 /// are listed), or with a gravity compensator NAME.stiffness K2⁰ (N·m/rad), compensator.stiffness Kc (N/m) and
 /// compensator.preload s0·Kc (N), where
 ///   δ = τ_load / (K2⁰ + M'(q)), M the spring's torque (eq. (13)–(14) of the KR 270's study), τ_load that of the load
-/// case alone: what spring and links do to the unloaded arm is in the controller's zero. Where the problem says
+/// case alone: the effect of spring and links on the unloaded arm is in the controller's zero. Where the problem says
 /// `effect: torque`, δ = (τ − M(q)) / (K2⁰ + M'(q)). Then tool.*.
 class ElasticChain : public TipModel {
  public:
@@ -36,7 +36,7 @@ class ElasticChain : public TipModel {
   bool linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip, Twists& twists,
                  Twists* reading_twists) const override;
 
-  /// That of the chain; how deflections change with the torques that bend it by central differences of these alone.
+  /// Gradient of the chain; changes of deflections with the torques by central differences of these alone.
   bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                  std::span<double> gradient) const override;
 
@@ -69,7 +69,7 @@ class ElasticChain : public TipModel {
     int listed = 0;  ///< which of the listed positions
   };
   void add_springs(const SourcePlace& place);
-  /// Whether a compliance counts where the joints stand: one that is listed does at its own position alone.
+  /// True if a compliance acts at these joints: a listed one acts only at its own position.
   bool acts(const Spring& spring, std::span<const double> q) const;
   /// Torque at one coordinate by the load case, without the weight of links.
   double load_alone(const Point& at, std::size_t coordinate) const;
@@ -80,7 +80,7 @@ class ElasticChain : public TipModel {
                     Twists& readings) const;
   /// Deflection of every coordinate and its derivative by every elastostatic parameter.
   void deflect(const Point& at, std::span<double> deflection, std::span<double> derivative) const;
-  /// Adds what f changes because torques change with q, given its derivatives by deflections and by their derivatives.
+  /// Adds the change of f by that of torques with q, given its derivatives by deflections and by their derivatives.
   void add_bending(const Point& at, std::span<const double> by_deflection, std::span<const double> by_derivative,
                    std::span<double> gradient) const;
 

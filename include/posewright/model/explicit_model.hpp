@@ -12,7 +12,7 @@ namespace posewright {
 /// A robot that carries a tip, seen by an instrument: g = y − h(ρ, ξ). Parameters: the robot's, then the instrument's.
 /// Where the instrument's targets stand for the tool, tool.* are left out. Configuration: the robot's, then the station
 /// if there is a choice. Residual covariance: the instrument's, plus the joint readings' noise through ∂h/∂ρ, plus
-/// what the tip's displacement of this visit does to all readings alike.
+/// the common effect of the tip's displacement at this visit on all readings.
 ///
 /// Everything but targets and lenses acts on the readings through a motion of the tip, so G = [Y | O] · C with Y (r ×
 /// 6) the rows along unit twists and O the own columns: where r is larger than that, blocks are written with 6 + |O|

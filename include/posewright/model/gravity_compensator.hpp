@@ -26,7 +26,7 @@ struct CompensatorLinkage {
   /// Torque on the joint (N·m): M = Kc (1 − s0/s) a L sin γ.
   T torque(const T& stiffness, const T& preload) const { return (stiffness - preload / s) * aL * sine; }
 
-  /// Its derivative by q2, what the spring adds to the joint's stiffness (N·m/rad):
+  /// Its derivative by q2, the spring's part of the joint's stiffness (N·m/rad):
   ///   −Kc a L cos γ + Kc s0 (a L/s) (cos γ + (a L/s²) sin² γ).
   T added_stiffness(const T& stiffness, const T& preload) const {
     return preload * (aL / s) * (cosine + aL / (s * s) * sine * sine) - stiffness * aL * cosine;

@@ -17,22 +17,22 @@ class HarmonicRows {
   virtual ~HarmonicRows() = default;
 
   const std::vector<HarmonicPart>& parts() const { return parts_; }
-  /// What columns are multiplied by.
+  /// Factors of the columns.
   const std::vector<ColumnFactor>& factors() const { return factors_; }
   /// Degree of the columns in each coordinate of the model; 0 for choices.
   const std::vector<int>& degrees() const { return degrees_; }
   /// Distances that factors of parts depend on.
   int distances() const { return distances_; }
-  /// How far each may be from the mean of all; empty: not known.
+  /// Largest deviation of each from the mean of all; empty: not known.
   const std::vector<DistanceSpread>& spreads() const { return spreads_; }
   /// Each column of the parts may be off by a vector of at most this length; empty: by none.
   const std::vector<double>& remainders() const { return remainders_; }
 
-  /// Columns Z of what else is random at a pose, each with a variance of 1, where the noise is the same everywhere:
+  /// Columns Z of other random effects at a pose, each with a variance of 1, where the noise is the same everywhere:
   /// then JᵀJ ⪯ (B − ZK)ᵀ(B − ZK) + KᵀK for every K (theory.md eq. (60)). 0: there is none, or other noise.
   int random_columns() const { return random_columns_; }
 
-  /// Chooses what can be chosen so that the bound is near d at these configurations.
+  /// Adapts free choices so that the bound is near d at these configurations.
   virtual void tune(const std::vector<std::vector<double>>& configurations, std::span<const double> weights) = 0;
 
   /// Work space of one thread.
@@ -66,7 +66,7 @@ class HarmonicRows {
 /// (55)). One part of constant noise is what they may have.
 std::unique_ptr<HarmonicRows> with_remainders(std::unique_ptr<HarmonicRows> inside);
 
-/// Of the difference of two readings at the same configuration with the same constant noise: those of one less those of
+/// Difference of two readings at the same configuration with the same constant noise: rows of one less those of
 /// the other.
 std::unique_ptr<HarmonicRows> harmonic_difference(std::unique_ptr<HarmonicRows> one,
                                                   std::unique_ptr<HarmonicRows> other);

@@ -21,17 +21,17 @@ struct Coordinate {
   double upper = 0.0;
   bool periodic = false;              ///< a full turn: both ends are the same pose and no boundary
   std::vector<double> values{};       ///< the only values allowed, ascending; empty: all between the limits
-  std::vector<std::string> labels{};  ///< of a choice (load case, station): what the values 0, 1, … stand for
+  std::vector<std::string> labels{};  ///< of a choice (load case, station): names of the values 0, 1, …
   double speed = 0.0;                 ///< largest, per second; 0: not known
-  std::string limited_by{};           ///< what narrows the joint's own limits; empty: nothing
-  /// Of a choice between `rising` and `falling`: the coordinate that arrives so, and from how far, rad or m.
+  std::string limited_by{};           ///< cause of narrower limits of the joint; empty: none
+  /// Choice between `rising` and `falling`: the arriving coordinate, and its distance, rad or m.
   std::string arrives{};
   double overrun = 0.0;
   bool measurable = false;  ///< a choice (of a temperature) that data may hold any number of; values are the numbers
 
   bool discrete() const { return !values.empty(); }
   bool choice() const { return !labels.empty(); }
-  /// What a value of a choice is called; of a measured one that is none of them, the number.
+  /// Name of a choice's value; for a measured value outside the list, the number.
   std::string label_at(double value) const;
 };
 
@@ -50,20 +50,20 @@ struct Reading {
   std::string unit;  ///< "m", "rad", "px"
 };
 
-/// Where a robot stands and with which parameters, from where it is seen, under which load.
+/// Pose and parameters of a robot, station of the instrument, load.
 struct Point {
   std::span<const double> q;           ///< configuration, SI
   std::span<const double> correction;  ///< ξ − nominal of every parameter; empty: all zero
   int station = 0;                     ///< index among the instrument's
   int load_case = 0;                   ///< index among the robot's
-  std::span<const double> read{};      ///< what the joints read if they do not stand there; empty: q
+  std::span<const double> read{};      ///< readings of the joints if they differ; empty: q
 
   std::span<const double> readings() const { return read.empty() ? q : read; }
 };
 
 /// Result and work space of one linearisation; reuse it, so that a loop over configurations does not allocate.
 struct Linearisation {
-  /// Input, r × r; empty: all one. Factors of the covariance of the readings alone (of what stays at a pose none),
+  /// Input, r × r; empty: all one. Factors of the covariance of the readings alone (without repeatability),
   /// where they are means of other numbers of readings than the model's repeats.
   Eigen::MatrixXd reading_share;
   Eigen::MatrixXd G;           ///< r × selected: ∂g/∂ξ up to the sign of g, not yet whitened
@@ -76,7 +76,7 @@ struct Linearisation {
   Eigen::MatrixXd random_coefficients;
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;          ///< scratch: tip twist per selected parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> reading_twists;  ///< scratch: tip twist per joint or actuator reading
-  Eigen::Matrix<double, 6, Eigen::Dynamic> random_twists;   ///< scratch: what moves the tip at random, 1σ
+  Eigen::Matrix<double, 6, Eigen::Dynamic> random_twists;   ///< scratch: random motions of the tip, 1σ
   Eigen::MatrixXd rows, small;                              ///< scratch
   std::vector<char> seen;                                   ///< scratch: per target
   std::vector<double> correction, settled;                  ///< scratch
@@ -91,7 +91,7 @@ struct Linearisation {
 
 class HarmonicRows;
 
-/// Which of an instrument's targets can be seen. Const and callable from several threads.
+/// Visible targets of an instrument. Const and callable from several threads.
 class Visibility {
  public:
   virtual ~Visibility() = default;
@@ -103,7 +103,7 @@ class Visibility {
 /// Robot and instrument together: everything that planning needs to know of them.
 ///
 /// A model is a catalogue of all its parameters (more than can be identified); a variant selects columns.
-/// Identification function g(y, ρ, ξ) as in design: zero for exact model and data. Members are const and
+/// Identification function g(y, ρ, ξ): zero for exact model and data. Members are const and
 /// may be called from several threads at once, each with a Linearisation of its own.
 class IdentificationModel {
  public:
@@ -113,39 +113,39 @@ class IdentificationModel {
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   /// Coordinates that follow from the configuration and have limits of their own (actuators of a parallel robot).
   const std::vector<Coordinate>& actuators() const { return actuators_; }
-  /// Rows r of one configuration: what the instrument reads.
+  /// Rows r of one configuration: the readings.
   int rows() const { return rows_; }
-  /// Those of them that are read at q: the rows of targets that can be seen.
+  /// Readings at q: the rows of visible targets.
   int visible_rows(std::span<const double> q) const;
   /// Readings of targets that are hidden at q become NaN: nobody reads them.
   void blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const;
   /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
 
-  /// Takes `value` as the nominal one of parameter `index`: from now on all that follows is linearised there.
-  /// What bounds the sensitivity of these columns over boxes of the coordinates, the choices as they are in q; every
-  /// target counts as seen, which only tells more. Null: nothing does, `why_not` says why.
+  /// Bound of the sensitivity of these columns over boxes of the coordinates, with the choices of q. Every target
+  /// counts as seen, which only adds information.
+  /// @param why_not  reason, if no bound is known and null is returned
   std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
                                               std::string& why_not) const;
-  /// The same but for what its rows may be off (HarmonicRows::remainders()), which is left to the caller.
+  /// Variant without the remainders of its rows (HarmonicRows::remainders()), which are left to the caller.
   std::unique_ptr<HarmonicRows> harmonic_expansion(std::span<const double> q, std::span<const int> selected,
                                                    std::string& why_not) const;
 
-  /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and what is not negative where q is within
-  /// reach and its actuators within their travel.
+  /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and functions that are not negative where q
+  /// is within reach and its actuators within their travel.
   struct Enclosure {
     TaylorModel sensitivity;
     std::vector<TaylorModel> allowed;
   };
   /// @param q  every coordinate over the box
-  /// @param T  selected × any number; null: only what is allowed
+  /// @param T  selected × any number; null: only the limits
   /// @return false if this model has no enclosure
   bool enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
                Enclosure& out) const {
     return visibility_ == nullptr && do_enclose(q, selected, T, shift_, out);
   }
 
-  void set_nominal(int index, double value);
+  void set_nominal(int index, double value);  ///< of parameter `index`: later linearisations are there
   /// From now on loads bend an elastic robot as they do with these corrections (of all parameters): what parameters
   /// change of the torques is of second order while corrections are small, but a base may be found to stand anywhere.
   void take_loads_at(std::span<const double> correction);
@@ -156,26 +156,26 @@ class IdentificationModel {
   /// @return false if q has no solution (unreachable) or cannot be measured; `out` is then unspecified
   bool linearise(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                  Linearisation& out) const;
-  /// The same with G factored into out.basis and out.coefficients, random motions of the tip into
+  /// Variant with G factored into out.basis and out.coefficients, random motions of the tip into
   /// out.random_coefficients; only where block_rows() < rows().
   bool linearise_factored(std::span<const double> q, std::span<const double> correction, std::span<const int> selected,
                           Linearisation& out) const;
 
-  /// How a number f of what linearise() gives changes with every continuous coordinate, from its derivatives by G and
+  /// Gradient of a number f of linearise() along every continuous coordinate, from its derivatives by G and
   /// by the covariance (symmetric), nominal parameters: ∂f/∂q_k = ⟨∂f/∂G, ∂G/∂q_k⟩ + ⟨∂f/∂Σ, ∂Σ/∂q_k⟩ (theory.md eq.
   /// (48)).
-  /// @param gradient  size coordinates(); what it says of choices means nothing
+  /// @param gradient  size coordinates(); undefined for choices
   /// @return false if this model does not know its derivatives, or has none at q
   bool pull_back(std::span<const double> q, std::span<const int> selected, const Eigen::MatrixXd& by_G,
                  const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const;
 
-  /// Where the robot with the parameters nominal + correction stands while its actuators stand as they do at q with
-  /// nominal ones; q itself for a robot whose coordinates are what its joints read.
+  /// Configuration of the robot with the parameters nominal + correction and the actuators at q with
+  /// nominal ones; q itself for a robot with its joint readings as coordinates.
   /// @param settled  size coordinates(); may be q
   /// @return false if q is out of reach or a closed chain does not settle near q
   bool settled(std::span<const double> q, std::span<const double> correction, std::span<double> settled) const;
 
-  /// What a measurement of one configuration consists of, in the order of the rows.
+  /// Readings of one configuration, in the order of the rows.
   const std::vector<Reading>& readings() const { return readings_; }
   /// Readings h(ρ, ξ) with the parameters nominal + correction, while the actuators ρ stand as they do at q with
   /// nominal ones: a parallel robot settles in another pose, a serial arm turns its joints as far as it reads.
@@ -192,22 +192,22 @@ class IdentificationModel {
   void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted, Eigen::VectorXd& out) const;
   /// Readings whose difference() to the predicted ones is `change`.
   void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const;
-  /// Where a robot with nominal parameters stands when its actuators have these values (size actuators()), searched
+  /// Configuration of the nominal robot with these actuator values (size actuators()), searched
   /// from `start`; a robot without actuators stays there. False if the closed chain does not close.
   bool configuration_at(std::span<const double> actuators, std::span<const double> start, std::span<double> q) const;
 
   /// False if the instrument cannot see q; why, in words for the table of rejections.
   /// @param correction  ξ − nominal for every parameter, or empty for all zero
   bool measurable(std::span<const double> q, std::span<const double> correction = {}) const;
-  /// How many smooth functions of q are ≥ 0 where it can be measured, and in units of the range that each has; a closed
+  /// Number of smooth functions of q that are ≥ 0 where it can be measured, in units of their ranges; a closed
   /// chain's singularities are left out. None: measurable() alone knows.
   std::optional<int> measurable_margins() const { return do_measurable_margins(); }
   bool measurable_margins_at(std::span<const double> q, std::span<double> out) const;
   /// Empty if every reachable configuration can be measured.
   const std::string& unmeasurable_reason() const { return unmeasurable_reason_; }
 
-  /// Who says which targets can be seen: from now on the rows of hidden ones are zero in every linearisation, so that a
-  /// block counts what is visible only. Without rows_per_target() it does nothing.
+  /// Sets the visibility of targets: from now on the rows of hidden ones are zero in every linearisation, so that a
+  /// block counts visible targets only. Without rows_per_target() it does nothing.
   void set_visibility(std::shared_ptr<const Visibility> visibility) { visibility_ = std::move(visibility); }
   /// Rows that one target has; 0: the instrument sees the pose as a whole.
   int rows_per_target() const { return rows_per_target_; }

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What an instrument looks at and from where: all that lines of sight, drawings and lists need to know of it.
+/// Targets and stations of an instrument, for lines of sight, drawings and lists.
 struct InstrumentView {
   /// One place that it looks from; `parameters` is the prefix of those that move it ("station.A", "camera").
   struct Place {

@@ -42,7 +42,7 @@ class JointEffects : public TipModel {
 
  private:
   enum class Kind { cosine, sine, linear, side };
-  /// One parameter: what it adds to the reading of `joint` is its value times the function of coordinate `of`.
+  /// One parameter: its addition to the reading of `joint` is its value times the function of coordinate `of`.
   struct Effect {
     int joint, of;
     Kind kind;
@@ -55,7 +55,7 @@ class JointEffects : public TipModel {
   void add(const JointEffectsSpec& spec, int joint, const std::string& file);
   void add_temperature(const TemperatureSpec& spec);
   double coefficient(const Point& at, std::size_t effect) const;
-  /// Where the joints stand, and the selection and corrections as the arm counts them; all held by this thread.
+  /// Joint values, selection and corrections in the arm's order; all held by this thread.
   struct Inside;
   Inside& inside(const Point& at, std::span<const int> selected) const;
 

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What the URDF says a link looks like to a collision checker, placed in the frame that carries it.
+/// Collision shape of a link in the URDF, placed in its frame.
 struct LinkShape {
   ShapeSpec shape;  ///< mesh files as the URDF names them, other paths resolved against the URDF's folder
   Eigen::Isometry3d X_FrameShape = Eigen::Isometry3d::Identity();
@@ -30,10 +30,10 @@ struct LinkGeometry {
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 
-/// All links with a <visual> shape, as read_urdf_links; `shapes` are what they look like.
+/// All links with a <visual> shape, as read_urdf_links; with their shapes in `shapes`.
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place);
 
-/// The same of a file that is no robot but what stands around one, all joints at zero position, in the frame of its
+/// Variant for a file of surroundings, all joints at zero position, in the frame of its
 /// root.
 std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file);
 

@@ -11,7 +11,7 @@ namespace posewright {
 /// sensors, distances between configurations).
 std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec);
 
-/// The robot as the problem's instrument sees it. Throws CannotDo if the robot lacks what is measured.
+/// The robot as the problem's instrument sees it. Throws CannotDo if the robot lacks the measured quantity.
 std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const Problem& problem);
 
 }  // namespace posewright

@@ -16,7 +16,7 @@ inline constexpr double default_target_tolerance = 1e-3;
 class MeasurementModel;
 
 /// Noise of an instrument whose rows and own columns are linear in the tip's pose and in twists, or would be without a
-/// direction: what bounds over boxes are made of (theory.md eq. (39)).
+/// direction: the parts of bounds over boxes (theory.md eq. (39)).
 struct HarmonicNoise {
   enum class Kind {
     unknown,
@@ -33,7 +33,7 @@ struct HarmonicNoise {
   double repeats = 1.0;  ///< of its readings
 };
 
-/// What an instrument sees of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
+/// Measurement of a tip frame: rows of measured values, their noise, and parameters of its own (targets,
 /// stations, lens). Members are const and may run in several threads at once.
 class MeasurementModel {
  public:
@@ -46,7 +46,7 @@ class MeasurementModel {
     int station = 0;
   };
 
-  /// How a number f depends on what an instrument gives at one sighting: what pull_back() takes to the tip's pose.
+  /// Derivatives of a number f by the results of one sighting: pull_back() takes them to the tip's pose.
   struct Adjoint {
     Eigen::MatrixXd twist_rows;   ///< rows × 6: ∂f/∂(rows along unit twists)
     std::vector<int> own;         ///< own parameters that f depends on
@@ -66,7 +66,7 @@ class MeasurementModel {
   /// True if targets (or a mounted board or camera) stand for the tool, so that tool.* would be said twice.
   bool replaces_tool() const { return replaces_tool_; }
 
-  /// What it delivers, in the order of the rows.
+  /// Readings, in the order of the rows.
   const std::vector<Reading>& readings() const { return readings_; }
   /// The readings of one measurement, without noise; `y` has size rows().
   virtual void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const = 0;
@@ -85,7 +85,7 @@ class MeasurementModel {
   /// instrument that does not say gets central differences in the tip's six motions.
   virtual Twist pull_back(const Sighting& sighting, const Adjoint& f) const;
 
-  /// How rows and noise depend on the tip's pose. Default: in no way that a bound over boxes could use.
+  /// Dependence of rows and noise on the tip's pose. Default: none that a bound over boxes could use.
   virtual HarmonicNoise harmonic_noise() const { return {}; }
 
   /// Own parameters that act like a motion of the tip (a station moves one way, the tip seems to move the other):
@@ -95,13 +95,13 @@ class MeasurementModel {
   /// Column (size rows) of an own parameter that is not a motion. Throws std::logic_error for others.
   virtual void own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const;
 
-  /// Covariance of the rows (rows × rows): reading noise over repeats, plus what stays at a pose.
+  /// Covariance of the rows (rows × rows): reading noise over repeats, plus repeatability.
   virtual void covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd> covariance) const = 0;
 
   /// False if the instrument cannot read the tip there; unseen_reason() says why, empty if it always can.
   virtual bool sees(const Sighting& sighting) const;
   const std::string& unseen_reason() const { return unseen_reason_; }
-  /// IdentificationModel::measurable_margins() of what it sees alone.
+  /// IdentificationModel::measurable_margins() of the instrument alone.
   virtual std::optional<int> margins() const;
   virtual void margins_at(const Sighting& sighting, std::span<double> out) const;
 

@@ -12,10 +12,10 @@ namespace posewright {
 /// Throws InputError (URDF, limits, names) or CannotDo (instrument, robot and variant do not fit).
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant);
 
-/// The same for the problem's first variant.
+/// Overload for the problem's first variant.
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
 
-/// The problem without what stays at a pose (the robot's repeatability, its joint readings' noise).
+/// The problem without errors common to a pose (the robot's repeatability, its joint readings' noise).
 Problem without_pose_errors(Problem problem);
 
 /// The robot alone; null for one that carries no single tip. Throws as make_model.

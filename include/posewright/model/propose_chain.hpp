@@ -9,7 +9,7 @@ namespace posewright {
 
 /// Links between which an arm would be calibrated if nobody says it.
 struct ProposedChain {
-  std::string base;  ///< what the first moving joint stands on
+  std::string base;  ///< parent of the first moving joint
   std::string tip;
   std::vector<std::string> other_tips;  ///< links behind the last joint of the arm that would do as well
 };

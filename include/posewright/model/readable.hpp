@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// Whether a robot with other parameters can stand where its actuators are as the nominal one's are at q, and be
+/// True if a robot with other parameters reaches the nominal one's actuators at q and can be
 /// measured there.
 /// @param correction  ξ − nominal for every parameter
 /// @param stands      size of q: where it then stands

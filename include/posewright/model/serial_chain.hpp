@@ -30,7 +30,7 @@ class SerialChain : public TipModel {
 
   int offset_of(int coordinate) const override { return layout_.offset[std::size_t(coordinate)]; }
 
-  /// The same with every joint turned further than it reads by `deflection` (rad or m per coordinate; empty: zero).
+  /// Variant with every joint turned beyond its reading by `deflection` (rad or m per coordinate; empty: zero).
   void linearise_deflected(std::span<const double> q, std::span<const double> deflection,
                            std::span<const double> correction, std::span<const int> selected,
                            Eigen::Isometry3d& X_MeasureTip, Twists& twists, Twists* reading_twists) const;
@@ -45,7 +45,7 @@ class SerialChain : public TipModel {
   const ChainLayout& layout() const { return layout_; }
 
  private:
-  /// What a column is made of: the n-th stored axis, as rotation or translation, times a factor.
+  /// Source of a column: the n-th stored axis, as rotation or translation, times a factor.
   struct Column {
     int joint;  ///< −1 base, joints() tool
     int kind;   ///< 0–2 translation, 3–5 rotation, 6 offset, 7 gear

@@ -35,7 +35,7 @@ struct ChainDescription {
   std::string robot{};                ///< as its URDF calls it
 };
 
-/// Where each parameter of a serial chain stands: base (6), per joint displacement (6), offset and gear of each
+/// Position of each parameter of a serial chain: base (6), per joint displacement (6), offset and gear of each
 /// coordinate's own joint, tool (6).
 struct ChainLayout {
   explicit ChainLayout(const ChainDescription& chain);

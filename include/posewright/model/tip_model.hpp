@@ -15,7 +15,7 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 using Polyline = std::vector<Eigen::Vector3d>;
 
-/// How a number f depends on where a tip is and how parameters move it: what TipModel::pull_back() takes to the
+/// Derivatives of a number f by the tip's pose and twists: TipModel::pull_back() takes them to the
 /// configuration.
 struct TipAdjoint {
   Twists twists;              ///< 6 × selected: ∂f/∂(each entry of a parameter's twist)
@@ -25,13 +25,13 @@ struct TipAdjoint {
 
 /// Columns as polynomials of the joints' cosines and sines (and lengths), times factors that are none.
 struct HarmonicColumns {
-  std::string why_not;        ///< for people; empty: the rest holds
+  std::string why_not;        ///< for messages; empty: the rest holds
   std::vector<int> selected;  ///< columns that are polynomials, in place of those that were selected
   std::vector<int> degrees;   ///< of pose and columns in each coordinate; 0 for a choice
   std::vector<ColumnFactor> factors;
 
-  /// Of a robot that bends, its columns expanded to the first order in its deflections (theory.md eq. (54)): their
-  /// degree in an angle of degree 1, whether deflections are not zero, and what the expansion leaves out.
+  /// Columns of an elastic robot, expanded to the first order in its deflections (theory.md eq. (54)): their
+  /// degree in an angle of degree 1, whether deflections are not zero, and the remainder of the expansion.
   int order = 1;
   bool bends = false;
   /// The change of a point that the tip carries at a distance l of its origin by a column's parameter is off by at most
@@ -70,11 +70,11 @@ class TipModel {
 
   /// Adds to `gradient` (size coordinates()) how f changes with every continuous coordinate, where the tip's pose and
   /// twists are those of linearise() (theory.md eqs. (49) and (50)). A robot that does not say gets central differences
-  /// of linearise(). False if q or what is near it is unreachable or singular.
+  /// of linearise(). False if q or its neighbourhood is unreachable or singular.
   virtual bool pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                          std::span<double> gradient) const;
 
-  /// How the tip's pose and these columns depend on the joints, with the choices and corrections (all parameters, or
+  /// Dependence of the tip's pose and these columns on the joints, with the choices and corrections (all parameters, or
   /// empty) of this point; theory.md eq. (37). Twists of zero columns are polynomials.
   virtual HarmonicColumns harmonic_columns(std::span<const int> selected, const Point& at) const;
 
@@ -96,15 +96,15 @@ class TipModel {
   /// Empty if q is unreachable or the robot is an arm.
   virtual std::vector<Polyline> skeleton(std::span<const double> q) const;
 
-  /// Derivatives of what the redundant sensors read: along the selected parameters (sensors × selected) and along the
+  /// Derivatives of the redundant sensors' values: along the selected parameters (sensors × selected) and along the
   /// readings (sensors × readings). False if q is unreachable. Throws std::logic_error if there are no sensors.
   virtual bool sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,
                            Eigen::MatrixXd& reading_rows) const;
 
-  /// What the redundant sensors read (rad or m). False and throws as sensor_rows().
+  /// Values of the redundant sensors (rad or m). False and throws as sensor_rows().
   virtual bool sensor_values(const Point& at, Eigen::VectorXd& values) const;
 
-  /// Where the robot stands when its actuators have these values, near `start`; without actuators it stays there. False
+  /// Configuration with these actuator values, near `start`; without actuators it stays there. False
   /// if a closed chain does not close.
   virtual bool configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const;
 

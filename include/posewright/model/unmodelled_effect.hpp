@@ -11,12 +11,12 @@
 
 namespace posewright {
 
-/// How large and how smooth an effect is that the model lacks.
+/// Size and length of a smooth effect that the model lacks.
 struct UnmodelledSize {
   double translation = 0.0;  ///< 1σ along each axis, m
   double rotation = 0.0;     ///< 1σ about each axis through the tip, rad
   double length = 0.0;       ///< over which it changes, in angles of joints, rad
-  /// Where nobody says: joints that differ by as much see about the same of what a model lacks.
+  /// Default length: joint differences over which an unmodelled effect stays about equal.
   static constexpr double assumed_length = std::numbers::pi / 3;
 };
 
@@ -47,7 +47,7 @@ class UnmodelledEffect {
 
   /// f of every tip, one a column.
   Eigen::MatrixXd places(std::span<const double> q) const;
-  /// The same of a robot that stands at q, its own coordinates alone.
+  /// Overload for a robot at q, its own coordinates alone.
   Eigen::VectorXd place(std::span<const double> q) const;
   /// k of two places.
   double correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const;
@@ -119,7 +119,7 @@ class IndependentRows {
  public:
   IndependentRows() = default;
   explicit IndependentRows(const Eigen::MatrixXd& F);
-  /// Nothing is correlated.
+  /// No correlation.
   bool empty() const { return along_.size() == 0; }
   template <class Matrix>
   void apply(Matrix&& rows) const {

@@ -28,7 +28,7 @@ struct VariantColumns {
 /// (naming some that exist) and for a tolerance in a unit that none of the matched parameters has.
 VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
 
-/// Those that the variant lists under `fixed`, as indices of the catalogue.
+/// Parameters under `fixed` of the variant, as indices of the catalogue.
 std::vector<int> fixed_parameters(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
 
 /// Sets the nominal values that the variant names. Throws InputError as select_columns() does.

@@ -18,11 +18,11 @@ void factorise_covariance(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen::M
 bool whitened_block(const IdentificationModel& model, std::span<const double> q, std::span<const double> correction,
                     std::span<const int> selected, Linearisation& scratch, double* out, int stride);
 
-/// How a number that depends on a configuration through JᵀJ alone changes with every continuous coordinate.
+/// Gradient of a number that depends on a configuration through JᵀJ alone, along every continuous coordinate.
 /// @param block    J as whitened_block() wrote it for q
 /// @param slope    r × selected: the number's derivative by J there
 /// @param scratch  as whitened_block() left it at q
-/// @param gradient  size coordinates(); what it says of choices means nothing
+/// @param gradient  size coordinates(); undefined for choices
 /// @return false if the model does not know its derivatives
 bool whitened_gradient(const IdentificationModel& model, std::span<const double> q, std::span<const int> selected,
                        const BlockArray::RowMatrix& block, const BlockArray::RowMatrix& slope, Linearisation& scratch,

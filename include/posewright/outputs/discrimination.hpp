@@ -7,9 +7,9 @@
 
 namespace posewright {
 
-/// What a plan and a comparison write of the test (docs/plan-file.md).
+/// JSON of the test in a plan and a comparison (docs/plan-file.md).
 nlohmann::ordered_json discrimination_json(const Discrimination& test);
-/// The same in words, a few lines.
+/// Text of the test, a few lines.
 /// @param fitted  variant
 std::string discrimination_text(const Discrimination& test, const std::string& fitted);
 

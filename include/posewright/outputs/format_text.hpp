@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-/// How numbers and names are written in exported files.
+/// Numbers and names in exported files.
 namespace posewright::formats {
 
 double to_degrees(double radians);
@@ -13,11 +13,11 @@ double to_degrees_or_millimetres(double value, const std::string& unit);
 
 /// Fixed decimals, never −0.000.
 std::string fixed(double value, int decimals);
-/// The same without zeros at the end.
+/// Variant without zeros at the end.
 std::string short_fixed(double value, int decimals);
 /// Fewest digits that read back bit-equal.
 std::string shortest(double value);
-/// The same with a decimal point, so that every YAML reader takes it for a number (PyYAML takes 1e-07 for a text).
+/// Variant with a decimal point, so that every YAML reader takes it for a number (PyYAML takes 1e-07 for a text).
 std::string yaml_number(double value);
 /// [a, b, c]
 std::string yaml_numbers(const std::vector<double>& values);
@@ -27,7 +27,7 @@ std::string yaml_texts(const std::vector<std::string>& texts);
 
 /// Printable ASCII: letters with marks become plain ones (ä: ae), anything else unknown '?'.
 std::string ascii(std::string_view utf8);
-/// The same without what ends texts and comments in robot programs, at most `limit` characters.
+/// Variant without characters that end texts and comments in robot programs, at most `limit` characters.
 std::string program_text(std::string_view text, std::size_t limit);
 std::string with_crlf(const std::string& text);
 std::string xml_escaped(const std::string& text);

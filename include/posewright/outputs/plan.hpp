@@ -15,10 +15,10 @@
 
 namespace posewright {
 
-/// What else is chosen for a pose beside load case and station: the side that a joint arrives from, the temperature.
+/// Choices of a pose besides load case and station: the side of arrival of a joint, the temperature.
 /// Names and choices, in the order of the robot's coordinates.
 using Conditions = std::vector<std::pair<std::string, std::string>>;
-/// Of a condition's name: the side that a joint arrives from (model/identification_model.hpp, make_approach).
+/// Condition for the side of arrival of a joint (model/identification_model.hpp, make_approach).
 inline constexpr std::string_view approach_suffix = ".approach";
 inline bool is_approach(std::string_view condition) { return condition.ends_with(approach_suffix); }
 
@@ -43,7 +43,7 @@ struct TargetSight {
 struct BodyDistance {
   double distance = 0.0;  ///< m
   std::string first, second;
-  /// Where they are nearest: a point of the first and one of the second, measurement frame, m; none: not known.
+  /// Nearest points: one of the first and one of the second, measurement frame, m; none: not known.
   std::optional<std::array<Eigen::Vector3d, 2>> points{};
 };
 
@@ -77,7 +77,7 @@ struct PlannedParameter {
   std::string dropped_because;  ///< equation among kept parameters; empty if it is kept
 };
 
-/// What is proved about a plan over its candidates, and what a search says over the whole workspace. Bounds are of Φ,
+/// Proof about a plan over its candidates, and result of a search over the whole workspace. Bounds are of Φ,
 /// what the search maximises: log det, −ln of a variance, or ln of an efficiency (theory.md).
 struct Certificate {
   bool proved = true;                  ///< false: the criterion has no bound, the rest says nothing
@@ -94,13 +94,13 @@ struct Certificate {
     std::string why_not;                ///< why it is not proved
     long boxes = 0;                     ///< that a proof took
     std::vector<std::string> limits{};  ///< what a proof counts beside `within`: "tool box"
-    /// Where plans are that the bound is over: "within the joint limits less 2 deg", then what a proof counts beside
-    /// them.
+    /// Region of the bound: "within the joint limits less 2 deg", then further
+    /// conditions of the proof.
     std::string within{};
     /// A proof far below what the search says: it holds all the same.
     std::optional<double> loose_bound{};
     double loose_efficiency = 0.0;
-    /// Whether a search that proves nothing came to its end; otherwise its efficiency is no figure for people.
+    /// True if a search without proof was finished; otherwise its efficiency is not shown.
     bool settled = true;
     double reached = 0.0;  ///< Φ of the best weights found: some plan may be as good
     double at_most = 1.0;  ///< no more than this share of the best: that of these weights
@@ -117,7 +117,7 @@ struct VariantResult {
   double efficiency = 0.0;  ///< of this plan for it, against that bound
 };
 
-/// What plans of other sizes would reach.
+/// Results of plans of other sizes.
 struct CurvePoint {
   int poses = 0;
   double log_det = 0.0;
@@ -134,7 +134,7 @@ struct PlanStage {
   double seconds = 0.0;
 };
 
-/// What the cell made of the constraints.
+/// Constraints as applied by the cell.
 struct CellNotes {
   std::vector<std::string> always_touching;  ///< pairs of links that are not checked
   std::vector<BodyDistance> reduced;         ///< pairs that cannot keep their clearance by design, and what they keep
@@ -142,7 +142,7 @@ struct CellNotes {
   std::vector<NamedValue> joint_margins{};   ///< the same for limits
 };
 
-/// How far proposed poses stay off a coordinate's limits.
+/// Margin of proposed poses to a coordinate's limits.
 struct LimitMargin {
   std::string name, unit;
   double margin = 0.0;   ///< rad or m, at the nearer end
@@ -196,12 +196,12 @@ struct PlannedEffect {
   int features = 0;                                 ///< that stood for it in the search
   /// log det of the plan with the features less that with the whole effect.
   double feature_error = 0.0;
-  /// Of rho0, if there are test poses: by noise alone (the part of it that repeatability has), by the effect; and in
-  /// all if what is left is interpolated, m.
+  /// Parts of rho0, if there are test poses: by noise alone (the part of it that repeatability has), by the effect; and
+  /// in all if what is left is interpolated, m.
   std::optional<double> by_noise{}, by_repeatability{}, by_effect{}, interpolated{};
 };
 
-/// How much the accuracy of a plan relies on the model being complete: a smooth effect that it lacks moves the tip by
+/// Dependence of a plan's accuracy on a complete model: a smooth unmodelled effect moves the tip by
 /// so many times the noise of one pose, and the fit counts none.
 struct Reliance {
   static constexpr std::array<double, 3> times = {1, 2, 4};
@@ -212,29 +212,29 @@ struct Reliance {
   double error = 0.0;            ///< predicted position error with a complete model, root mean square, m
   std::array<double, 3> with{};  ///< the same with an effect of `times` the noise
 
-  /// What the estimate makes of the effect, 1: as large an error as the effect itself where it is not fitted at all.
+  /// Amplification of the effect by the estimate; 1: the error equals the unfitted effect.
   double amplification() const { return std::sqrt((with[0] * with[0] - error * error) / 3) / noise; }
 };
 
-/// What a plan is worth for robots drawn from the tolerances, and the plan for the nominal robot beside it.
+/// Efficiency of a plan, and of the plan for the nominal robot, on robots drawn from the tolerances.
 struct RobustPlan {
   int draws = 0;
   RobustAim aim;
   bool searched = true;  ///< false: a given list, which was judged alone
-  /// Of every drawn robot: log det that no plan of as many of the candidates exceeds; D-efficiency against it.
+  /// For every drawn robot: log det that no plan of as many of the candidates exceeds; D-efficiency against it.
   std::vector<double> references, nominal, efficiency;
   double nominal_value = 0.0, value = 0.0;  ///< the measure of them: a geometric mean, the least, that of the worst
   double bound = 1.0;                       ///< of the measure: no plan of as many of these candidates exceeds it
   long unreached = 0;    ///< pairs of robot and candidate where that robot cannot stand or be measured
   bool stopped = false;  ///< the search was ended before it was done
 
-  /// Where the nominal plan is so near to the robust one that the difference is of no use.
+  /// Gain below which the robust plan is no use against the nominal one.
   static constexpr double of_no_use = 0.01;
   double gain() const { return value / nominal_value - 1; }
   bool worth_it() const { return gain() > of_no_use; }
 };
 
-/// Everything that is written about a plan.
+/// All data of a written plan.
 struct Plan {
   std::uint64_t seed = 0;
   std::string problem_file, problem_sha256;
@@ -245,7 +245,7 @@ struct Plan {
   bool by_test_poses = false;    ///< the criterion counts the test poses and nothing else
   bool reserve = false;          ///< searched for what is left without the pose that hurts most
   bool proved_optimal = false;   ///< no plan of these candidates is better that keeps the minimum distance
-  std::string minimum_distance;  ///< of poses, for people; empty: none is kept
+  std::string minimum_distance;  ///< of poses, for messages; empty: none is kept
   double criterion_value = 0.0;  ///< in its own terms (docs/plan-file.md)
   std::optional<double> rho0;    ///< predicted position error at the test poses, root of the weighted mean square, m
   std::vector<double> test_errors{};  ///< the same at each test pose, m

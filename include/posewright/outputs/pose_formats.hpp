@@ -13,7 +13,7 @@
 
 namespace posewright {
 
-/// What the command line says; empty: the format's default.
+/// Options of the command line; empty: the format's default.
 struct ExportOptions {
   std::optional<double> speed;     ///< percent
   std::optional<double> settle;    ///< s before each measurement
@@ -75,19 +75,19 @@ struct PoseFormat {
   bool any_coordinates = false;  ///< has a place for a platform's coordinates and for pairs of configurations
   bool timed = false;            ///< a trajectory that a robot follows as it is, controller or not
 
-  /// Whether somebody's robot moves by it, so that every value has to be checked first.
+  /// True if a robot moves by it, so that every value is checked first.
   bool moves_robot() const { return controller || timed; }
 };
 
 const std::vector<PoseFormat>& pose_formats();
 /// Throws InputError naming all formats.
 const PoseFormat& find_pose_format(const std::string& name);
-/// The same of those that can be read.
+/// Names of formats that can be read.
 /// @param others  names that the caller knows beside them, for the message
 const PoseFormat& find_readable_format(const std::string& name, const std::string& others = "");
 std::string readable_format_names();
 
-/// What the format's writer makes. Throws CannotDo if the format is for joints and the plan's coordinates are those
+/// Output of the format's writer. Throws CannotDo if the format is for joints and the plan's coordinates are those
 /// of a platform or of pairs of configurations; else as the writer.
 Exported export_poses(const PoseFormat& format, const PoseSequence& sequence, const ExportOptions& options);
 

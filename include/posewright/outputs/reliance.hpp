@@ -7,10 +7,10 @@
 
 namespace posewright {
 
-/// How much a plan's accuracy relies on the model being complete: SI, as in plan.json (docs/plan-file.md).
+/// Dependence of a plan's accuracy on a complete model: SI, as in plan.json (docs/plan-file.md).
 nlohmann::ordered_json reliance_json(const Reliance& reliance);
 
-/// The same in a sentence, and another one where the estimate makes half as much again of an effect.
+/// Text in a sentence, with a warning above an amplification of 1.5.
 std::string reliance_text(const Reliance& reliance);
 
 }  // namespace posewright

@@ -35,7 +35,7 @@ struct ReportKeyframe {
   std::vector<std::optional<Eigen::Vector3d>> targets{};
 };
 
-/// What lets a page judge any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
+/// Data for figures of any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
 /// first.
 struct ReportInformation {
   std::vector<PlannedParameter> columns;                 ///< of the first variant
@@ -45,7 +45,7 @@ struct ReportInformation {
   Eigen::VectorXd singular_values;                       ///< interest columns, nuisance eliminated, descending
 };
 
-/// How much each candidate could still tell at the best weights.
+/// Gain of each candidate at the best weights.
 struct ReportCandidates {
   std::vector<double> sensitivity;         ///< divided by what a candidate must reach to be worth measuring
   std::vector<Eigen::Vector3d> positions;  ///< of the tip, m
@@ -80,7 +80,7 @@ struct ReportCamera {
   std::vector<std::pair<int, std::vector<Eigen::Vector2d>>> pictures;
 };
 
-/// What a page tells of poses that its reader moves: by whole steps of one or two coordinates to either side of a pose,
+/// Data for poses moved by the page's reader: by whole steps of one or two coordinates to either side of a pose,
 /// all of them looked at. `places` says their order.
 struct ReportNeighbours {
   struct Coordinate {
@@ -115,7 +115,7 @@ struct ReportNeighbours {
   double efficiency_error = 0.0, sigma_error = 0.0, accuracy_error = 0.0;
 };
 
-/// Everything that the report's page shows beside the plan and the route themselves.
+/// Data of the report's page besides plan and route.
 struct Report {
   std::string title;
   std::vector<std::string> notes;     ///< what the reader should know before trusting it
@@ -137,7 +137,7 @@ struct Report {
   std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet
 };
 
-/// What another command than plan found, to look at.
+/// Result of another command than plan, for the page.
 struct ResultReport {
   std::string title;        ///< the robot
   std::string file;         ///< where the result was read from

@@ -30,7 +30,7 @@ struct SkippedPose {
   std::string reason;
 };
 
-/// What the poses of a route are worth beside all poses of its plan.
+/// Efficiency of the poses of a route against all poses of its plan.
 struct RouteWorth {
   double efficiency = 0.0;              ///< of the information, on the geometric mean of the parameters
   std::optional<double> planned, left;  ///< m, predicted position error after calibration

@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// How all tables of the process are written: aligned, or as Markdown (GitHub Flavored Markdown 4.10) with an empty
+/// Form of all tables of the process: aligned, or as Markdown (GitHub Flavored Markdown 4.10) with an empty
 /// line before and after. A program sets it before it prints anything; the library never does.
 enum class TableLayout { aligned, markdown };
 void set_table_layout(TableLayout layout);
@@ -38,10 +38,10 @@ std::string at_most_percent(double share);
 /// "98.5 %", rounded down: of a proof that rests on weights whose last digits depend on the processor.
 std::string proved_percent(double share);
 
-/// "0.0123 mm", "0.0045 deg": a value in SI for people, by its SI unit ("m", "rad", "1").
+/// "0.0123 mm", "0.0045 deg": a value in SI for messages, by its SI unit ("m", "rad", "1").
 std::string shown_value(double value, const std::string& unit);
 
-/// The same with as many decimals as leave two digits of `resolution` (a σ, in SI).
+/// Variant with decimals for two digits of `resolution` (a σ, in SI).
 std::string shown_to(double value, double resolution, const std::string& unit);
 
 }  // namespace posewright

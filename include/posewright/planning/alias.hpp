@@ -15,7 +15,7 @@ namespace posewright {
 /// Throws std::invalid_argument for sizes that do not fit, CannotDo if the fitted columns are dependent.
 Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known = {});
 
-/// What least squares makes of the readings X₂.
+/// Estimate by least squares from the readings X₂.
 struct AliasFit {
   Eigen::MatrixXd taken;     ///< alias_matrix()
   Eigen::VectorXd residual;  ///< squared length of what is left of each column of X₂, that of the knowledge included

@@ -25,7 +25,7 @@ struct ApproximateDesign {
   int rounds = 0, newton_steps = 0;
   bool stopped = false;  ///< the monitor stopped it; the bound is valid all the same
 
-  /// Those of the support whose weight is more than a trace: where weights of nearly the same candidates begin.
+  /// Support points of significant weight: starts for weights of nearly the same candidates.
   std::vector<int> weighted() const;
   /// Upper bound of Φ over all exact plans of `poses` poses: M of N poses is N times that of weights k_i/N.
   double bound_for(int poses) const;

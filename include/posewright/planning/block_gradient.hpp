@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// How a number that depends on a configuration through its block alone changes along the axes of a space: by the
+/// Gradient of a number that depends on a configuration through its block alone, along the axes of a space: by the
 /// probe's own derivatives where it has them, else by central differences of blocks. The only place that knows which.
 class BlockGradient {
  public:

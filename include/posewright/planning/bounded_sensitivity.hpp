@@ -10,10 +10,10 @@ namespace posewright {
 
 class ConfigurationSpace;
 
-/// Of each function, degrees along every axis.
+/// Degrees of each function along every axis.
 using HarmonicDegrees = std::vector<std::vector<int>>;
 
-/// What refutes a proof: feasible configurations whose own d = ‖J T‖² is above a limit.
+/// Counterexamples of a proof: feasible configurations whose own d = ‖J T‖² is above a limit.
 struct Refutation {
   const ConfigurationSpace& space;
   int rows = 0;  ///< of a block
@@ -32,7 +32,7 @@ class BoundedSensitivity {
   virtual std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const = 0;
   /// Coefficients of the tensor that a box is bounded by.
   virtual double size() const = 0;
-  /// What a box takes, in coefficients of a tensor that is there already.
+  /// Cost of a box, in coefficients of an existing tensor.
   virtual double work() const = 0;
 };
 

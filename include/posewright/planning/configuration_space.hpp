@@ -19,7 +19,7 @@ struct WeightedConfigurations {
   std::vector<double> weights;
 };
 
-/// Where candidates come from: the feasible set and the block of any configuration in it. Planners that look beyond the
+/// Source of candidates: the feasible set and the block of any configuration in it. Planners that look beyond the
 /// candidates see this and nothing of robots.
 class ConfigurationSpace {
  public:
@@ -34,19 +34,19 @@ class ConfigurationSpace {
    public:
     virtual ~Probe() = default;
     virtual bool feasible(std::span<const double> q) = 0;
-    /// What forbids q, for people; empty: it is feasible.
+    /// Reason that forbids q, for messages; empty: q is feasible.
     virtual std::string forbidden_by(std::span<const double> q) { return feasible(q) ? "" : "something"; }
-    /// Whether what is quickly checked allows q: true wherever feasible() is. For searches that end up elsewhere.
+    /// True if the quick checks allow q, as wherever feasible() is true. For searches that end elsewhere.
     virtual bool perhaps_feasible(std::span<const double> q) { return feasible(q); }
     /// Writes the block in the task's coordinates (whitened as the candidates are), rows `stride` doubles apart. False
     /// if q has none.
     virtual bool block(std::span<const double> q, double* rows, int stride) = 0;
-    /// What margins() counts, at q: nowhere feasible where one is negative, and where all are positive at most
+    /// Smooth margins at q: nowhere feasible where one is negative, and where all are positive at most
     /// something forbids q that is seldom met. False if there are none.
     virtual bool margins(std::span<const double>, std::span<double>) { return false; }
-    /// How a number that depends on q through JᵀJ alone changes with each continuous axis.
+    /// Gradient of a number that depends on q through JᵀJ alone, along each continuous axis.
     /// @param slope  its derivative by J (r × m), J the block as block() writes it at q
-    /// @param gradient  size of the axes; what it says of choices means nothing
+    /// @param gradient  size of the axes; undefined for choices
     /// @return false if derivatives are not known here: BlockGradient then takes differences of blocks
     virtual bool gradient(std::span<const double> /*q*/, const BlockArray::RowMatrix& /*slope*/,
                           std::span<double> /*gradient*/) {
@@ -58,25 +58,25 @@ class ConfigurationSpace {
   class Enclosure {
    public:
     virtual ~Enclosure() = default;
-    /// What is not negative wherever a configuration is feasible; more than that may be feasible.
+    /// Functions that are not negative at feasible configurations; other configurations may pass, too.
     /// @param q  one a coordinate, over the box
     /// @return false if the box has no enclosure
     virtual bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) = 0;
-    /// Of all that is allowed; elsewhere the model may say anything.
+    /// Limits of all allowed values; the model is undefined elsewhere.
     virtual bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) = 0;
   };
 
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
-  /// Whether every configuration within the axes' limits is feasible.
+  /// True if every configuration within the axes' limits is feasible.
   virtual bool is_box() const = 0;
-  /// How many smooth functions of q bound the feasible set within the axes' limits, so that a search may follow them
-  /// with a gradient. None: what else bounds it is known as yes or no alone.
+  /// Number of smooth functions of q that bound the feasible set within the axes' limits, so that a search may follow
+  /// them with a gradient. None: what else bounds it is known as yes or no alone.
   virtual std::optional<int> margins() const { return is_box() ? std::optional(0) : std::nullopt; }
-  /// What bounds ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
+  /// Bound of ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
   /// @param where  configurations at which bounds that can be chosen ought to be good
   virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;
-  /// How far apart poses must be that are not candidates (no points in it): the task's spacing, or, if poses may not
+  /// Distance of poses that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
   /// Configuration of a candidate of the task.

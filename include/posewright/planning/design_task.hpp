@@ -13,7 +13,7 @@
 
 namespace posewright {
 
-/// What planners work on: candidates, the criterion, the budget. Nothing of robots.
+/// Input of planners: candidates, criterion, budget; no robots.
 struct DesignTask {
   CandidateView candidates;
   const Criterion* criterion = nullptr;
@@ -40,7 +40,7 @@ struct PlannerOptions {
   bool restarts_stated = false;
 };
 
-/// What a part of a search reached.
+/// Result of a part of a search.
 struct SearchStage {
   std::string name;
   double value = 0.0;  ///< Φ of the best design so far, whitened coordinates

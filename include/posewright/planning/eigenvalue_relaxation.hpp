@@ -35,7 +35,7 @@ class EigenvalueRelaxation {
   double ratio() const { return least_ / most_; }
   /// s: below λ_min of numbers().
   double least() const { return least_; }
-  /// What the objective may still rise by at the present μ.
+  /// Possible rise of the objective at the present μ.
   double gap() const;
 
   const Eigen::VectorXd& numbers() const { return n_; }

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What a given set of poses is worth. The same code judges a plan, a user's list and a random baseline.
+/// Evaluation of a set of poses. The same code evaluates a plan, a user's list and a random baseline.
 struct Evaluation {
   double log_det = 0.0;             ///< of the interest information (nuisance eliminated), raw blocks, SI
   double log_det_full = 0.0;        ///< of Σ JᵢᵀJᵢ, nuisance columns included

@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// What a sensitivity is multiplied by before it is bounded, m = constant + slope r̄, r̄ the mean of all squared
+/// Multiplier of a sensitivity before it is bounded, m = constant + slope r̄, r̄ the mean of all squared
 /// distances (m²) of a form (theory.md eq. (56)).
 struct Multiplier {
   double constant = 1.0, slope = 0.0;
@@ -28,7 +28,7 @@ struct FactorBound {
   double value(double r, double delta) const { return constant + distance * r + difference * delta; }
 };
 
-/// What is known of a distance in a box: r > 0 and δ in m², and of the multiplier there as a share of that at r.
+/// Distance in a box: r > 0 and δ in m², and of the multiplier there as a share of that at r.
 struct DistanceRanges {
   Range r, delta, ratio{1.0, 1.0};
 };

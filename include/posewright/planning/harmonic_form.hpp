@@ -12,7 +12,7 @@
 
 namespace posewright {
 
-/// What bounds the sensitivity of a space over boxes of its axes (theory.md eq. (39)):
+/// Bound of the sensitivity of a space over boxes of its axes (theory.md eq. (39)):
 ///   d(q) = ‖J(q) T‖² ≤ Σ_k s_k(r_k) ‖B_k T‖²   for every T,
 /// B_k polynomials in the cosines and sines of the axes and in numbers that follow from an axis. Discrete axes have one
 /// value in a form; a space with choices has a form for each.
@@ -26,11 +26,11 @@ class HarmonicForm {
     virtual bool rows(std::span<const double> values, BlockArray::RowMatrix& B) = 0;
     /// Squares of the distances that factors depend on, m².
     virtual void distances(std::span<const double> values, std::span<double> squares) = 0;
-    /// What the form's limits are made of: as many as limits().values.
+    /// Terms of the form's limits: as many as limits().values.
     virtual void limit_values(std::span<const double>, std::span<double>) {}
     /// Rows B of the only part that depends on the axes, times undivided(T) in place of T, and Z of random_columns().
     virtual bool with_random(std::span<const double>, BlockArray::RowMatrix&, BlockArray::RowMatrix&) { return false; }
-    /// All values at the axes that move, followed by those of axes that follow: what a configuration means.
+    /// All values at the moving axes, then those of following axes: the meaning of a configuration.
     virtual void complete(std::span<double> values) const = 0;
   };
 
@@ -41,14 +41,14 @@ class HarmonicForm {
   /// Degree of the part's entries along an axis.
   const std::vector<std::vector<int>>& degrees() const { return degrees_; }
   const std::vector<std::vector<int>>& distance_degrees() const { return distance_degrees_; }
-  /// How far each squared distance may be from the mean of all; empty: not known.
+  /// Largest deviation of each squared distance from the mean of all; empty: not known.
   const std::vector<DistanceSpread>& spreads() const { return spreads_; }
-  /// What is nowhere negative where a configuration is feasible; factors of coordinates are of the axes that move.
+  /// Functions that are never negative at feasible configurations; factors of coordinates are of the axes that move.
   const NecessaryLimits& limits() const { return limits_; }
-  /// Of the values of limits along an axis, if they are as they should be.
+  /// Checks the values of limits along an axis.
   const std::vector<int>& limit_degrees() const { return limit_degrees_; }
   int columns() const { return columns_; }
-  /// Columns Z of what is random at a pose beside the readings' noise; where there are any, for every matrix U(q)
+  /// Columns Z of random effects at a pose besides the readings' noise; where there are any, for every matrix U(q)
   /// d(q) ≤ ‖B T − Z U‖² + ‖U‖² (theory.md eq. (60)). 0: there are none, or d is not bounded so.
   int random_columns() const { return random_columns_; }
   virtual Eigen::MatrixXd undivided(const Eigen::MatrixXd& T) const { return T; }
@@ -71,7 +71,7 @@ class HarmonicForm {
 
 /// One for each choice of the discrete axes, or why there is none.
 struct HarmonicForms {
-  std::string why_not;  ///< for people; empty: d is bounded
+  std::string why_not;  ///< for messages; empty: d is bounded
   std::vector<std::unique_ptr<HarmonicForm>> forms;
 };
 

@@ -43,10 +43,10 @@ class HarmonicFunction {
   /// All values were finite.
   bool defined() const { return defined_; }
 
-  /// The same function with room for higher degrees.
+  /// Function with room for higher degrees.
   HarmonicFunction lifted(const std::vector<int>& degrees) const;
   HarmonicFunction negated() const;
-  /// The same function and a constant more.
+  /// Function plus a constant.
   HarmonicFunction raised(double by) const;
   /// Product of two, of these degrees (at least the sum of both).
   static HarmonicFunction product(const HarmonicFunction& a, const HarmonicFunction& b,

@@ -10,13 +10,13 @@ namespace posewright {
 /// Throws std::invalid_argument for numbers out of range.
 double chi_square_power(double lambda, double degrees_of_freedom, double level);
 
-/// How often a measurement must be done for the test of its residuals to have the power: λ and the readings count k
-/// times, what is fitted once. None if a million times do not suffice.
+/// Number of repeated measurements for the power of the residual test: λ and the readings count k
+/// times, the fitted parameters once. None if a million times do not suffice.
 /// @param readings  of the measurement done once
 /// @param fitted    parameters, estimated from all readings together
 std::optional<int> repetitions_for_power(double lambda, int readings, int fitted, double level, double power);
 
-/// The same for the test along one known effect: one degree of freedom, however often.
+/// Variant for the test along one known effect: one degree of freedom for any number.
 std::optional<int> repetitions_along_effect(double lambda, double level, double power);
 
 }  // namespace posewright

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What N poses can tell at best, and whether that is more than is known already (theory.md eq. (31)).
+/// Best σ of N poses, compared with the prior knowledge (theory.md eq. (31)).
 struct PracticalIdentifiability {
   int poses = 0;
   /// 1σ of every parameter after N poses spread as the D-optimal weights say, SI. A plan of N whole poses comes near.

@@ -47,7 +47,7 @@ class ReadingNoiseSensitivity : public BoundedSensitivity {
   /// All of Z_jᵀB_c, or of Z_jᵀZ_i.
   struct Kind {
     std::vector<int> degrees;         ///< of all together
-    std::vector<std::size_t> places;  ///< of their coefficients among those of what they are added to
+    std::vector<std::size_t> places;  ///< of their coefficients among those of the sum
     std::vector<Group> groups{};
   };
   struct Compared;

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What no plan of exactly N of these candidates exceeds.
+/// Upper bound for plans of exactly N of these candidates.
 struct SpectralBound {
   double bound = 0.0;  ///< of Φ
   double gap = 0.0;    ///< what numbers of poses that need not be whole reach lies at most this much lower (ln σ)

@@ -11,7 +11,7 @@ namespace posewright {
 /// answers.
 class SpreadBlocks {
  public:
-  /// A candidate and what was asked of it.
+  /// A candidate and the requested figure.
   struct Ranked {
     double value = 0.0;
     int candidate = -1;
@@ -27,7 +27,7 @@ class SpreadBlocks {
   virtual void pass(const Eigen::MatrixXd& T) = 0;
   /// The `most` largest d_i above `least`, largest first and ties by index, without `except` (ascending).
   virtual std::vector<Ranked> largest(std::size_t most, double least, const std::vector<int>& except) = 0;
-  /// Whether any process has been told to stop.
+  /// True if any process was stopped.
   virtual bool stopped() = 0;
 };
 

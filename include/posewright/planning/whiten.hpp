@@ -23,7 +23,7 @@ struct Whitening {
 /// With a prior (information per pose) Σ JᵀJ / n + prior becomes I, so that candidates need not tell everything.
 Whitening whiten(BlockArray& blocks, const Eigen::MatrixXd& prior = {});
 
-/// The same of m columns of blocks wherever they are.
+/// Variant for m columns of blocks at any place.
 /// @param gram   Σ JᵀJ / n, its lower triangle
 /// @param solve  replaces every J by J r⁻¹, r upper triangular
 Whitening whiten(int columns, const std::function<Eigen::MatrixXd()>& gram,

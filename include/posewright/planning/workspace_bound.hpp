@@ -15,7 +15,7 @@ namespace posewright {
 // With fewer candidates a plan is a quick look.
 inline constexpr std::size_t few_candidates = 1000;
 
-/// How far a proof over the workspace goes.
+/// Limits of a proof over the workspace.
 struct ProofLimits {
   /// It ends where the largest d is proved to be within this share of h, so that no plan over the workspace is better
   /// than the weights found by more, as D-efficiency. None: within a thousandth of the largest d that it finds.
@@ -38,7 +38,7 @@ struct WorkspaceBoundOptions {
   int threads = 0;
 };
 
-/// Whether the largest d over the limits of the workspace is proved.
+/// True if the largest d over the limits of the workspace is proved.
 struct WorkspaceProof {
   /// The reason if it was stopped before it bounded every configuration.
   static constexpr const char* cut_short = "its time ended first";
@@ -47,11 +47,11 @@ struct WorkspaceProof {
   double bound = 0.0;                 ///< Φ(w) + h ln(max_ratio)
   long boxes = 0;                     ///< that it took
   std::string ended{};                ///< why not more of them; empty: they were enough
-  std::vector<std::string> limits{};  ///< what is counted beside the joints' limits: "tool box"
+  std::vector<std::string> limits{};  ///< conditions besides the joints' limits: "tool box"
   /// Configuration of the largest d found on the way; limits that the space knows allow it, other checks may not.
   std::vector<double> largest_at{};
   std::vector<double> refuted_by{};    ///< a feasible configuration whose d exceeds h by more than the tolerance
-  std::string largest_forbidden_by{};  ///< what forbids it, as in the table of rejections; empty: it is feasible
+  std::string largest_forbidden_by{};  ///< reason that forbids it, as in the table of rejections; empty: it is feasible
 };
 
 /// Optimal weights over the whole workspace, as far as a search can tell.

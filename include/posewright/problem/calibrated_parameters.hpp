@@ -39,7 +39,7 @@ struct CalibratedParameters {
 /// Reads a parameters file (YAML, at most 10 MB). Throws InputError with the line of the first thing that is wrong.
 CalibratedParameters read_calibrated_parameters(const std::filesystem::path& file);
 
-/// The same for text already in memory; `file` names it in messages.
+/// Overload for text in memory; `file` names it in messages.
 CalibratedParameters parse_calibrated_parameters(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace posewright

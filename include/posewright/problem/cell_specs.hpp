@@ -12,7 +12,7 @@
 
 #include "posewright/problem/measurement_specs.hpp"
 
-/// What a problem file may say of the cell around the robot: one plain struct a thing, SI units.
+/// Cell around the robot in a problem file: plain structs, SI units.
 namespace posewright {
 
 struct BoxShape {
@@ -25,7 +25,7 @@ struct CylinderShape {
 struct SphereShape {
   double radius = 0.0;  ///< m
 };
-/// Everything on the far side of a plane through the origin from where `normal` points: floor, wall.
+/// Half space on the far side of a plane through the origin from where `normal` points: floor, wall.
 struct HalfSpaceShape {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit
 };
@@ -64,7 +64,7 @@ struct CollisionSpec {
   double clearance = 0.0;  ///< m, kept from obstacles
   /// m, kept between links and between tool and links; not given: `clearance`.
   std::optional<double> self_clearance;
-  /// The same of two bodies by their names.
+  /// Self clearance of two bodies by their names.
   struct PairClearance {
     Located<std::string> first, second;
     double clearance = 0.0;
@@ -79,7 +79,7 @@ struct CollisionSpec {
   int line = 0;
 };
 
-/// What an instrument must see. Angles rad, lengths m.
+/// Limits of the line of sight. Angles rad, lengths m.
 struct LineOfSightSpec {
   int visible = 0;  ///< targets that must be seen; 0: all
   std::optional<std::pair<double, double>> range, elevation, azimuth;
@@ -116,7 +116,7 @@ struct SingularitySpec {
   int line = 0;
 };
 
-/// How the robot travels between poses.
+/// Motion of the robot between poses.
 struct MotionSpec {
   std::vector<std::pair<Located<std::string>, Measured>> velocity, acceleration;  ///< replace the robot's own
   std::vector<std::pair<Located<std::string>, Measured>> home;                    ///< coordinates left out are zero

@@ -19,14 +19,14 @@ namespace posewright {
 /// is said.
 inline constexpr int default_candidates = 10000;
 
-/// What the columns are divided by where a criterion or an index depends on it.
+/// Scale of the columns, for criteria and indices that depend on it.
 enum class Scaling { tolerance, norm, none };
 
 /// A value for the parameters that a glob matches, as in variants: tolerance.
 struct PatternValue {
   Located<std::string> pattern;
   double value = 0.0;                    ///< SI
-  Quantity quantity = Quantity::number;  ///< what the written unit measures; number: none was written
+  Quantity quantity = Quantity::number;  ///< quantity of the written unit; number: none was written
 };
 
 /// Configurations where accuracy after compensation matters. One of `at`, `random`, `file`, `grid`.
@@ -41,12 +41,12 @@ struct TestPosesSpec {
   std::optional<Grid> grid;
   std::vector<double> weights;                      ///< one for each of `at`; empty: all 1
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, tip frame: whose position counts
-  /// Of an elastic arm; not given: the first that loads it (random configurations: any).
+  /// Load case of an elastic arm; default: the first with a load (random configurations: any).
   std::optional<Located<std::string>> load_case;
   int line = 0;
 };
 
-/// What a plan of `poses: auto` must reach, and what a calibration is judged by.
+/// Requirements on a plan of `poses: auto` and on a calibration.
 struct RequirementSpec {
   std::optional<double> accuracy;   ///< ρ0 at the test poses, m
   std::vector<PatternValue> sigma;  ///< 1σ of parameters
@@ -97,7 +97,7 @@ struct DesignSpec {
   std::optional<MinimumDistance> minimum_distance;
   Scaling scaling = Scaling::tolerance;
   bool prior = false;    ///< count the tolerances as prior knowledge: M = GᵀG + diag(1/tolerance²)
-  bool reserve = false;  ///< maximise what is left when the pose that hurts most is lost
+  bool reserve = false;  ///< optimise for the loss of the worst single pose
   std::optional<RobustSpec> robust;
   std::optional<std::filesystem::path> measured;  ///< poses that are measured already: new ones come to them
   std::optional<std::filesystem::path> fixed;     ///< poses that any plan has among its own

@@ -14,8 +14,8 @@ std::string scaling_text(Scaling scaling);
 /// None for another word.
 std::optional<Scaling> scaling_of(std::string_view word);
 
-/// How many robots to draw and what counts of them, either left out as usual; none where both are.
-/// @param option  what the measure is called there, for messages
+/// Number of drawn robots and measure of their efficiencies, with defaults; none if both are missing.
+/// @param option  name of the measure there, for messages
 /// Throws InputError for another measure.
 std::optional<RobustSpec> robust_spec(std::optional<int> draws, const std::string& measure, const std::string& option);
 

@@ -8,7 +8,7 @@
 
 #include "posewright/problem/robot_specs.hpp"
 
-/// What a problem file may say of the measurement: one plain struct an instrument, SI units.
+/// Measurement in a problem file: one plain struct per instrument, SI units.
 namespace posewright {
 
 struct TargetSpec {
@@ -32,7 +32,7 @@ struct TrackerNoise {
 };
 using PointNoise = std::variant<GaussianNoise, TrackerNoise>;
 
-/// Where an instrument stands. Its base pose is a set of parameters station.NAME.*.
+/// Station of an instrument. Its base pose is a set of parameters station.NAME.*.
 struct StationSpec {
   std::string name;
   Placement placement;  ///< in the measurement frame
@@ -62,7 +62,7 @@ struct DistanceMeasurement {
   std::vector<TargetSpec> targets;            ///< tip frame
   std::vector<TargetSpec> anchors;            ///< measurement frame; empty: between two configurations
   double sigma = 0.0, sigma_per_m = 0.0;      ///< m, m/m (1σ = sigma + sigma_per_m · distance)
-  double range_lower = 0.0, range_upper = 0;  ///< m, what the instrument can span; upper 0: anything
+  double range_lower = 0.0, range_upper = 0;  ///< m, range of the instrument; upper 0: no limit
 };
 
 /// Pinhole camera with radial and tangential distortion (k1, k2, p1, p2, k3) and a board of known points.
@@ -81,19 +81,19 @@ struct CameraMeasurement {
 struct JointsMeasurement {
   std::vector<Located<std::string>> sensors;  ///< empty: all the robot has
   double sigma = 0.0;                         ///< rad or m
-  Quantity quantity = Quantity::number;       ///< what its written unit measures; number: none, so SI
+  Quantity quantity = Quantity::number;       ///< quantity of its written unit; number: none, so SI
 };
 
 using InstrumentSpec =
     std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement, JointsMeasurement>;
 
-/// What stays at a pose and is not averaged away, 1σ: the robot stands elsewhere at every visit. One displacement of
+/// Repeatability, 1σ: a random displacement at every visit that averaging does not reduce. One displacement of
 /// the tip, common to all that is read during the visit.
 struct Repeatability {
   double translation = 0.0;  ///< m, each axis
   double rotation = 0.0;     ///< rad, about each axis through the tip
   /// m, each axis, of each target (or reading) on its own. No robot does this; it is there for virtual experiments that
-  /// ask what another truth would do to a calibration.
+  /// ask for the effect of another truth on a calibration.
   double independent = 0.0;
 };
 
@@ -105,7 +105,7 @@ struct MeasurementSpec {
   int line = 0;
 };
 
-/// Where its instrument stands, to be changed; null for one that has no stations.
+/// Mutable stations of its instrument; null for one without stations.
 std::vector<StationSpec>* stations_of(MeasurementSpec& measurement);
 
 }  // namespace posewright

@@ -19,10 +19,10 @@ using Packages = std::vector<std::pair<std::string, std::filesystem::path>>;
 std::filesystem::path find_package(const std::string& name, const Packages& given, const std::filesystem::path& around,
                                    const SourcePlace& place);
 
-/// Whether a name begins as package://NAME/… or model://NAME/….
+/// True if a name begins as package://NAME/… or model://NAME/….
 bool names_package(const std::string& name);
 
-/// What package://NAME/PATH, model://NAME/PATH and file://PATH mean; other names stay as they are. Throws as
+/// Path of package://NAME/PATH, model://NAME/PATH and file://PATH; other names stay. Throws as
 /// find_package().
 std::filesystem::path file_of_uri(const std::filesystem::path& name, const Packages& given,
                                   const std::filesystem::path& around, const SourcePlace& place);

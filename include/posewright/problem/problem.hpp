@@ -28,7 +28,7 @@ struct UnmodelledSpec {
 /// One robot model with the set of parameters that calibration will estimate.
 struct VariantSpec {
   std::string name;
-  /// Where the names come from: the robot's joint frames or its Denavit–Hartenberg parameters, distal or proximal
+  /// Source of the names: the robot's joint frames or its Denavit–Hartenberg parameters, distal or proximal
   /// (modified).
   enum class Convention { frames, dh, mdh } convention = Convention::frames;
   bool automatic = false;                        ///< auto, dh, mdh: irreducible subset of the geometric ones
@@ -48,12 +48,12 @@ struct CoordinateLimits {
   Quantity quantity = Quantity::number;  ///< kind of unit written (length, angle); number: none, so SI
 };
 
-/// How candidates are drawn: evenly, on the boundary of what is feasible, where the instrument sees its targets, and by
+/// Samplers of candidates: even, on the boundary of the feasible set, in view of the targets, and by
 /// OMPL's samplers of valid states.
 enum class SamplerKind { even, boundary, look_at, obstacle_based, gaussian, clearance };
 
 struct WorkspaceSpec {
-  /// Kept from both ends of limits by what is proposed: rad of revolute joints, m of prismatic ones. Not given: 1 % of
+  /// Margin of proposed poses to both ends of limits: rad of revolute joints, m of prismatic ones. Not given: 1 % of
   /// a serial arm's own range, at most 2 deg or 5 mm.
   std::optional<double> joint_margin, joint_margin_length;
   std::vector<CoordinateLimits> limits;  ///< `joints: limits:` or `pose:` of a platform
@@ -69,7 +69,7 @@ struct WorkspaceSpec {
   int samplers_line = 0;
   /// Robots drawn from the tolerances that the instrument must be able to read at a pose, beside the nominal one.
   int readable_for = 0;
-  double uncalibrated = 0.0;  ///< margins grow by so many σ of what the tolerances let the robot miss; 0: they don't
+  double uncalibrated = 0.0;  ///< margins grow by this number of σ of the tolerances' effect; 0: they don't
 };
 
 /// A whole problem file.
@@ -90,9 +90,9 @@ struct Problem {
   std::vector<VariantSpec> variants;  ///< at least one
   WorkspaceSpec workspace;
   DesignSpec design;
-  /// Where the URDF and meshes named package://NAME/… are, beside the folders of find_package().
+  /// Folders of package://NAME/… for URDF and meshes, besides those of find_package().
   Packages packages;
-  /// Where calibration found the parameters; put here by apply_parameters (model/apply_parameters.hpp).
+  /// Calibrated parameters; put here by apply_parameters (model/apply_parameters.hpp).
   std::optional<CalibratedParameters> parameters;
 
   SourcePlace at(int line) const { return {file.string(), line}; }

@@ -11,7 +11,7 @@ namespace posewright {
 /// @param packages  folders of packages that the user names: become Problem::packages
 Problem read_problem(const std::filesystem::path& file, const Packages& packages = {});
 
-/// The same for text already in memory; `file` names it in messages, and paths in it are relative to its folder.
+/// Overload for text in memory; `file` names it in messages, and paths in it are relative to its folder.
 Problem parse_problem(const std::string& text, const std::filesystem::path& file, const Packages& packages = {});
 
 }  // namespace posewright

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// An arm that no problem file names yet: its URDF, or what the program `xacro` makes of a .xacro file.
+/// An arm that no problem file names yet: its URDF, or the expansion of a .xacro file by the program `xacro`.
 /// Throws InputError as a problem file that names it, and for arguments of a file that is no xacro file.
 SerialArmSpec read_robot_file(const std::filesystem::path& file,
                               const std::vector<std::pair<std::string, std::string>>& arguments);

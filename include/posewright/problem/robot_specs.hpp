@@ -13,7 +13,7 @@
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 
-/// What a problem file may say of the robot: one plain struct a kind, SI units.
+/// Robot in a problem file: one plain struct per kind, SI units.
 namespace posewright {
 
 /// Rigid placement: position (m) and fixed-axis roll, pitch, yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll) as in URDF.
@@ -40,8 +40,8 @@ struct CompensatorSpec {
   double stiffness = 0.0;        ///< Kc, N/m
   double free_length = 0.0;      ///< s0, m
   double joint_stiffness = 0.0;  ///< K2⁰, N·m/rad
-  /// False: the spring stiffens the joint, and the load bends it; what spring and links do to the unloaded arm is in
-  /// the controller's zero. True: the spring's own torque bends the joint, too.
+  /// False: the spring stiffens the joint, and the load bends it; the effect of spring and links on the unloaded arm is
+  /// in the controller's zero. True: the spring's own torque bends the joint, too.
   bool torque = false;
 };
 
@@ -59,13 +59,13 @@ struct ElastostaticSpec {
   struct Listed {
     Located<std::string> joint;
     std::vector<double> at;                ///< rad or m, in the file's order
-    Quantity quantity = Quantity::number;  ///< what the written units measure; number: none, so SI
+    Quantity quantity = Quantity::number;  ///< quantity of the written units; number: none, so SI
   };
   std::optional<Listed> listed;
   int line = 0;
 };
 
-/// What a joint does beside what it reads (model/joint_effects.hpp).
+/// Effects of a joint besides its reading (model/joint_effects.hpp).
 struct JointEffectsSpec {
   Located<std::string> joint;                  ///< a name or a glob
   bool eccentricity = false;                   ///< first and second harmonic of the joint's angle
@@ -90,7 +90,7 @@ struct SerialArmSpec {
   std::optional<Located<std::filesystem::path>> srdf;
   std::optional<Located<std::string>> group;                        ///< of the SRDF, whose chain gives base and tip
   std::vector<std::pair<Located<std::string>, std::string>> xacro;  ///< arguments, where `urdf` is a xacro file
-  std::shared_ptr<const std::string> expanded;                      ///< what xacro made of it; null: `urdf` is URDF
+  std::shared_ptr<const std::string> expanded;                      ///< its expansion by xacro; null: `urdf` is URDF
   Placement placement;         ///< nominal pose of the base in the measurement frame (key `placement`)
   double encoder_noise = 0.0;  ///< 1σ of every joint reading (rad or m), 0 = exact
   /// User's name of a parameter → the model's name, e.g. px1 → joint_a2.x.
@@ -109,7 +109,7 @@ struct LegSpec {
   int line = 0;
 };
 
-/// What the actuators of a six-legged platform do: move the base joints along u (6-PUS) or lengthen the legs (Gough).
+/// Actuation of a six-legged platform: actuators move the base joints along u (6-PUS) or lengthen the legs (Gough).
 enum class LegActuation { slide, extend };
 
 /// Six-legged parallel robot.
@@ -154,7 +154,7 @@ struct CompensatorGeometrySpec {
 
 using RobotSpec = std::variant<SerialArmSpec, SixLegsSpec, FiveBarSpec, DeltaSpec, CompensatorGeometrySpec>;
 
-/// States the noise (1σ, rad or m) of what the robot reads of its own joints or actuators.
+/// Noise (1σ, rad or m) of the robot's joint or actuator readings.
 void set_joint_noise(RobotSpec& robot, double sigma);
 
 }  // namespace posewright

@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// What a value measures. SI inside: m, rad, N, rad/(N·m), N/m, s, rad/s, m/s, rad/s², m/s².
+/// Quantity of a value. SI inside: m, rad, N, rad/(N·m), N/m, s, rad/s, m/s, rad/s², m/s².
 enum class Quantity {
   number,
   length,
@@ -32,10 +32,10 @@ struct Measured {
 /// may be left out. Throws InputError without a place where the text is anything else or not finite in SI.
 Measured parse_measured(std::string_view text, std::initializer_list<Quantity> accepted);
 
-/// The same for one quantity; only a plain number passes as `Quantity::number`.
+/// Overload for one quantity; only a plain number passes as `Quantity::number`.
 double parse_value(std::string_view text, Quantity quantity);
 
-/// Whether a value of that quantity, or its rate, belongs to a coordinate in `unit` ("rad" or "m"); plain numbers do.
+/// True if a value of that quantity, or its rate, belongs to a coordinate in `unit` ("rad" or "m"); plain numbers do.
 bool fits_unit(Quantity quantity, std::string_view unit);
 
 /// Units that may be written, for messages: "m, mm, um, nm".

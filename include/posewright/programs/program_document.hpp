@@ -12,7 +12,7 @@
 
 namespace posewright {
 
-/// What becomes of a motion or a point of a program.
+/// Outcome of a motion or a point of a program.
 enum class Treatment {
   compensated,
   left,             ///< on purpose: relative, with an offset, an operand, home, moved to by nothing
@@ -26,7 +26,7 @@ struct ProgramEntry {
   Treatment treatment = Treatment::left;
   std::string why;        ///< empty: it is compensated
   int point = -1;         ///< index among the document's points; -1: none
-  std::string target{};   ///< the same for a point that has a name and for motions to it; not for people
+  std::string target{};   ///< the same for a point that has a name and for motions to it; not for messages
   std::string element{};  ///< of this point alone
 };
 
@@ -45,7 +45,7 @@ struct ProgramAccount {
   std::size_t count(Treatment treatment) const;
 };
 
-/// A program's text with what is to be known of it.
+/// A program's text and its account.
 struct ProgramFile {
   std::string format;  ///< as `export` calls it: kuka-krl, abb-rapid, fanuc-tp, urscript, yaskawa-inform, staubli-val3,
                        ///< joint-trajectory
@@ -99,9 +99,9 @@ class ProgramDocument {
 
   virtual ~ProgramDocument() = default;
   virtual const ProgramAccount& account() const = 0;
-  /// Those that are to be compensated.
+  /// Points to compensate.
   virtual const std::vector<Point>& points() const = 0;
-  /// Which of these a pose means by its status (S and T, confdata, CONFIG); several where it does not decide.
+  /// Joints meant by a pose's status (S and T, confdata, CONFIG); several if it is ambiguous.
   virtual std::vector<std::size_t> meant(std::size_t point, const std::vector<ArmStand>& stands) const = 0;
   /// @param values  one a point; none: it stays as it is
   /// @param remark  put into a comment where a point has other values
@@ -114,7 +114,7 @@ class ProgramDocument {
 std::vector<std::unique_ptr<ProgramDocument>> read_programs(const std::vector<ProgramFile>& files,
                                                             const ProgramRobot& robot);
 
-/// Whether a format is that of a program.
+/// True if a format is that of a program.
 bool is_program_format(const std::string& format);
 /// Their formats, for help and messages.
 std::string program_format_names();

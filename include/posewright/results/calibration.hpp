@@ -20,9 +20,9 @@ Weighting weighting_of(std::string_view word);
 /// "use it", "gain not shown", "do not use".
 std::string verdict_word(Verdict verdict);
 
-/// What a person reads: parameters with intervals, residuals before and after, what the residuals say of the model.
+/// Text for the terminal: parameters with intervals, residuals before and after, tests of the model.
 std::string calibration_text(const Calibration& calibration);
-/// The same for machines, nothing left out: schema posewright/calibration/1.
+/// Complete JSON: schema posewright/calibration/1.
 /// @param table  of the calibrated arm; empty: none was asked for
 nlohmann::ordered_json calibration_json(const Problem& problem, const CalibrateOptions& options,
                                         const Calibration& calibration, const std::optional<DhTable>& table = {});

@@ -8,11 +8,11 @@
 
 namespace posewright {
 
-/// What a person reads: how many poses, how far the calibrated robot would miss them before and after, how far each
-/// joint or actuator moves for it, which poses cannot be had and why.
+/// Text for the terminal: number of poses, errors of the calibrated robot before and after, change of each
+/// joint or actuator, poses that are not compensated, with reasons.
 std::string compensation_text(const Compensation& compensation);
 
-/// The same with every pose, for machines: schema posewright/compensation/1.
+/// JSON with every pose: schema posewright/compensation/1.
 /// @param problem  with the parameters
 nlohmann::ordered_json compensation_json(const Problem& problem, const Compensation& compensation);
 

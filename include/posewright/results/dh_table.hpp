@@ -11,7 +11,7 @@ namespace posewright {
 /// place in it.
 std::string dh_table_text(const DhTable& table);
 
-/// The same in SI to the last digit. Frames as position and quaternion (x, y, z, w); `beta` null if there is none.
+/// JSON in SI to the last digit. Frames as position and quaternion (x, y, z, w); `beta` null if there is none.
 nlohmann::ordered_json dh_table_json(const DhTable& table);
 
 }  // namespace posewright

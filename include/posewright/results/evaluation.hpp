@@ -7,10 +7,10 @@
 
 namespace posewright {
 
-/// What a person reads: scores by every criterion, each pose's share and what its loss costs, what to drop and add.
+/// Text for the terminal: scores by every criterion, each pose's share and the cost of its loss, drop and add.
 std::string evaluation_text(const PoseListEvaluation& evaluation);
 
-/// The same for machines, schema posewright/evaluation/1.
+/// JSON: schema posewright/evaluation/1.
 nlohmann::ordered_json evaluation_json(const PoseListEvaluation& evaluation);
 
 }  // namespace posewright

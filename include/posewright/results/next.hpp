@@ -9,15 +9,15 @@
 
 namespace posewright {
 
-/// What a person reads: where the calibration stands, whether to go on, the next poses in deg and mm.
+/// Text for the terminal: state of the calibration, verdict, the next poses in deg and mm.
 std::string next_text(const NextPoses& result);
-/// Whether to go on and why, in a sentence or two.
+/// Verdict and reason, in a sentence or two.
 std::string next_reason(const NextPoses& result);
 /// "reached", …
 std::string verdict_name(NextVerdict verdict);
 
 /// Schema posewright/next/1, SI.
-/// @param history  what was said before, after so many poses each; empty: nothing is known
+/// @param history  earlier verdicts with their numbers of poses; empty: none
 nlohmann::ordered_json next_json(const Problem& problem, const NextOptions& options, const NextPoses& result,
                                  const std::vector<NextPoint>& history = {});
 

@@ -8,11 +8,11 @@
 
 namespace posewright {
 
-/// What a person reads of one variant: rank, spectrum, dependencies, what is worth identifying.
+/// Text for the terminal of one variant: rank, spectrum, dependencies, parameters worth identifying.
 /// @param with_singular_values  of G too
 std::string observation_text(const Observation& observation, bool with_singular_values = false);
 
-/// The same for machines, nothing left out.
+/// Complete JSON.
 nlohmann::ordered_json observation_json(const Observation& observation);
 /// All observed variants of a problem: schema posewright/observation/1.
 nlohmann::ordered_json observations_json(const Problem& problem, const ObserveOptions& options,

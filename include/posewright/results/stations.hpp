@@ -8,11 +8,11 @@
 
 namespace posewright {
 
-/// What a person reads of ranked stations, best first, and the best as a problem file has it.
+/// Text for the terminal of ranked stations, best first, and the best as a problem file has it.
 /// @param ranks  at least one
 std::string stations_text(const std::vector<StationRank>& ranks);
 
-/// The same for machines: schema posewright/stations/1.
+/// JSON: schema posewright/stations/1.
 nlohmann::ordered_json stations_json(const Problem& problem, const StationOptions& options,
                                      const std::vector<StationRank>& ranks);
 

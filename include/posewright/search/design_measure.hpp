@@ -9,19 +9,19 @@
 
 namespace posewright {
 
-/// What a search counts, for lists of poses that were not in it: Φ by the criterion's own function, in the coordinates
+/// Measure of a search, for other lists of poses: Φ by the criterion's own function, in the coordinates
 /// in which the search's bound was computed, so that the two can be held against each other.
 class DesignMeasure {
  public:
   /// @param R        J_raw = J R of all parts side by side
   /// @param prior    information that is there before, in the coordinates of J; empty: none
-  /// @param offset   what is added to Φ of these coordinates
+  /// @param offset   offset of Φ in these coordinates
   DesignMeasure(std::shared_ptr<const Criterion> criterion, Eigen::MatrixXd R, Eigen::MatrixXd prior, double offset)
       : criterion_(std::move(criterion)), R_(std::move(R)), prior_(std::move(prior)), offset_(offset) {}
 
   /// Φ of the poses with these raw blocks; −∞ where they do not identify all parameters.
   double phi(const BlockArray& blocks) const;
-  /// The same for blocks of several parts.
+  /// Overload for blocks of several parts.
   double phi(const std::vector<SearchPart>& parts) const;
   /// Φ of the poses without each of the known ones, whose information the prior holds.
   std::vector<double> phi_without(const std::vector<SearchPart>& poses, const std::vector<SearchPart>& known) const;

@@ -28,11 +28,11 @@ struct RobustRequest {
   /// Raw blocks of scenario k for the candidates `which` (empty: all); all zero where nothing can be measured. Called
   /// from several threads.
   std::function<BlockArray(int scenario, const std::vector<int>& which)> blocks;
-  /// The same of what is there before; empty where `prior` is.
+  /// Scenarios of the prior information; empty where `prior` is.
   std::function<Eigen::MatrixXd(int scenario)> prior_of;
 };
 
-/// What a plan is worth in every scenario.
+/// Efficiency of a plan in every scenario.
 struct RobustFigures {
   std::vector<double> efficiency;  ///< e_k: exp((log det − reference_k) / interest parameters), in (0, 1]; 0: singular
   double combined = 0.0;           ///< exp of combined(aim, ln e): a geometric mean, the least, that of the worst
@@ -49,7 +49,7 @@ struct RobustResult {
   bool stopped = false;  ///< before all was done: `plan` is the best so far, and with no scenario known the given one
 };
 
-/// What the plan given is worth; `robust` and `plan` repeat it.
+/// Efficiency of the given plan; `robust` and `plan` repeat it.
 RobustResult judge_robust(const RobustRequest& request, const Monitor& monitor);
 
 /// Judges, then searches for the plan that is best over all scenarios: by exchange from the plan given among the

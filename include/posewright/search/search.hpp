@@ -35,7 +35,7 @@ struct SearchRequest {
   bool reserve = false;
   PlannerOptions planner;
   bool certify = true;  ///< false: no bound is sought, which takes longer than the search for a few poses
-  /// Of the bound: true at any, tight at a small one. If it is not shown, its weights are starts for the search alone.
+  /// Relative tolerance of the bound. Every value gives a valid bound, small ones a tight one.
   double bound_tolerance = ApproximateDesignOptions{}.tolerance;
   bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
   ProofLimits proof{};
@@ -70,7 +70,7 @@ void require_known(const std::string& criterion, const std::string& method, cons
 /// blocks and a few vectors of their number.
 SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
 
-/// The bound alone: what no plan of as many of the candidates exceeds.
+/// The bound alone, over all plans of as many of the candidates.
 struct Bound {
   Certificate certificate;
   std::shared_ptr<const DesignMeasure> measure;  ///< Φ of any list, to be held against the bound

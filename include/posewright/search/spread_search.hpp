@@ -15,10 +15,10 @@ struct SpreadRequest {
   int threads = 0;  ///< in each process; 0 = all
 };
 
-/// What went between the processes during the exchanges: every look for the best exchange of a member is one all-reduce
+/// Traffic between the processes during the exchanges: every look for the best exchange of a member is one all-reduce
 /// of a gain and an index, every exchange one broadcast of a block.
 struct SpreadTraffic {
-  long looks = 0, look_bytes = 0;    ///< all-reduces, and bytes of what each of them reduces
+  long looks = 0, look_bytes = 0;    ///< all-reduces, and their bytes
   long blocks = 0, block_bytes = 0;  ///< broadcasts, and bytes of a block
   /// Sent and received by the process that had most to do, all-reduces and broadcasts each for themselves.
   Workers::Traffic most_of_looks, most_of_blocks;

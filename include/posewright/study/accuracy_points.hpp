@@ -9,14 +9,14 @@
 
 namespace posewright {
 
-/// The same robot, seen by an instrument that reads the pose of its tip: no targets, so the tool counts.
+/// Robot measured by the pose of its tip: no targets, so the tool counts.
 Problem with_pose_seen(Problem problem);
-/// Its model at the nominal values of `model`, which is the problem's own: values of what only the instrument has
+/// Its model at the nominal values of `model`, which is the problem's own: values of the instrument's own parameters
 /// (targets, stations, a lens) are none of it.
 std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
                                                     const IdentificationModel& model);
 
-/// Where and how the tip's own displacement moves the point of interest at a test pose.
+/// Motion of the point of interest at a test pose by the tip's displacement.
 struct TestPlace {
   std::vector<double> q;               ///< of the robot alone
   Eigen::Matrix<double, 6, 6> twists;  ///< position and turn of the point of interest along the tip's unit twists
@@ -29,7 +29,7 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
                                       const IdentificationModel& model, const VariantColumns& columns,
                                       std::uint64_t seed, std::vector<TestPlace>* test_places = nullptr);
 
-/// The same at configurations of the robot alone, all of one weight, for the origin of the tip.
+/// Overload for configurations of the robot alone, all of one weight, for the origin of the tip.
 std::vector<TestPoint> test_points_at(const Problem& problem, const VariantSpec& variant,
                                       const IdentificationModel& model, const VariantColumns& columns,
                                       const std::vector<std::vector<double>>& configurations,
@@ -41,16 +41,16 @@ struct PlaceError {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();      ///< of the rotation vector, rad²
 };
 
-/// What errors of the parameters with this covariance do at every point.
+/// Errors at every point by parameter errors with this covariance.
 std::vector<PlaceError> place_errors(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance);
 
 /// Root of the weighted mean square of the predicted position error (m), and that of each point.
 double predicted_error(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
                        std::vector<double>& each);
-/// The same of errors of the parameters with this covariance.
+/// Overload for parameter errors with this covariance.
 double predicted_error(const std::vector<TestPoint>& points, const Eigen::MatrixXd& covariance,
                        std::vector<double>& each);
-/// The same of the orientation (norm of the rotation vector, rad), and 1σ of every point along x, y, z (m) and about
+/// Orientation error (norm of the rotation vector, rad), and 1σ of every point along x, y, z (m) and about
 /// them (rad), in the measurement frame.
 double predicted_turn(const std::vector<TestPoint>& points, const std::vector<PlaceError>& errors,
                       std::vector<std::array<double, 6>>& axes);

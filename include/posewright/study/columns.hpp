@@ -18,7 +18,7 @@ inline constexpr double exact_dependency = 1e-9;
 /// At most `count` of the configurations, evenly through the list.
 Configurations thinned(const Configurations& configurations, std::size_t count);
 
-/// A variant's columns that can be identified, and what was dropped.
+/// A variant's identifiable columns, and the dropped ones.
 struct ResolvedColumns {
   VariantColumns columns;
   std::vector<Parameter> dropped;
@@ -31,7 +31,7 @@ struct ResolvedColumns {
 ResolvedColumns resolve_columns(const IdentificationModel& model, const Configurations& configurations,
                                 const Problem& problem, const VariantSpec& variant, bool prior, int threads);
 
-/// Smallest number of configurations that determines all columns, by choosing each for what it adds; empty if the
+/// Smallest number of configurations that determines all columns, by choosing each for its gain; empty if the
 /// candidates do not suffice.
 std::optional<int> smallest_number_of_poses(const IdentificationModel& model, const Configurations& candidates,
                                             const VariantColumns& columns, int threads);

@@ -14,7 +14,7 @@ struct AliasSource {
   double spread = 0.0;  ///< its tolerance where the truth estimates it, the fitted does not, and the nominals are equal
 };
 
-/// What a truth does to the readings and a fitted variant does not estimate (docs/compare.md): the one definition of
+/// Effects of a truth on the readings that a fitted variant does not estimate (docs/compare.md): the only definition of
 /// effects by nominal and by tolerance.
 struct Effects {
   std::vector<AliasSource> sources;
@@ -28,26 +28,26 @@ struct Effects {
 };
 
 /// @param truth  names its parameters; only its nominal values and `selected` columns count
-/// @param prior  what is fitted is held to its nominal value by its tolerance
+/// @param prior  tolerances of fitted parameters act as prior knowledge
 Effects effects_of(const Variant& fitted, const IdentificationModel& truth, const VariantColumns& selected, bool prior);
 
-/// What least squares on these poses makes of every effect, linearised at the nominal values of `fitted`.
+/// Estimates by least squares on these poses for every effect, linearised at the nominal values of `fitted`.
 struct EffectFit {
-  Eigen::MatrixXd taken;     ///< fitted × effects: what the estimates take up
-  Eigen::VectorXd unfitted;  ///< squared length of what is left of each effect, whitened
+  Eigen::MatrixXd taken;     ///< fitted × effects: bias of the estimates
+  Eigen::VectorXd unfitted;  ///< squared length of each effect's residual, whitened
   Eigen::MatrixXd errors;    ///< fitted × effects: estimate less truth
 };
 EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Configurations& poses,
                       const Settings& settings);
 
-/// Error at a test pose by every effect: what the estimates say less what is there.
+/// Error at a test pose by every effect: estimate less truth.
 /// @param point  of all columns of the effects
 Eigen::MatrixXd errors_at(const TestPoint& point, const Effects& effects, const EffectFit& fit);
 
-/// Whether the parameters mean the same in both.
+/// True if the parameters mean the same in both.
 bool one_catalogue(const IdentificationModel& a, const IdentificationModel& b);
 
-/// The test of the residuals at 5 %, from what is left of every effect.
+/// The test of the residuals at 5 %, from the residual of every effect.
 Discrimination discrimination_of(const std::string& truth, const Effects& effects, const Eigen::VectorXd& unfitted,
                                  const Variant& fitted, const Configurations& poses, bool prior);
 

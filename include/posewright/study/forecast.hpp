@@ -15,12 +15,12 @@ namespace posewright {
 /// One pose as a forecast counts it.
 struct PoseRows {
   std::vector<double> q;
-  /// Whitened derivatives of what is read there: the variant's columns, then unit twists of its effect, if it has one.
+  /// Whitened derivatives of the readings there: the variant's columns, then unit twists of its effect, if it has one.
   BlockArray::RowMatrix block;
 };
-/// Of readings, without what was not read, at the variant's nominal values. Throws CannotDo if a pose is out of reach.
+/// Information of readings, without missing ones, at nominal values. Throws CannotDo if a pose is out of reach.
 std::vector<PoseRows> rows_of(const Variant& variant, const std::vector<MeasuredPose>& poses);
-/// Of poses at which all will be read that can be.
+/// Information of poses with all readings that are possible.
 std::vector<PoseRows> rows_of(const Variant& variant, const Configurations& configurations, int threads);
 
 /// Error after compensation at the test poses, root of the weighted mean square over them, m.
@@ -31,7 +31,7 @@ struct ForecastError {
   double upper = 0.0;
 };
 
-/// 1σ of what a calibration leaves, SI, and by how much the noise that the residuals show makes it larger.
+/// 1σ after a calibration, SI, and its factor by the noise of the residuals.
 struct ForecastSigmas {
   Eigen::VectorXd parameters;  ///< of the variant's columns
   /// Along x, y, z (m) and about them (rad): the largest over the test poses; none without test poses, or where nothing
@@ -40,7 +40,7 @@ struct ForecastSigmas {
   double worse = 1.0;  ///< κ over the factor that σ counts already, theory.md eq. (51)
 };
 
-/// What is known of noise and parameters beside the poses.
+/// Knowledge of noise and parameters besides the poses.
 struct ForecastNoise {
   Prior prior = Prior::manufactured;  ///< tolerances that count
   double factor = 1.0;                ///< Fit::noise_factor
@@ -69,7 +69,7 @@ class ForecastOfError {
   Eigen::VectorXd weights_;  ///< of the test points, Σ = 1
 };
 
-/// What the poses and these tolerances tell of the columns of a search (features in front), in units of one pose's
+/// Information of the poses and these tolerances on the columns of a search (features in front), in units of one pose's
 /// stated noise.
 /// @param noise_factor  so many times that noise is larger: tolerances count more against it
 Eigen::MatrixXd known_information(const Variant& variant, const std::vector<PoseRows>& poses, Prior prior,
@@ -79,9 +79,9 @@ Eigen::MatrixXd known_information(const Variant& variant, const std::vector<Pose
 /// @param sum      Σλ, expected mean square
 /// @param squares  Σλ²
 double upper_error(double sum, double squares, double freedom);
-/// What a normal error of this σ stays below in size with 95 % confidence: d = 1, Student's t of ν degrees.
+/// Size below which a normal error of this σ stays with 95 % confidence: d = 1, Student's t of ν degrees.
 double upper_of_axis(double sigma, double freedom);
-/// What σ itself stays below: d → ∞, only the noise is uncertain: σ √(ν/χ²_{5 %}(ν)).
+/// Upper limit of σ itself: d → ∞, only the noise is uncertain: σ √(ν/χ²_{5 %}(ν)).
 double upper_of_sigma(double sigma, double freedom);
 
 }  // namespace posewright

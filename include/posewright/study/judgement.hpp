@@ -12,7 +12,7 @@
 
 namespace posewright {
 
-/// What a list of configurations is worth, from nothing but the list: the same for a plan and for a user's poses.
+/// Evaluation of a list of configurations from the list alone: equal for a plan and a user's poses.
 struct Judgement {
   std::vector<Evaluation> evaluations;           ///< of every variant; contributions in the order measured, then poses
   std::optional<double> rho0;                    ///< first variant, m

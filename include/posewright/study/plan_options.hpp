@@ -12,7 +12,7 @@
 
 namespace posewright {
 
-/// What a command line may say over the problem file's design block.
+/// Options of the command line that replace the problem file's design block.
 struct PlanOptions {
   std::string variant, criterion, method;  ///< empty = as in the file
   std::string truth;                       ///< the variant that may be the case; empty = as in the file
@@ -21,7 +21,7 @@ struct PlanOptions {
   std::optional<Repeats> repeats;
   std::optional<Scaling> scaling;
   std::optional<bool> prior;  ///< count tolerances as prior knowledge
-  bool reserve = false;       ///< maximise what is left when the pose that hurts most is lost
+  bool reserve = false;       ///< optimise for the loss of the worst single pose
   /// Nuisance parameters and an unmodelled effect count as those of interest do, with ds: poses whose readings are
   /// least certain.
   bool everything_counts = false;
@@ -32,7 +32,7 @@ struct PlanOptions {
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the file, unless `candidates` says how
   /// many to draw.
   std::optional<PoseList> candidates_from{};
-  /// Nothing is searched or said of the workspace between the candidates: a comparison of plans needs neither.
+  /// Without search and proof between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
   /// A cell of the same robot with the same tool, of which only obstacles may stand elsewhere: what is known of the
   /// robot's own bodies is taken over. Null: none.

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What a smooth effect that the model lacks would do to a plain fit of these configurations: sizes of 1, 2 and 4 times
+/// Errors of a plain fit of these configurations by a smooth unmodelled effect: sizes of 1, 2 and 4 times
 /// the noise of one pose, the length UnmodelledSize::assumed_length. Least squares V Jᵀ r of readings r = J θ + F u + ε
 /// that count no effect miss a place with the parameters' Jacobian A and the effect's B by A V Jᵀ(F u + ε) − B u
 /// (theory.md eq. (35)). At the variant's test poses; without any at 200 of the study's configurations.

@@ -12,22 +12,22 @@
 
 namespace posewright {
 
-/// What a stated minimum distance and the repeat policy ask of poses that are not candidates (see
+/// Spacing of poses that are not candidates, by a stated minimum distance and the repeat policy (see
 /// ConfigurationSpace::spacing). Where no distance is stated but poses may not repeat: one hundredth of a range.
 Spacing spacing_of(const std::vector<Coordinate>& coordinates,
                    const std::optional<DesignSpec::MinimumDistance>& distance, Repeats repeats);
 
-/// How far the poses of a plan stay apart where they may not repeat and nobody states a distance: 5 deg or a fiftieth
+/// Default spacing of poses without repeats: 5 deg or a fiftieth
 /// of a range, whichever is less, in at least one coordinate. Halved until four times the wanted poses fit among the
-/// candidates, away from what is measured, so that no plan fails by it; without units where so many are not to be had.
+/// candidates, away from measured poses, so that no plan fails by it; without units where so many are not to be had.
 /// @param poses  wanted; 0: not known yet
 Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
                       const Configurations& measured, int poses);
 
-/// The same for these candidates.
+/// Overload for these candidates.
 Spacing with_points(Spacing spacing, const Configurations& candidates);
 
-/// The distances for people: "5 deg", "2.5 to 5 deg or 12 mm".
+/// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm".
 std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);
 
 }  // namespace posewright

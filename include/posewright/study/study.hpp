@@ -29,7 +29,7 @@ struct Settings {
   std::optional<PoseList> measured;
   std::optional<PoseList> candidates_from;  ///< none: candidates are drawn
   std::optional<Configurations> drawn{};    ///< candidates that were drawn before; none: they are drawn now
-  /// The same as files that are still to be read; empty: none.
+  /// Names of files to read; empty: none.
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
@@ -38,13 +38,13 @@ struct Settings {
   ProofLimits proof{};
   std::optional<RobustSpec> robust{};  ///< only what plans or judges a whole list asks for drawn robots
 };
-/// Throws InputError for what contradicts itself, with the line where it was written.
+/// Throws InputError for contradictions, with their line.
 Settings settings_of(const Problem& problem, const PlanOptions& options);
 
 /// Takes up the poses that are fixed by the options or the problem, for what plans a whole list; what judges a given
 /// one does without. Of a list that marks poses as fixed, those. Throws InputError with file and line if none is left
 /// to be chosen beside them, and for `reserve`: what is fixed may be lost, too.
-/// @return what to tell of how the list was read
+/// @return notes on the reading of the list
 std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings);
 
 /// Takes up whether robots are to be drawn, by the options or the problem. Throws InputError for what that does not go
@@ -72,7 +72,7 @@ struct Study {
   Variant& first() { return variants.front(); }
   const Variant& first() const { return variants.front(); }
 };
-/// What to do with a variant whose parameters cannot be identified: throw CannotDo, or keep it with the reason.
+/// Policy for a variant whose parameters cannot be identified: throw CannotDo, or keep it with the reason.
 enum class Unidentifiable { refuse, keep };
 Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
                  Unidentifiable unidentifiable = Unidentifiable::refuse);
@@ -80,40 +80,40 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
 /// For a variant that lacks an effect, if nobody named a criterion: the determinant for few poses, and from 1.5 times
 /// the smallest number on the accuracy at the test poses (without any: at 200 candidates) of a fit that estimates the
 /// effect, too. A criterion that needs test poses counts candidates if there are none, where settings_of() lets it.
-/// @return which and why, for people; empty: nothing was chosen
+/// @return which and why, for messages; empty: nothing was chosen
 std::string choose_form(const Problem& problem, Study& study, Settings& settings);
 
-/// What the settings ask of a search for so many poses, among blocks alone.
+/// Request for a search of this number of poses, among blocks alone.
 SearchRequest search_request(const Settings& settings, int poses);
-/// The same at the minimum distance between candidates; `study` must outlive the request.
+/// Variant at the minimum distance between candidates; `study` must outlive the request.
 SearchRequest spaced_request(const Study& study, const Settings& settings, int poses);
 
-/// Raw blocks of the configurations for one variant alone, with what a search needs beside them.
+/// Raw blocks of the configurations for one variant alone, with the other inputs of a search.
 std::vector<SearchPart> search_parts(const Variant& variant, const Configurations& configurations, int threads);
-/// The same for every variant, as the criterion sees them: with the effects of the truth where it asks for one.
+/// Variant for every variant of the criterion: with the effects of the truth if it needs one.
 std::vector<SearchPart> search_parts(const Study& study, const std::string& criterion,
                                      const Configurations& configurations, int threads);
-/// A copy of what search_parts made for every variant: a search takes its parts.
+/// A copy of the parts of search_parts for every variant: a search moves its parts.
 std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts);
 
-/// The workspace of the problem for searches beyond the candidates; `study` must outlive what it makes.
+/// The workspace of the problem for searches beyond the candidates; `study` must outlive the result.
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion);
 
-/// How far poses stay apart: as stated, else usual_spacing() where it applies.
+/// Spacing of poses: as stated, else usual_spacing() where it applies.
 void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings);
 
 /// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
-/// policy forbids it; rebuilds what depends on the candidates. Throws CannotDo if none is left.
+/// policy forbids it; rebuilds all that depends on the candidates. Throws CannotDo if none is left.
 void keep_away_from_measured(Study& study, Repeats repeats);
 
-/// What a search finds there: configurations that are measured already, then fixed ones.
+/// Existing poses: measured configurations, then fixed ones.
 Configurations known_before(const Study& study);
 
 /// The configurations that are measured already, then these.
 Configurations with_measured(const Study& study, const Configurations& poses);
 
-/// What a search chose: of the candidates, and what it found beyond them.
+/// Result of a search: chosen candidates, and poses beyond them.
 Configurations chosen_by(const Design& design, const Configurations& candidates);
 
 /// The list without those of these indices.

@@ -9,7 +9,7 @@
 
 namespace posewright {
 
-/// What a variant's `unmodelled` means for this problem: gives it an effect, and features of it among the candidates
+/// Sets up a variant's `unmodelled` for this problem: an effect, and features of it among the candidates
 /// for searches. Does nothing for a variant without.
 ///
 /// size auto: as large as what the tolerances of parameters that other variants estimate leave of the tip's position
@@ -27,7 +27,7 @@ BlockArray search_blocks(const Variant& variant, const Configurations& configura
 /// @param A  whitened derivatives of n poses' readings along unit translations of the tip, 3 columns
 double noise_of_a_pose(const Eigen::Ref<const Eigen::MatrixXd>& A, std::size_t n);
 
-/// Where accuracy counts if nobody says so: at 200 of the configurations.
+/// Default test poses: 200 of the configurations.
 std::vector<TestPoint> test_points_at_candidates(const Problem& problem, const Configurations& candidates,
                                                  const Variant& variant, std::vector<TestPlace>& places);
 
@@ -40,7 +40,7 @@ Eigen::MatrixXd effect_places(const UnmodelledEffect& effect, const Configuratio
 BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& features, const Configurations& configurations,
                            int threads, const std::vector<int>& others = {});
 
-/// What configurations are worth for a variant. With an effect by its whole covariance between them and not by features
+/// Evaluation of configurations for a variant. With an effect by its whole covariance between them and not by features
 /// of candidates: a list says the same whatever was searched.
 struct VariantWorth {
   Evaluation evaluation;

@@ -48,8 +48,8 @@ struct Variant {
 Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
                       const Monitor& monitor = Monitor());
 
-/// What lists of poses of a problem are read with: names, units, limits and labels of a variant's coordinates (empty:
-/// the first). Throws as place_variant().
+/// Coordinates for reading lists of poses of a problem: names, units, limits and labels of a variant's coordinates
+/// (empty: the first). Throws as place_variant().
 std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::string& variant = "");
 
 struct VariantOptions {

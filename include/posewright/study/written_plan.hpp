@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// What a plan.json says of itself, so that its search can be set up again.
+/// Settings in a plan.json, for repeating its search.
 struct WrittenPlan {
   std::filesystem::path file;
   std::string text;     ///< as the file is

@@ -39,7 +39,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what ByteWriter wrote, in the same order. Throws CannotDo where the bytes end too early.
+/// Reads the bytes of ByteWriter, in the same order. Throws CannotDo where the bytes end too early.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}

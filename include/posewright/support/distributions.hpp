@@ -7,21 +7,21 @@ namespace posewright {
 
 /// Chance that a χ² of `freedom` degrees is larger than `value`.
 double chi_square_exceeded(double value, double freedom);
-/// What a χ² of `freedom` degrees stays below with this probability.
+/// Quantile of χ² with `freedom` degrees at this probability.
 double chi_square_quantile(double probability, double freedom);
-/// What it exceeds with the probability `tail`.
+/// Value that it exceeds with the probability `tail`.
 double chi_square_upper_quantile(double tail, double freedom);
-/// The same as chi_square_exceeded, where the mean of the summed squares is not 0: noncentrality λ.
+/// Noncentral variant of chi_square_exceeded: noncentrality λ.
 double noncentral_chi_square_exceeded(double value, double freedom, double noncentrality);
 /// Chance that Fisher's F of these degrees of freedom is larger than `value`.
 double fisher_exceeded(double value, double numerator_freedom, double denominator_freedom);
-/// What Fisher's F of these degrees of freedom exceeds with the probability `tail`.
+/// Value that Fisher's F of these degrees of freedom exceeds with the probability `tail`.
 double fisher_upper_quantile(double tail, double numerator_freedom, double denominator_freedom);
 /// Chance that a standard normal number is larger than `value`.
 double normal_exceeded(double value);
-/// What a standard normal number exceeds with the probability `tail`.
+/// Value that a standard normal number exceeds with the probability `tail`.
 double normal_upper_quantile(double tail);
-/// What Student's t of `freedom` degrees exceeds with the probability `tail`.
+/// Value that Student's t of `freedom` degrees exceeds with the probability `tail`.
 double student_upper_quantile(double tail, double freedom);
 /// Chance that Student's t of `freedom` degrees is larger than `value`.
 double student_exceeded(double value, double freedom);

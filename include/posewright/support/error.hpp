@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// Where a value was written; line is 1-based, 0 means the file as a whole. Column is that of a character, 1-based; 0:
+/// Place of a value in a file; line is 1-based, 0 means the file as a whole. Column is that of a character, 1-based; 0:
 /// it is not known.
 struct SourcePlace {
   std::string file;
@@ -14,7 +14,7 @@ struct SourcePlace {
   int column = 0;
 };
 
-/// Input that is wrong in itself. The text reads `file:line: what; allowed` (without the parts that are unknown).
+/// Input that is wrong in itself. The text reads `file:line: error; allowed` (without the parts that are unknown).
 /// Programs end with exit status 2.
 class InputError : public std::runtime_error {
  public:

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// Whole file as bytes. Pipes are read too; of what has no end, no more than `limit`.
+/// Whole file as bytes. Pipes are read too; endless ones up to `limit`.
 /// Throws InputError if it is missing, a folder, a device, unreadable or larger than `limit` bytes.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = std::uintmax_t(1) << 31);
 
@@ -36,7 +36,7 @@ std::vector<std::filesystem::path> files_read();
 /// For files that a library reads.
 void record_input(const std::filesystem::path& file);
 
-/// Where a name leads: links are followed, also one that leads nowhere yet. Throws CannotDo for a circle of links.
+/// Target of a name: links are followed, even one without target. Throws CannotDo for a circle of links.
 std::filesystem::path followed(std::filesystem::path file);
 
 struct FileToWrite {

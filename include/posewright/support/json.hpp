@@ -9,7 +9,7 @@ namespace posewright {
 
 /// Throws nlohmann::json::parse_error with line and column.
 nlohmann::json parse_json(const std::string& text);
-/// The same; members keep the order of the text.
+/// Variant that keeps the order of members.
 nlohmann::ordered_json parse_ordered_json(const std::string& text);
 
 /// Indented by one blank a level and with a line end, or in one line without one.

@@ -16,9 +16,9 @@ class TaskEngine;
 struct Progress {
   std::string stage;                 ///< "candidates", "certificate", "exchange", …
   double done = 0.0, total = 0.0;    ///< in units of the stage (restarts, samples); total 0 = unknown
-  std::optional<double> best;        ///< criterion's value so far; the pipeline puts it on the plan's scale
+  std::optional<double> best;        ///< criterion's value so far
   std::optional<double> bound;       ///< upper bound of it, same scale
-  std::optional<double> efficiency;  ///< lower bound of what `best` reaches of the optimum, in (0, 1]
+  std::optional<double> efficiency;  ///< lower bound of the efficiency of `best`, in (0, 1]
 };
 
 /// The one channel between a long computation and its caller: progress out, stop and helping hands in. Safe from
@@ -30,7 +30,7 @@ class Monitor {
   std::function<void(const Progress&)> on_progress;  ///< may be empty; calls are serialised
   const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler or another thread
   std::optional<Clock::time_point> deadline;
-  /// Who does the tasks of run_tasks(); null: this process's threads. A computation inside a task has a monitor of its
+  /// Engine of the tasks of run_tasks(); null: this process's threads. A computation inside a task has a monitor of its
   /// own, without one.
   TaskEngine* engine = nullptr;
 

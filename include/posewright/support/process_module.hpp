@@ -4,7 +4,7 @@
 
 namespace posewright {
 
-/// What the module for several processes gives: workers that its caller deletes.
+/// Result of the module for several processes: workers that its caller deletes.
 using MakeWorkers = Workers*();
 inline constexpr const char* make_workers_name = "posewright_make_workers";
 

@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// What counts of the efficiencies that one plan has on several robots. In files and on the command line: mean, worst,
+/// Measure of the efficiencies of one plan on several robots. In files and on the command line: mean, worst,
 /// or tail and a share.
 struct RobustAim {
   enum class Measure { mean, worst, tail };
@@ -20,7 +20,7 @@ struct RobustAim {
 std::string robust_aim_text(const RobustAim& aim);
 /// None for anything else.
 std::optional<RobustAim> robust_aim_of(std::string_view text);
-/// What is to be said where there is none.
+/// Allowed values, for messages.
 inline constexpr const char* robust_aims_allowed = "allowed: mean, worst, or tail and a share: tail 0.1";
 
 /// The aim's number of one value a robot: the weighted mean of all; the least; the mean of the lowest until their

@@ -9,7 +9,7 @@ namespace posewright {
 /// SHA-256 (FIPS 180-4) of `bytes` as 64 lower-case hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 
-/// The same piece by piece.
+/// Hash of a text in pieces.
 class Sha256 {
  public:
   Sha256();

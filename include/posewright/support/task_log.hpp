@@ -12,7 +12,7 @@
 
 namespace posewright {
 
-/// What a log of finished tasks holds: groups in the order in which a program runs them.
+/// Content of a log of finished tasks: groups in the order in which a program runs them.
 struct LoggedTasks {
   struct Group {
     std::string name;
@@ -20,9 +20,9 @@ struct LoggedTasks {
     std::map<std::size_t, std::string> results;  // by index
   };
   std::string version;  ///< of the program that wrote it
-  std::string key;      ///< what was computed: input files and options
+  std::string key;      ///< identity of the computation: input files and options
   std::map<int, Group> groups;
-  std::size_t whole_bytes = 0;  ///< up to the end of the last whole record: what follows was cut short
+  std::size_t whole_bytes = 0;  ///< up to the end of the last whole record: the rest was cut short
 };
 
 /// Throws InputError if the file is no log. A record that was cut short, and what follows it, is left out.
@@ -38,7 +38,7 @@ std::string task_log_bytes(const LoggedTasks& tasks);
 /// while it is open. Appended results are on the disk a second later at the most.
 class TaskLog {
  public:
-  /// @param key  asked for at the first group: what is computed, once all input is read
+  /// @param key  called at the first group: identity of the computation, once all input is read
   TaskLog(std::filesystem::path file, std::function<std::string()> key);
   ~TaskLog();
   TaskLog(const TaskLog&) = delete;

@@ -26,11 +26,11 @@ struct TaskGroup {
   bool first_always = false;  ///< task 0 is done however early a stop comes
 };
 
-/// Where a computation's tasks are done (threads, or processes), what is known of them already (a log of an earlier run
+/// Workers of a computation's tasks (threads, or processes), known results (a log of an earlier run
 /// that was cut short), and which of them are this run's share. A Monitor carries it into a computation.
 class TaskEngine {
  public:
-  /// Which tasks are this run's: those with index ≡ part − 1 (mod parts).
+  /// Tasks of this run: those with index ≡ part − 1 (mod parts).
   struct Shard {
     int part = 1, parts = 1;
   };
@@ -66,7 +66,7 @@ struct ShardDone {
   std::size_t done = 0, of = 0;
 };
 
-/// Whether tasks are shared with other processes: then what all of them compute must not be ended by a clock.
+/// True if tasks are shared with other processes: then no clock may end the common computation.
 inline bool several_processes(const Monitor& monitor) {
   return monitor.engine != nullptr && monitor.engine->workers().processes() > 1;
 }

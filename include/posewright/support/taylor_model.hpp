@@ -24,7 +24,7 @@ class Monomials {
   std::size_t count_to(int d) const { return count_to_[std::size_t(d)]; }
   const Exponents& exponents(std::size_t i) const { return exponents_[i]; }
   int degree_of(std::size_t i) const { return degrees_[i]; }
-  /// Where the products of monomial i with the monomials 0, 1, … of degree up to degree() − degree_of(i) are.
+  /// Positions of the products of monomial i with the monomials 0, 1, … of degree up to degree() − degree_of(i).
   const std::uint32_t* products(std::size_t i) const { return products_.data() + first_product_[i]; }
 
   Monomials(int variables, int degree);
@@ -49,7 +49,7 @@ class TaylorModel {
   /// A number known to lie between these two.
   static TaylorModel between(double lower, double upper);
 
-  /// Of the first monomials; those of the rest are zero.
+  /// Coefficients of the first monomials; the others are zero.
   std::span<const double> coefficients() const { return coefficients_; }
   /// Null: a constant.
   const Monomials* monomials() const { return monomials_; }
@@ -58,12 +58,12 @@ class TaylorModel {
   /// Σ |coefficients| of all monomials but 1, rounded up.
   double variation() const;
   bool known() const;
-  /// Nothing that f takes in the box is below or above.
+  /// Bounds of f in the box.
   double lower() const;
   double upper() const;
   /// f may be farther from p by this.
   TaylorModel widened(double by) const;
-  /// The same polynomial, whatever was known of f.
+  /// Polynomial without the knowledge about f.
   TaylorModel with_radius(double radius) const;
 
   TaylorModel& operator+=(const TaylorModel& other);

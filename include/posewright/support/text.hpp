@@ -18,7 +18,7 @@ std::string in_quotes(std::string_view text);
 /// Text as one line: control characters and bytes that are not UTF-8 escaped.
 std::string one_line(std::string_view text);
 
-/// Whether `text` has a character that would break a table, a message or a name: controls and Unicode line breaks.
+/// True if `text` has a character that would break a table, a message or a name: controls and Unicode line breaks.
 bool has_control_character(std::string_view text);
 
 /// Without the blanks and tabs at both ends.

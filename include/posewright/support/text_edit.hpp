@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// A stretch of a text and what stands there instead.
+/// A stretch of a text and its replacement.
 struct TextEdit {
   std::size_t begin = 0, end = 0;
   std::string text;

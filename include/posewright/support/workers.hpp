@@ -11,13 +11,13 @@ namespace posewright {
 
 /// A task of a long computation: its result depends on the index alone, not on the thread `worker` of its process.
 using Task = std::function<std::string(std::size_t index, int worker)>;
-/// What to do with a result.
+/// Receiver of a result.
 using TaskResult = std::function<void(std::size_t index, std::string_view bytes)>;
 
-/// Makes one of what two groups of processes have; `lower` is of those with lower ranks.
+/// Merges the data of two groups of processes; `lower` is of those with lower ranks.
 using Join = std::function<std::string(std::string_view lower, std::string_view higher)>;
 
-/// Who computes tasks: the threads of this process, or those of several processes that all run the same program on the
+/// Workers for tasks: the threads of this process, or those of several processes that all run the same program on the
 /// same input and meet here (support/tasks.hpp).
 class Workers {
  public:
@@ -33,17 +33,17 @@ class Workers {
   virtual void share(std::string& bytes) = 0;
   /// Gives every process the bytes of process `from`, down a binomial tree.
   virtual void share_from(int from, std::string& bytes) = 0;
-  /// Joins what all processes have, in the order of their ranks and pair by pair up a binomial tree, and gives the
+  /// Joins the data of all processes, in the order of their ranks and pair by pair up a binomial tree, and gives the
   /// result to all. Where `join` is associative the result does not depend on how many processes the parts are on.
   virtual void combine(std::string& bytes, const Join& join) = 0;
 
-  /// What went between the processes so far.
+  /// Traffic between the processes so far.
   struct Traffic {
     long messages = 0, bytes = 0;
   };
-  /// Of all processes, as the first one knows it.
+  /// Traffic of all processes, known to the first one.
   virtual Traffic traffic() const = 0;
-  /// What this process itself sent and received in share_from() and combine().
+  /// Traffic of this process in share_from() and combine().
   virtual Traffic own_traffic() const = 0;
 
   /// The end of this process: waits for the others; after an error no longer than a moment, then all are ended.

@@ -43,14 +43,14 @@ struct CalibrateOptions {
   std::vector<std::filesystem::path> campaigns{};
   std::string variant;  ///< empty: as in the file
   Weighting weighting = Weighting::weighted;
-  /// Tolerances of what was manufactured count, and those that were stated; none: plain least squares.
+  /// Use of manufacturing and stated tolerances as prior knowledge; none: plain least squares.
   Prior prior = Prior::manufactured;
   std::filesystem::path validate;  ///< more data that are not fitted; empty: none
   int hold_back = 0;               ///< every so many-th pose is not fitted; 0: none
   bool in_steps = false;           ///< identify base and tool, geometry, stiffness one after the other, too
   bool estimate_alone = false;     ///< the estimate and the smooth effect that the residuals show, no other judgement
   ProfileChoice profile{};
-  bool interpolate = false;  ///< predict with what the parameters leave as well: a variant with `unmodelled`
+  bool interpolate = false;  ///< add interpolated residuals to predictions: a variant with `unmodelled`
   int threads = 0;           ///< 0: all
 };
 
@@ -64,8 +64,8 @@ struct CalibratedParameter {
   double lower = 0.0, upper = 0.0;   ///< 95 % interval; infinite: no end on that side
   bool profiled = false;             ///< the interval is by profile, see Profile
   double half_width = 0.0;           ///< of the linear interval
-  std::string why_not{};             ///< not estimated: what the data cannot tell it from
-  std::vector<std::string> given{};  ///< what is left out and this value depends on: it has neither σ nor interval
+  std::string why_not{};             ///< not estimated: parameters that the data cannot separate it from
+  std::vector<std::string> given{};  ///< left-out parameters that this value depends on: it has neither σ nor interval
   bool weak = false;                 ///< the data tell less than the tolerance
   std::optional<double> in_steps{};  ///< identified in steps, where that was asked for
 };
@@ -83,7 +83,7 @@ struct AxisImprovement {
   AxisErrors before, after;  ///< placed (nominal if nothing is to be placed), calibrated
 };
 
-/// What `design: require` allows of one axis, and the tip's largest error.
+/// Limit of `design: require` for one axis, and the tip's largest error.
 struct JudgedRequirement {
   std::string poses;  ///< "fitted", "held back"
   LargestTipError error;
@@ -95,13 +95,13 @@ struct JudgedRequirement {
   bool refused() const { return !met() && !hidden_by_noise(); }
 };
 
-/// Of a pose that was not fitted.
+/// Errors of a pose that was not fitted.
 struct PoseAccuracy {
   PredictedError predicted;
   PoseError observed;
 };
 
-/// A pose with what is left of its readings.
+/// A pose with the residuals of its readings.
 struct PoseResidual {
   int id = 0;
   bool held_back = false;
@@ -111,7 +111,7 @@ struct PoseResidual {
   std::optional<PoseAccuracy> accuracy{};
 };
 
-/// What to do with an estimate: `gain_not_shown` is as good as base and tool alone but for chance.
+/// Verdict on an estimate: `gain_not_shown` has no significant gain over base and tool alone.
 enum class Verdict { use_it, gain_not_shown, do_not_use };
 
 struct Calibration {
@@ -132,7 +132,7 @@ struct Calibration {
   ResidualTests tests;
   std::vector<ScoreTest> effects;  ///< not fitted, beside the fit that counts no smooth effect; best first
   SmoothEffect smooth;             ///< that the residuals of a fit hold which counts none
-  /// What the fit counts as such an effect; none: readings of different poses are independent.
+  /// Unmodelled effect of the fit; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
   Revisits revisits;                             ///< configurations measured again after others
   std::vector<std::string> not_in_auto{};        ///< parameters of the model that an automatic variant leaves out
@@ -147,11 +147,11 @@ struct Calibration {
   std::optional<StepwiseFit> in_steps;
   std::optional<CompensatorConstants> compensator;
   std::optional<PlatformDeformation> platform;  ///< if the data have the joint centres of a platform
-  std::vector<std::string> columns;             ///< names of what fit.covariance and curvature.parameter count
+  std::vector<std::string> columns;             ///< names of the columns of fit.covariance and curvature.parameter
   std::vector<std::string> notes;
   Verdict verdict = Verdict::use_it;
   std::vector<std::string> refusals;  ///< why not; one at least where the verdict is do_not_use
-  /// Of the model's whole catalogue, for whoever goes on with the robot.
+  /// Corrections of the model's whole catalogue, for further use of the robot.
   std::vector<double> correction;
   std::vector<EstimatedValue> values;  ///< the same as values, under the model's names, with σ where estimated
 };
@@ -159,7 +159,7 @@ struct Calibration {
 /// The frame whose orientation this parameter is an angle of; null: it is none, or is estimated without the others.
 const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter);
 
-/// The smooth effect that the next plan is to allow for: what the residuals show
+/// The smooth effect for the next plan: from the residuals
 /// at 5 %; none: nothing.
 std::optional<CalibratedEffect> shown_effect(const Calibration& calibration);
 

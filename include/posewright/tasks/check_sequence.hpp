@@ -10,7 +10,7 @@ namespace posewright {
 /// actuators, and for routes that no motion is faster than its velocities. A file may have been edited since it was
 /// written.
 /// Returns the sequence with the robot's velocities.
-/// Throws InputError naming the file, the pose and the coordinate, and what is allowed.
+/// Throws InputError naming the file, the pose and the coordinate, and the allowed values.
 PoseSequence checked_sequence(const Problem& problem, PoseSequence sequence);
 
 }  // namespace posewright

@@ -29,7 +29,7 @@ struct CompareOptions {
 struct ComparedVariant {
   std::string name;
   int interest = 0, nuisance = 0;    ///< parameters that are estimated
-  std::vector<std::string> dropped;  ///< of an automatic one: equations of what cannot be told from the others
+  std::vector<std::string> dropped;  ///< of an automatic one: equations of inseparable parameters
   std::string why_not;               ///< why the candidates do not identify it; empty: they do
 };
 
@@ -54,7 +54,7 @@ struct PlanScore {
   std::optional<Reliance> reliance;  ///< on the variant being complete; none: it counts an effect itself
 };
 
-/// What a parameter of the fitted variant takes up of effects that it does not know.
+/// Bias of a parameter of the fitted variant by unfitted effects.
 struct AliasedParameter {
   Parameter label;
   double sigma = 0.0;   ///< predicted 1σ
@@ -70,18 +70,18 @@ struct VariantAlias {
   std::vector<AliasSource> sources;
   std::vector<AliasedParameter> parameters;
   std::optional<double> rho0;              ///< error at the test poses by noise alone, m
-  double rho0_shift = 0, rho0_spread = 0;  ///< what aliases add to it, root mean square, m; if there is rho0
+  double rho0_shift = 0, rho0_spread = 0;  ///< its part by aliases, root mean square, m; if there is rho0
   std::optional<Discrimination> test;      ///< whether the measurement would show it; none: the truth has no effect
 };
 
-/// Whether estimating more parameters pays, if the variant that has them is the truth.
+/// Value of estimating more parameters, if the variant with them is the truth.
 struct ExtraWorth {
   std::string with, without, plan_with, plan_without;
   std::vector<std::string> extra;  ///< parameters that `with` estimates and `without` does not
   /// Error at the test poses (m), or root mean square over the shared parameters in units of tolerance.
   enum class Measure { test_poses, shared_parameters } measure = Measure::test_poses;
   std::optional<double> error_with, noise_without;  ///< by noise
-  std::optional<double> bias_without;  ///< what effects that the other does not know do to it, by nominal and tolerance
+  std::optional<double> bias_without;  ///< its bias by effects missing in the other, by nominal and tolerance
   std::string why_not;                 ///< why the bias, or anything at all, is not known
 
   /// Noise and bias together.

@@ -16,13 +16,13 @@ namespace posewright {
 
 struct CompensateOptions {
   CommandSolver::Options solver{};
-  /// What the lists mean is where the nominal robot stands with its nominal springs, under the load; else where its
+  /// True if listed poses include the deflection of the nominal springs under the load; else they are where its
   /// controller takes it to stand, which knows of no springs.
   bool elastic_target = false;
   int threads = 0;  ///< never changes a result
 };
 
-/// A list of poses with what is to be commanded for them.
+/// A list of poses with their commands.
 struct CompensatedList {
   std::string file;
   std::vector<int> ids, lines;  ///< as the list has them; line 0: not known
@@ -48,7 +48,7 @@ struct NotCompensated {
 
 struct AxisChange {
   std::string name, unit;           ///< rad or m
-  double largest = 0.0, rms = 0.0;  ///< of what is commanded less what was listed
+  double largest = 0.0, rms = 0.0;  ///< of commanded less listed values
 };
 
 struct TipErrorSummary {
@@ -56,7 +56,7 @@ struct TipErrorSummary {
   double rotation_rms = 0.0, rotation_largest = 0.0;  ///< rad
 };
 
-/// How far the tool of the calibrated robot leaves the line between two compensated points.
+/// Largest distance of the calibrated robot's tool from the line between two compensated points.
 struct LineDeviation {
   std::string file;
   int line = 0;

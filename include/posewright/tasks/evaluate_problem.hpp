@@ -20,7 +20,7 @@ struct CriterionScore {
   std::optional<double> efficiency;  ///< lower bound against the best plan of as many candidates; none: no bound
 };
 
-/// A change of the list and what it brings.
+/// A change of the list and its effect.
 struct ListChange {
   std::vector<int> poses;          ///< ids to drop, 1 = the first of the list; empty if poses are added
   std::vector<PlannedPose> added;  ///< poses to add
@@ -42,7 +42,7 @@ struct EvaluateOptions {
 };
 
 /// The user's own list: scored by every criterion that the problem allows, its certificate against the candidates, the
-/// contribution of each pose and what its loss would cost, which `drop` poses to leave out, which `add` to measure
+/// contribution of each pose and the cost of its loss, which `drop` poses to leave out, which `add` to measure
 /// more. Throws InputError for a list that holds infeasible poses, naming the constraint.
 /// @param poses  read with pose_coordinates()
 PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& poses, const EvaluateOptions& options,

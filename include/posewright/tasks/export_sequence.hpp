@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What exported programs are worth: stands in their notes and in the table of formats.
+/// Status of exported programs, for their notes and the table of formats.
 inline constexpr const char* no_controller_note = "syntax checked, not run on a controller";
 
 /// An option that a format does not read is a mistake, not decoration. Throws InputError naming those that it reads.

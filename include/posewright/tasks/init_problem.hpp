@@ -22,7 +22,7 @@ struct BoardFacts {
 /// Reads ROWSxCOLUMNSxSPACING, "6x9x25mm". Throws InputError.
 BoardFacts parse_board(const std::string& text);
 
-/// What a first problem file is made from. What is empty is found or chosen, and the file says so.
+/// Facts for a first problem file. Missing ones are found or chosen, with a comment in the file.
 struct InitFacts {
   std::filesystem::path robot;  ///< URDF or .xacro
   std::vector<std::pair<std::string, std::string>> xacro;
@@ -38,18 +38,18 @@ struct InitFacts {
   std::optional<double> floor;     ///< m, height of floor or table in the base frame; none: under the robot's foot
   std::optional<int> poses;        ///< none: the number that reaches the accuracy, else a default
   std::optional<double> accuracy;  ///< m
-  std::string schema;              ///< what the modeline for editors names; empty: no modeline
+  std::string schema;              ///< file in the modeline for editors; empty: no modeline
 };
 
 struct InitResult {
   std::string text;  ///< of the problem file
   std::string base, tip;
   int joints = 0;
-  std::vector<std::string> notes;  ///< what was chosen because nobody said it
+  std::vector<std::string> notes;  ///< default choices
 };
 
 /// The problem file, tried before it is returned: it is read, the cell is made, and a small pool of configurations
-/// identifies what is planned for. Where the instrument, or what it looks at, may stand anywhere, the first of some
+/// identifies the planned parameters. Where the instrument, or what it looks at, may stand anywhere, the first of some
 /// places from which that holds is taken. Meshes that are not found leave out the cell, with a comment.
 /// @param file  where the text will be: paths in it are relative to its folder
 /// Throws InputError as propose_chain() and for numbers out of range; CannotDo where no pose is feasible from any

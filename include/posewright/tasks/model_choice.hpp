@@ -18,7 +18,7 @@ struct JudgedModel {
   std::optional<double> aicc{};
   /// The largest of the others that estimates some of this one's parameters and no others; empty: none.
   std::string against;
-  /// F test that what this one estimates beyond it is noise; none as for aicc.
+  /// F test of the parameters beyond it; none as for aicc.
   std::optional<double> f{}, probability{};
 };
 

@@ -27,7 +27,7 @@ struct KeptCandidates {
 
 struct NextOptions {
   std::filesystem::path data;         ///< names `text` in messages
-  std::optional<std::string> text{};  ///< what was measured, whole lines; none: nothing yet
+  std::optional<std::string> text{};  ///< measured data, whole lines; none: nothing yet
   std::string variant, criterion;     ///< empty: as in the problem; criterion: see NextPoses::criterion
   int poses = 1;                      ///< wanted
   std::optional<double> required{};   ///< error at the test poses, m; none: design: require: accuracy
@@ -59,7 +59,7 @@ struct NextRequirement {
   std::string unit;
   double required = 0.0;
   std::optional<double> expected{};  ///< ρ0; 1σ along or about the axis at the worst test pose; σ of the parameter
-  std::optional<double> upper{};     ///< 95 %, what is compared; none: nothing was left to judge the noise by
+  std::optional<double> upper{};     ///< 95 %, the compared value; none: no degrees of freedom for the noise
 
   bool met() const { return upper && *upper <= required; }
 };
@@ -72,13 +72,13 @@ struct NextPoses {
   int measured = 0, readings = 0;   ///< poses, single readings
   int parameters = 0, told = 0;     ///< columns, and how many the readings tell without any tolerance
   std::optional<int> smallest{};    ///< number of poses that tells all
-  bool fitted = false;              ///< what follows is at calibrated values; else at nominal ones
+  bool fitted = false;              ///< the rest is at calibrated values; else at nominal ones
   double noise = 1.0, freedom = 0;  ///< of the residuals, in units of the stated noise; their degrees of freedom
   std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
   std::vector<EstimatedValue> estimates;     ///< of the parameters, if there was a fit
   int places = 0;                            ///< where accuracy counts
   bool places_stated = false;                ///< test poses of the problem; else places through the workspace
-  std::vector<NextPoint> curve;              ///< of the measured poses, by what is known today; the last: all
+  std::vector<NextPoint> curve;              ///< of the measured poses, by today's estimate; the last: all
   std::vector<NextPoint> ahead;              ///< with 1, 2, … of `poses`
   std::optional<NextPoint> with_three{};     ///< with the three that lower the error most
   std::optional<double> required{};
@@ -86,18 +86,18 @@ struct NextPoses {
   std::vector<NextRequirement> requirements;
   NextVerdict verdict = NextVerdict::not_determined;
   std::vector<PlannedPose> poses;
-  std::string candidates;  ///< how many, and where from, for people
+  std::string candidates;  ///< how many, and where from, for messages
   std::shared_ptr<const KeptCandidates> kept;
   std::vector<std::string> notes;
   bool interrupted = false;
 };
 
-/// What the next three poses together must lower the expected error by; less is a flat curve.
+/// Decrease of the expected error by the next three poses; below it the curve is flat.
 inline constexpr double least_gain = 0.02;
 inline constexpr int poses_looked_ahead = 3;
 
-/// Estimates the parameters from what is measured, then chooses the poses that tell most beside it, at the estimated
-/// values and with the smooth effect that the residuals show; says what they are worth and whether they are needed.
+/// Estimates the parameters from the measured data, then chooses the poses that add most to them, at the estimated
+/// values and with the smooth effect of the residuals; reports their gain and whether they are needed.
 /// What does not suffice for an estimate counts by its poses alone, at the nominal values.
 /// Throws InputError as the reading of problem, data and lists does, and for rows that are far from where a fit of the
 /// rows before them says; CannotDo as make_study().

@@ -11,7 +11,7 @@
 
 namespace posewright {
 
-/// What `next` remembers from one call to the next: what it has seen, what it said, and candidates.
+/// State of `next` between calls: data, verdicts, and candidates.
 struct NextState {
   std::string problem_file, problem_sha256, parameters_sha256;
   std::string data_file, data_sha256;  ///< of the first `data_bytes`
@@ -35,7 +35,7 @@ std::optional<NextState> read_next_state(const std::filesystem::path& file);
 void require_continues(const NextState& state, const std::filesystem::path& file, const Problem& problem,
                        const std::filesystem::path& data, const std::string& text);
 
-/// Takes what can be used again. Throws nothing: other options draw other candidates.
+/// Reuses the data that are still valid. Does not throw: other options draw other candidates.
 void reuse(const NextState& state, const Problem& problem, NextOptions& options);
 
 /// The state after a call.
@@ -45,7 +45,7 @@ NextState state_after(const Problem& problem, const NextOptions& options, const 
 /// Schema posewright/next-state/1.
 std::string next_state_text(const NextState& state);
 
-/// The lines of a growing file that have their end: what is after the last one may be half a line.
+/// The lines of a growing file that have their end: the text after the last one may be half a line.
 struct WholeLines {
   std::string text;
   std::string rest;       ///< without an end

@@ -21,7 +21,7 @@ struct ObserveOptions {
   int threads = 0;
 };
 
-/// Which parameters of one variant a pool of configurations can identify.
+/// Parameters of one variant that a set of configurations can identify.
 struct Observation {
   std::string variant;
   std::size_t configurations = 0;
@@ -36,7 +36,7 @@ struct Observation {
   std::optional<PracticalIdentifiability> practical;  ///< over `kept`; none if the pool leaves them singular
 };
 
-/// Per variant: rank, scaled singular values, indices of the pool, dependencies, what is worth identifying, the
+/// Per variant: rank, scaled singular values, indices of the pool, dependencies, parameters worth identifying, the
 /// smallest number of poses.
 std::vector<Observation> observe_problem(const Problem& problem, const ObserveOptions& options, const Monitor& monitor);
 

@@ -8,7 +8,7 @@
 
 namespace posewright {
 
-/// What a plan from one choice of stations would be worth.
+/// Score of a plan from one choice of stations.
 struct StationRank {
   std::vector<StationSpec> stations;
   std::string why_not;           ///< why there is no plan from there; empty: there is one
@@ -17,7 +17,7 @@ struct StationRank {
   int parameters = 0;            ///< of interest that it identifies
   double phi = 0.0;              ///< criterion as it is maximised, larger is better
   double criterion_value = 0.0;  ///< in its own terms
-  /// Of the best of as many parameters, where the criterion is a determinant: σ is so many times as large, on the
+  /// Ratio of σ to the best choice with as many parameters, if the criterion is a determinant, on the
   /// geometric mean.
   std::optional<double> sigma_ratio;
   double feasible_share = 0.0;  ///< of the configurations drawn
@@ -27,7 +27,7 @@ struct StationRank {
 
 struct StationOptions {
   PlanOptions plan;
-  std::optional<int> choose;  ///< how many stations; else what the problem says
+  std::optional<int> choose;  ///< number of stations; else the problem's
   int full = 3;               ///< how many of the best are planned in full
   bool every_set = false;     ///< every set of so many stations is tried, however many there are
 };

@@ -18,11 +18,11 @@ struct FleetPlan {
   std::optional<double> efficiency;  ///< at least, of the best plan of its candidates; none: no bound
   std::optional<double> rho0;        ///< predicted position error at the test poses, m
   double seconds = 0.0;
-  std::string rendered;  ///< what `render` made of the plan
+  std::string rendered;  ///< result of `render`
 };
 
 /// Plans every problem by itself, each in one process with all its threads (run_tasks).
-/// @param render  makes of a plan what its caller keeps: files
+/// @param render  converts a plan for its caller: files
 std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const PlanOptions& options,
                                   const std::function<std::string(const Plan&, std::size_t index)>& render,
                                   const Monitor& monitor);

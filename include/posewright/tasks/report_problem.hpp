@@ -10,13 +10,13 @@ namespace posewright {
 
 struct ReportOptions {
   std::filesystem::path route;  ///< route.json of the same plan; empty: poses in the plan's order, no motions
-  bool sizes = true;            ///< plan for other numbers of poses too, to show what more or fewer would bring
-  bool candidates = true;       ///< draw the plan's candidates again to show what each could tell
-  bool moves = true;            ///< look at what is near to each pose, so that it can be moved on the page
+  bool sizes = true;            ///< plan for other numbers of poses too, to show their effect
+  bool candidates = true;       ///< draw the plan's candidates again to show the gain of each
+  bool moves = true;            ///< compute the neighbourhood of each pose, so that it can be moved on the page
   int threads = 0;              ///< 0 = all
 };
 
-/// Everything that a report shows of a plan of this problem: recomputed from the written poses and, for candidates and
+/// Data of a report on a plan of this problem: recomputed from the written poses and, for candidates and
 /// other numbers of poses, from the problem and the plan's seed. Where the monitor says stop, the curve ends there.
 /// Throws InputError for a plan or route that does not fit the problem.
 Report report_problem(const Problem& problem, const std::filesystem::path& plan, const ReportOptions& options,

@@ -29,9 +29,9 @@ std::filesystem::path problem_of_plan(const std::filesystem::path& plan);
 /// Order and motions for the poses of a plan (or CSV list) of this problem. Motions are looked for only where they are
 /// needed: a tour of the shortest conceivable motions is found, its motions are made, and so on until all motions of
 /// the tour are real; where the tour is optimal for these times, no other order is shorter. If the search is stopped,
-/// the best order so far is returned. Where poses are left out, it says what the others are worth. Throws InputError
-/// for a list that does not fit, CannotDo if home is asked for and not free, if no pose can be reached, and if the
-/// search is stopped before there is an order with all its motions.
+/// the best order so far is returned. Where poses are left out, it reports the efficiency of the others. Throws
+/// InputError for a list that does not fit, CannotDo if home is asked for and not free, if no pose can be reached, and
+/// if the search is stopped before there is an order with all its motions.
 /// @param poses  read with pose_coordinates()
 Route route_problem(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor);
 

@@ -28,29 +28,29 @@ struct SelectOptions {
   std::vector<int> fixed, measured;
   /// For branch_and_bound: it ends once no plan is better by more than this share; 0: proved to rounding.
   double gap = 0.0;
-  bool reserve = false;  ///< maximise what is left when the block that hurts most is lost
+  bool reserve = false;  ///< optimise for the loss of the worst single block
   std::uint64_t seed = 0;
   int threads = 0;
 };
 
-/// The same search on whitened Jacobian blocks that the user brings. Tolerances are unknown here, so parameters
+/// Search on the user's whitened Jacobian blocks. Tolerances are unknown here, so parameters
 /// have tolerance 1 and the indices are those of the blocks as they are.
 /// Throws InputError for options that do not fit the blocks (fixed ones out of range, twice, or as many as poses) or
 /// each other (a gap and another method), CannotDo for too few poses.
 /// @param blocks  with the columns' names; `rows` of the options is not looked at
 Plan select_blocks(BlockFile blocks, const SelectOptions& options, const Monitor& monitor);
-/// The same for a file.
+/// Overload for a file.
 Plan select_blocks(const std::filesystem::path& file, const SelectOptions& options, const Monitor& monitor);
 
-/// The same for a .npy file whose blocks are spread over processes, each of which holds its share (search_spread()).
-/// @param traffic  what went between the processes
-/// Throws InputError, on every process alike, for what this search does not do: criteria other than o1 and ds, methods
+/// Variant for a .npy file with blocks spread over processes, each with its share (search_spread()).
+/// @param traffic  data sent between the processes
+/// Throws InputError, on every process alike, for unsupported options: criteria other than o1 and ds, methods
 /// other than exchange and greedy, nuisance columns, fixed or measured blocks, a reserve, restarts, as many poses as
 /// candidates.
 Plan select_spread(const std::filesystem::path& file, const SelectOptions& options, Workers& workers,
                    const Monitor& monitor, SpreadTraffic& traffic);
 
-/// What chosen blocks are worth by a criterion in its own terms (docs/plan-file.md).
+/// Value of chosen blocks by a criterion in its own terms (docs/plan-file.md).
 /// @param evaluation  of the same blocks
 /// @param nuisance    leading columns that are nuisance
 /// @param scale       unit of every column for criteria that depend on it; empty: 1

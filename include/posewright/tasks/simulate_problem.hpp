@@ -13,12 +13,12 @@
 
 namespace posewright {
 
-/// Noise of the robot that is measured, where it differs from what the problem states: what a calibration that expects
+/// Noise of the robot that is measured, where it differs from the problem's: the result of a calibration that expects
 /// one kind of noise makes of another. 1σ; none: as the problem says.
 struct TruthNoise {
   std::optional<double> repeatability;  ///< m: the tip stands off, common to all readings of a visit
   std::optional<double> independent;    ///< m: every target stands off on its own
-  std::optional<Measured> joints;       ///< rad or m: what the joint or actuator readings are off by
+  std::optional<Measured> joints;       ///< rad or m: error of the joint or actuator readings
   bool differs() const { return repeatability || independent || joints; }
 };
 
@@ -28,7 +28,7 @@ struct SimulateOptions {
   TruthNoise truth_noise;
   bool truth_nominal = false;  ///< of the truth only the nominal values differ: parameters of `variant` are drawn
   int validation = 50;         ///< random places to check if the problem has no test poses
-  /// That decide which columns of an `auto` variant can be identified; none: the file's.
+  /// Configurations for choosing the identifiable columns of an `auto` variant; none: the file's.
   std::optional<int> candidates;
   ExperimentOptions experiment;
 };
@@ -63,7 +63,7 @@ struct Simulation {
   std::vector<SimulatedParameter> parameters;
   std::optional<SimulatedAccuracy> accuracy;  ///< none for a robot without a tip, or where nothing moves it
   std::vector<LostPose> lost{};               ///< most often lost first
-  std::string lost_because{};                 ///< what the instrument says of what it cannot read
+  std::string lost_because{};                 ///< reasons for missing readings
   Curvature curvature;                        ///< at the nominal parameters
   bool confirmed = false;                     ///< σ and intervals are as predicted
   std::vector<std::string> verdict;           ///< in words, and why

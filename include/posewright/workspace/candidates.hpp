@@ -13,10 +13,10 @@
 
 namespace posewright {
 
-/// Feasible configurations that OMPL's samplers drew on the way to what they return; told among the rejected.
+/// Feasible configurations that OMPL's samplers drew besides their results; counted among the rejected.
 inline constexpr const char* passed_over_reason = "passed over by the sampler";
 
-/// Where a candidate stands in a user's list.
+/// Position of a candidate in a user's list.
 struct ListedRow {
   int index = 0;  ///< zero-based, repeated configurations counted once
   int id = 0;     ///< as the list calls it, or index + 1

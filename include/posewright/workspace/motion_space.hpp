@@ -10,7 +10,7 @@
 
 namespace posewright {
 
-/// How the robot travels between poses: the continuous coordinates of its configurations, what is free on the way, and
+/// Motions of the robot between poses: the continuous coordinates of its configurations, collisions on the way, and
 /// how long a motion takes. What is chosen per measurement (load case, station) does not move; listed joint positions
 /// may be passed. Members are const and may run in several threads at once.
 class MotionSpace {
@@ -24,25 +24,25 @@ class MotionSpace {
 
   /// Coordinates that move, with the limits in force.
   const std::vector<Coordinate>& coordinates() const;
-  /// The same less the margin: where via points are proposed.
+  /// Limits less the margin: the range of via points.
   const std::vector<Coordinate>& proposed() const;
-  /// Of a whole configuration what moves, and back: choices at their first values.
+  /// Moving coordinates of a configuration, and back: choices at their first values.
   std::vector<double> reduced(std::span<const double> configuration) const;
   std::vector<double> whole(std::span<const double> q) const;
   std::vector<double> home() const;
-  /// Where the robot comes from for the last straight motion to a configuration: every coordinate with an approach its
+  /// Start of the last straight motion to a configuration: every coordinate with an approach its
   /// overrun away on the side that is stated. The configuration itself if there are none.
   std::vector<double> lead(std::span<const double> configuration) const;
 
-  /// What forbids q ("limits", "collision with table", …); empty if it is free.
+  /// Reason that forbids q ("limits", "collision with table", …); empty if it is free.
   std::string violation(std::span<const double> q) const;
   bool is_free(std::span<const double> q) const;
-  /// Whether the straight motion is free all the way; both ends are looked at too.
+  /// True if the straight motion is free all the way, both ends included.
   bool is_free(std::span<const double> from, std::span<const double> to) const;
   /// Seconds of the straight motion from standstill to standstill: every coordinate accelerates, travels and brakes
   /// together with the slowest. Coordinates of a parallel robot are timed by its actuators.
   double seconds(std::span<const double> from, std::span<const double> to) const;
-  /// The same for the shortest conceivable motion: what moves knows both ends only.
+  /// Variant for the shortest conceivable motion, from both ends only.
   double least_seconds(std::span<const double> from, std::span<const double> to) const;
   /// A distance that shrinks on the straight way from one to the other, for planners: seconds of an arm, the largest
   /// share of a coordinate's range for a parallel robot, whose actuators may go back and forth on the way.
@@ -60,7 +60,7 @@ struct Motion {
   const char* found_by = "straight";        ///< straight, roadmap or rrt_connect
 };
 
-/// What a roadmap is asked for. Motions are short where milestones are joined on several ways; to know what is
+/// Purpose of a roadmap. Motions are short where milestones are joined on several ways; to know what is
 /// connected, one way is enough, and most straight motions need no look.
 enum class RoadmapUse { motions, connection };
 
@@ -76,7 +76,7 @@ class Roadmap {
 
   /// A motion between two free configurations along the roadmap, simplified; empty `points` if it connects them not.
   Motion motion(std::span<const double> from, std::span<const double> to);
-  /// The same by RRT-Connect, seconds where there is none; the way that it finds belongs to the roadmap from now on.
+  /// Variant by RRT-Connect, seconds without a solution; its way then belongs to the roadmap.
   Motion grow(std::span<const double> from, std::span<const double> to);
   /// Milestones that are connected with `q`, q first.
   std::vector<std::vector<double>> connected(std::span<const double> q);

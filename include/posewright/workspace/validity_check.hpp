@@ -13,20 +13,20 @@ namespace posewright {
 class ValidityCheck {
  public:
   virtual ~ValidityCheck() = default;
-  /// What a user reads in the table of rejections, e.g. "actuator travel"; several where a check knows several causes.
+  /// Reasons in the table of rejections, e.g. "actuator travel"; several for a check with several causes.
   virtual std::vector<std::string> reasons() const = 0;
-  /// Index into reasons() of what forbids q, or −1.
+  /// Index into reasons() of the reason that forbids q, or −1.
   virtual int violation(std::span<const double> q) const = 0;
-  /// How many smooth functions of q are ≥ 0 exactly where it holds; 0 where it seldom forbids what other checks allow
-  /// (a singularity). None: it says yes or no alone.
+  /// Number of smooth functions of q that are ≥ 0 exactly where it holds; 0 if it seldom forbids what other checks
+  /// allow (a singularity). None: it says yes or no alone.
   virtual std::optional<int> margins() const { return std::nullopt; }
   /// These functions at q, in units of the range that each has; false if they have no value there.
   virtual bool margins_at(std::span<const double>, std::span<double>) const { return true; }
-  /// What is nowhere negative where it holds, as far as it is known.
+  /// Functions that are never negative where it holds, as far as known.
   virtual NecessaryLimits necessary_limits() const { return {}; }
   /// Its values at q.
   virtual void necessary_values(std::span<const double>, std::span<double>) const {}
-  /// Whether it follows motions, and so takes a hundred times as long as checks of one configuration.
+  /// True if it checks motions, which takes a hundred times as long as checks of one configuration.
   virtual bool follows_motions() const { return false; }
 };
 

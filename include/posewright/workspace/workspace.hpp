@@ -29,7 +29,7 @@ class Workspace {
   /// Throws InputError for limits that name no coordinate, have the wrong unit, lie outside the robot's own, or are
   /// empty once the margin is taken off.
   /// @param cell     bodies and sights; null: neither constrains
-  /// @param monitor  of the roadmap that says what can be reached from home; where it says stop, CannotDo is thrown
+  /// @param monitor  of the roadmap from home; where it says stop, CannotDo is thrown
   /// @param robots   ξ − nominal of robots that the instrument must be able to read wherever it reads the nominal one
   Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell = nullptr,
             const Monitor& monitor = Monitor(), const std::vector<std::vector<double>>& robots = {});
@@ -37,30 +37,30 @@ class Workspace {
 
   /// Limits in force, in the order of a configuration: those of the robot, narrowed by the problem.
   const std::vector<Coordinate>& coordinates() const;
-  /// The same less the margin: where configurations are proposed. Given ones may lie outside of it.
+  /// Coordinates less the margin, for proposed configurations. Given ones may lie outside.
   const std::vector<Coordinate>& proposed() const;
   /// Names of the coordinates of q that are nearer to a limit than the margin: "j2, j4"; empty: none.
   std::string within_margin(std::span<const double> q) const;
-  /// What each check is called; violation() returns an index into it.
+  /// Reasons of all checks; violation() returns an index into them.
   const std::vector<std::string>& reasons() const;
   /// Index of the first reason that forbids q, or −1.
   int violation(std::span<const double> q) const;
-  /// Whether all checks but those that follow motions allow q: true wherever violation() is −1.
+  /// True if all checks but those of motions allow q, as wherever violation() is −1.
   bool is_free_at(std::span<const double> q) const;
-  /// Those of all checks together, none if one has none (ValidityCheck::margins()).
+  /// Margins of all checks together, none if one has none (ValidityCheck::margins()).
   std::optional<int> margins() const;
   bool margins_at(std::span<const double> q, std::span<double> out) const;
-  /// Those of all checks together (ValidityCheck::necessary_limits()).
+  /// Necessary limits of all checks together (ValidityCheck::necessary_limits()).
   const NecessaryLimits& necessary_limits() const;
   void necessary_values(std::span<const double> q, std::span<double> values) const;
   /// Null if there is none.
   const Cell* cell() const;
-  /// Whether collisions or sights constrain configurations: checks then cost much more.
+  /// True if collisions or sights constrain configurations: checks then cost much more.
   bool cut_by_cell() const;
   /// Shares of the candidates that each sampler draws: the problem's, or half evenly and half on the boundary, with a
   /// part near obstacles where collisions or sights cut the space.
   const std::vector<std::pair<SamplerKind, double>>& sampler_shares() const;
-  /// Whether the problem names the samplers.
+  /// True if the problem names the samplers.
   bool samplers_are_given() const;
   /// Proposes configurations from which the instrument sees; null for an instrument that sees from everywhere.
   const ViewSampler* views() const;

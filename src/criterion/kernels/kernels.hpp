@@ -32,7 +32,7 @@ struct Kernels {
   std::size_t (*next_block)(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
                             int vectors, const double* d, const unsigned char* blocked, double least_d,
                             double least_sum);
-  /// The same where some squares count against: d[j] + Σ_rows (Σ_{l < plus} − Σ_{plus ≤ l < plus + minus}) (x·y_l)².
+  /// Variant with subtracted squares: d[j] + Σ_rows (Σ_{l < plus} − Σ_{plus ≤ l < plus + minus}) (x·y_l)².
   std::size_t (*next_between)(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
                               int plus, int minus, const double* d, const unsigned char* blocked, double least_d,
                               double least_sum);

@@ -20,7 +20,7 @@ class Axes {
   std::vector<double> of(const std::vector<double>& q) const;
   /// Throws CannotDo for an axis beyond what the settings say it may be. `point` is what the pose is called.
   void require_inside(const std::vector<double>& axes, const std::string& point) const;
-  /// What the user must check.
+  /// Notes on what the user must check.
   std::vector<std::string> notes() const;
 
  private:

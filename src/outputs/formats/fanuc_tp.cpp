@@ -40,7 +40,7 @@ std::vector<std::string> tp_measure_lines(const RobotProgram& program, int outpu
   return lines;
 }
 
-/// What stands behind the line numbers of /MN.
+/// Instruction behind the line number of /MN.
 std::vector<std::string> main_lines(const RobotProgram& program, const ExportOptions& options) {
   const int output = signal_number(options.digital_output, "--digital-output", 1, 32767, 1);
   const int input = signal_number(options.digital_input, "--digital-input", 1, 32767, 1);

@@ -45,7 +45,7 @@ std::array<double, 6> commanded(const std::vector<double>& q) {
   return {q[0] * 1e3, q[1] * 1e3, q[2] * 1e3, to_degrees(u), to_degrees(v), to_degrees(w)};
 }
 
-/// Whether the platform is turned at a pose, at home or on the way.
+/// True if the platform is turned at a pose, at home or on the way.
 bool turns(const PoseSequence& sequence) {
   const auto turned = [](const std::vector<double>& q) {
     return std::any_of(q.begin() + 3, q.end(), [](double x) { return std::abs(x) > no_rotation; });

@@ -21,7 +21,7 @@ struct NumberRow {
 std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::string& file, char separator, bool header,
                                         std::size_t skip = 0);
 
-/// The same as a list whose columns have no names; `unit` is that of every column, empty: SI. Throws InputError.
+/// Overload for a list without names of columns; `unit` is that of every column, empty: SI. Throws InputError.
 PoseTable number_table(const std::string& bytes, const std::string& file, char separator, bool header,
                        const std::string& unit = "");
 

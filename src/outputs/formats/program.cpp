@@ -33,7 +33,7 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   return name;
 }
 
-/// What somebody changes by hand between poses.
+/// Changes by hand between poses.
 Conditions others(const SequencePose& pose) {
   Conditions result = pose.conditions;
   std::erase_if(result, [](const auto& condition) { return is_approach(condition.first); });

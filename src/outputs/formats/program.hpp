@@ -5,14 +5,14 @@
 
 #include "posewright/outputs/pose_formats.hpp"
 
-/// What all robot programs share: the order of moves, measurements and stops, and joint values as a controller counts
-/// them.
+/// Common parts of all robot programs: the order of moves, measurements and stops, and joint values as a controller
+/// counts them.
 namespace posewright::formats {
 
 /// Seconds that a robot stands before it is measured, where nobody says otherwise.
 inline constexpr double default_settle = 2.0;
 
-/// What differs between controllers.
+/// Differences between controllers.
 struct ProgramRules {
   const char* format = "";
   const char* default_name = "CALPOSES";
@@ -67,13 +67,13 @@ int tool_number(const ExportOptions& options, int otherwise);
 std::string tool_name(const ExportOptions& options, const char* otherwise);
 /// Without poses that are measured already, and without zeros that are negative.
 PoseSequence to_measure(const PoseSequence& sequence);
-/// What a list does not hold: stations, load cases.
+/// Refuses or notes data that a list cannot have: stations, load cases.
 std::vector<std::string> list_notes(const PoseSequence& sequence);
 /// One file of the format's usual name.
 Exported one_file(const std::string& name, std::string bytes, std::vector<std::string> notes = {});
 /// Throws CannotDo for poses that joints are to reach from a stated side and that no route leads to.
 void require_arrivals(const PoseSequence& sequence);
-/// Whether station, load case or temperature change from one pose to the next.
+/// True if station, load case or temperature change from one pose to the next.
 bool has_changes(const PoseSequence& sequence);
 /// Keys of the settings file that a format does not read are an error.
 void allow_settings(const ControllerSettings& settings, const char* format, const std::vector<std::string>& keys);

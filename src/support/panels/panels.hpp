@@ -2,7 +2,7 @@
 
 namespace posewright {
 
-/// What products of matrices of any size come down to, packed as Eigen 3.4 packs for SSE2 (Goto & van de Geijn 2008):
+/// Kernel of matrix products of any size, packed as Eigen 3.4 packs for SSE2 (Goto & van de Geijn 2008):
 ///   C(i, j) += alpha · Σ_k A(i, k) B(k, j),
 /// C column-major, its columns `ldc` apart. A is packed in panels of four rows (a[4k + i] within one), then one of two
 /// rows and one of one row for those that are left; B in panels of four columns, those that are left one by one. A

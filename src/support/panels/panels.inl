@@ -26,7 +26,7 @@ inline void tile(double* __restrict c, long ldc, const double* __restrict a, lon
 #if defined(__AVX512F__)
 typedef double WideLanes __attribute__((vector_size(64), aligned(8)));
 
-/// The same with two panels of A side by side in one register.
+/// Variant with two panels of A side by side in one register.
 template <int Pairs, int Columns>
 inline void wide_tile(double* __restrict c, long ldc, const double* __restrict a, long panel,
                       const double* __restrict b, const PanelProduct& size) {
@@ -68,7 +68,7 @@ inline void narrow_tile(double* c, long ldc, const double* __restrict a, const d
     for (int j = 0; j < 4; ++j) c[j * ldc + i] += size.alpha * sum[i][j];
 }
 
-/// The same for a single column of B.
+/// Variant for a single column of B.
 template <int Rows>
 inline void narrow_column(double* c, const double* a, const double* b, const PanelProduct& size) {
   double sum[Rows] = {};

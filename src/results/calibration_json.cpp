@@ -171,6 +171,7 @@ Json figures_json(const Calibration& c) {
           {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
           {"orientations", orientations_json(c)},
           {"frames", frames_json(c)},
+          {"leg_points", leg_points_json(c)},
           {"noise_factor", c.fit.noise_factor},
           {"noise_scale", c.fit.scale},
           {"chi_square", c.fit.chi_square},

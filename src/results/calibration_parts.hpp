@@ -30,6 +30,8 @@ nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);
 /// Estimated frames for other programs: position and quaternion.
 std::string frames_text(const Calibration& calibration);
 nlohmann::ordered_json frames_json(const Calibration& calibration);
+/// Points a_i and b_i of a robot with legs, in base and platform, nominal and by the estimate; empty: it has none.
+nlohmann::ordered_json leg_points_json(const Calibration& calibration);
 /// Whiteness, a smooth effect, its interpolation, normality.
 std::string whiteness_text(const Calibration& calibration);
 std::string revisits_text(const Calibration& calibration);

@@ -95,3 +95,41 @@ export async function checkCalibrations(page, { data }) {
     check((await count()) === c.parameters.filter((p) => p.estimated).length, `the parameters of ${c.variant} are shown when it is chosen`);
   }
 }
+
+/** Marks of the telescope's points are where the estimated parameters put them, as many times as the caption states. */
+export async function checkLegs(page, { data }) {
+  const models = data.result.models;
+  const figure = page.locator('#plot-leg-points');
+  const times = read((await figure.locator('figcaption').textContent()).match(/([\d,.]+) times/)[1]);
+  const nominal = await figure
+    .locator('.nominal-point')
+    .evaluateAll((all) => all.map((e) => ({ point: e.dataset.point, x: e.cx.baseVal.value, y: e.cy.baseVal.value })));
+  const marks = await figure.locator('.mark[data-point]').evaluateAll((all) =>
+    all.map((e) => {
+      const { e: x, f: y } = e.transform.baseVal[0].matrix;
+      return { point: e.dataset.point, model: Number(e.dataset.model), x, y };
+    }),
+  );
+  check(nominal.length === 12 && marks.length === 36, 'twelve points, one mark of each model', [nominal.length, marks.length]);
+  const of = (model, name) => models[model].parameters.find((p) => p.name === name && p.estimated);
+  const at = (name) => nominal.find((n) => n.point === name);
+  // Nominal x of legs 1 and 2 give the scale of each picture; they are parameters of rigid_6.
+  const scaleOf = (body) =>
+    (at(`leg_1.${body}`).x - at(`leg_2.${body}`).x) / (of(0, `leg_1.${body}x`).nominal - of(0, `leg_2.${body}x`).nominal);
+  let [widest, moved] = [0, 0];
+  for (const { point, model, x, y } of marks) {
+    const scale = scaleOf(point.at(-1));
+    const change = (axis) => (of(model, point + axis) ? of(model, point + axis).value - of(model, point + axis).nominal : 0);
+    near(x - at(point).x, scale * times * change('x'), 1e-4, `x of ${point} by ${models[model].variant}`);
+    near(y - at(point).y, -scale * times * change('y'), 1e-4, `y of ${point} by ${models[model].variant}, upwards`);
+    widest = Math.max(widest, Math.hypot(change('x'), change('y')));
+    moved += change('x') !== 0 ? 1 : 0;
+  }
+  check(moved === 36, 'every mark stands for an estimate', moved);
+  // The points of the platform extend over 347 mm (examples/telescope/problem.yaml).
+  check(times * widest <= 0.347 / 6 && 2.5 * times * widest > 0.347 / 6, 'deviations are amplified as far as they fit', times);
+  const rows = await rowsOf(page, 'Points of the legs');
+  const b1 = rows.find((r) => r[0] === 'matrix' && r[1] === 'leg_1.b');
+  near(read(b1[5]), mm * (of(2, 'leg_1.bx').value - of(2, 'leg_1.bx').nominal), 1e-3, 'deviation of b of leg 1 by matrix');
+  near(read(b1[8]), mm * of(2, 'leg_1.bx').sigma, 1e-3, 'and its σ');
+}

@@ -37,9 +37,12 @@ export function makeResults(program, out) {
   save('calibration', 'calibrate', kr270, 'measured.csv', '--hold-back', '4');
   save('calibrations', 'calibrate', kr270, 'measured.csv', '--variant', 'geometric,automatic', '--hold-back', '4');
   save('comparison', 'compare', telescope, '--variant', 'rigid,matrix', '--truth', 'matrix', '--restarts', '1', '--candidates', '150');
+  run('plan', telescope, '--variant', 'rigid', '--poses', '30', ...quick, '-o', 't.json', '--poses-csv', 't.csv');
+  run('simulate', telescope, 't.json', '--variant', 'rigid', '--draws', '2', '--data', 'legs.csv', '--force', '--quiet');
+  save('legs', 'calibrate', telescope, 'legs.csv', '--variant', 'rigid_6,linear,matrix', '--no-prior');
   save('stations', 'stations', withPlaces(folder), '--poses', '16', '--candidates', '150', '--restarts', '1', '--full', '2');
   writeFileSync(join(folder, 'next.json'), readFileSync(new URL('next.json', import.meta.url)));
-  const made = ['calibration', 'calibrations', 'simulation', 'comparison', 'stations', 'next'].map((name) => ({
+  const made = ['calibration', 'calibrations', 'legs', 'simulation', 'comparison', 'stations', 'next'].map((name) => ({
     name,
     words: [`${name}.json`],
   }));

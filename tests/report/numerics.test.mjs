@@ -15,6 +15,7 @@ import { Neighbours, wholeNumbers } from '../../report/src/numerics/neighbours.j
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { armAt, composed, nearby } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
+import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
 import { counts } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
 import { shell, shellFile } from '../../report/src/sections/reproduce.js';
@@ -269,4 +270,20 @@ test('whatever stands in a file is one word of a shell command and no option', (
   }
   assert.equal(shellFile('-rf'), './-rf');
   assert.equal(shellFile('a b'), "'a b'");
+});
+
+test('deviations of points are amplified 1, 2 or 5 times a power of ten, the largest to a sixth of the extent at most', () => {
+  const points = (change) => [
+    { name: 'leg_1.a', nominal: [0, 0, 0], calibrated: [change, 0, 0] },
+    { name: 'leg_2.a', nominal: [0.6, 0.1, 0], calibrated: [0.6, 0.1, 0.004] },
+  ];
+  // A sixth of 0.6 m is 100 mm.
+  assert.equal(amplification(points(0.0999)), 1);
+  assert.equal(amplification(points(-0.03)), 2);
+  assert.equal(amplification(points(0.011)), 5);
+  assert.equal(amplification(points(0.00009)), 1000);
+  assert.equal(amplification(points(0.5)), 1);
+  assert.equal(amplification(points(0)), 0);
+  amplified(points(-0.03)[0], 2).forEach((value, k) => near(value, [-0.06, 0, 0][k]));
+  near(largestDeviation(points(0.003)), 0.004);
 });

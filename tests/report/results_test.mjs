@@ -6,7 +6,7 @@ import { about, check, verdict } from './checks.mjs';
 import { makeResults } from './make_results.mjs';
 import { checkLeftovers, overflow } from './reading_checks.mjs';
 import { checkRefresh, checkWatch } from './refresh_checks.mjs';
-import { checkCalibration, checkCalibrations } from './calibration_checks.mjs';
+import { checkCalibration, checkCalibrations, checkLegs } from './calibration_checks.mjs';
 import * as checks from './results_checks.mjs';
 
 const { values } = parseArgs({ options: { program: { type: 'string' }, out: { type: 'string' } } });
@@ -23,6 +23,7 @@ if (lacking) {
 const own = {
   calibration: checkCalibration,
   calibrations: checkCalibrations,
+  legs: checkLegs,
   simulation: checks.checkSimulation,
   comparison: checks.checkComparison,
   stations: checks.checkStations,

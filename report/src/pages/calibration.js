@@ -2,6 +2,7 @@ import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
 import { calibratedParametersSection } from '../sections/calibrated_parameters.js';
 import { errorsSection } from '../sections/calibrated_errors.js';
+import { legPointsSection } from '../sections/leg_points.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { testsSection } from '../sections/calibration_tests.js';
 import { chance, seldom } from '../text/chances.js';
@@ -91,7 +92,7 @@ export function calibrationPage(c, report) {
     kind: `Calibration of variant ${c.variant}, from ${c.data}`,
     heading: report.title,
     title: `Calibration: ${report.title}`,
-    sections: [...modelSections(c), ['Repeat', repeat(c, report, `--variant ${shell(c.variant)}`)]],
+    sections: [...modelSections(c), ['Legs', legPointsSection([c])], ['Repeat', repeat(c, report, `--variant ${shell(c.variant)}`)]],
   };
 }
 

@@ -1,5 +1,6 @@
 import { h, section, table } from '../dom.js';
 import { modelSections, repeatCalibration } from './calibration.js';
+import { legPointsSection } from '../sections/leg_points.js';
 import { shell } from '../sections/reproduce.js';
 import { chance } from '../text/chances.js';
 import { number, quantity } from '../text/units.js';
@@ -84,6 +85,7 @@ export function calibrationsPage(all, report) {
     title: `Calibration: ${report.title}`,
     sections: [
       ['Which model?', choiceSection(all)],
+      ['Legs', legPointsSection(all.models)],
       ['One model', chosen],
       ['Repeat', repeatCalibration(all, report, `--variant ${all.models.map((c) => shell(c.variant)).join(',')}`)],
     ],

@@ -3,67 +3,11 @@ import { inkOn } from '../parts/shares.js';
 import { convexHull } from '../numerics/outline.js';
 import { viridisAt } from '../theme.js';
 import { endsOf, placesOf, shareOf, valuesOf } from '../numerics/stations.js';
-import { number } from '../text/units.js';
+import { Plane, gridOf } from './plane.js';
 
-/** Map of places, obstacles and base seen from above. */
-class Frame {
-  /** @param {[number, number][]} points that must be seen @param {number} width px */
-  constructor(points, width) {
-    const side = (axis) => [Math.min(...points.map((p) => p[axis])), Math.max(...points.map((p) => p[axis]))];
-    const [[left, right], [low, high]] = [side(0), side(1)];
-    const room = 0.12 * Math.max(right - left, high - low, 0.5);
-    this.least = [left - room, low - room];
-    this.most = [right + room, high + room];
-    this.edge = 40;
-    this.scale = (width - this.edge - 8) / (this.most[0] - this.least[0]);
-    // A narrow strip of places must not become a tower.
-    const tallest = 460;
-    this.scale = Math.min(this.scale, tallest / (this.most[1] - this.least[1]));
-    this.width = this.edge + this.scale * (this.most[0] - this.least[0]) + 8;
-    this.height = this.scale * (this.most[1] - this.least[1]) + 44;
-  }
-
-  x(value) {
-    return this.edge + this.scale * (value - this.least[0]);
-  }
-
-  y(value) {
-    return 8 + this.scale * (this.most[1] - value);
-  }
-
-  /** Round lengths for the grid, m. */
-  get step() {
-    const wanted = 80 / this.scale;
-    const decade = 10 ** Math.floor(Math.log10(wanted));
-    return [1, 2, 5, 10].map((d) => d * decade).find((d) => d >= wanted) ?? decade * 10;
-  }
-}
-
-/** @param {Frame} frame */
-function gridOf(frame) {
-  const { step } = frame;
-  const lines = [];
-  const ticks = (axis) => {
-    const first = Math.ceil(frame.least[axis] / step - 1e-9);
-    const count = Math.floor(frame.most[axis] / step + 1e-9) - first;
-    return Array.from({ length: count + 1 }, (_, k) => (first + k) * step);
-  };
-  const [right, bottom] = [frame.x(frame.most[0]), frame.y(frame.least[1])];
-  for (const v of ticks(0)) {
-    lines.push(svg('line', { class: 'grid', x1: frame.x(v), x2: frame.x(v), y1: 8, y2: bottom }));
-    lines.push(svg('text', { class: 'soft', x: frame.x(v), y: bottom + 15, 'text-anchor': 'middle' }, number(1e3 * v)));
-  }
-  for (const v of ticks(1)) {
-    lines.push(svg('line', { class: 'grid', x1: frame.edge, x2: right, y1: frame.y(v), y2: frame.y(v) }));
-    lines.push(svg('text', { class: 'soft', x: frame.edge - 5, y: frame.y(v) + 4, 'text-anchor': 'end' }, number(1e3 * v)));
-  }
-  lines.push(svg('text', { class: 'soft', x: right - 2, y: bottom + 29, 'text-anchor': 'end' }, 'x, y in mm'));
-  return lines;
-}
-
-/** @param {Frame} frame @param {any} place @param {any} s @param {Value} value */
-function mark(frame, place, s, value) {
-  const [x, y] = [frame.x(place.position[0]), frame.y(place.position[1])];
+/** @param {Plane} plane @param {any} place @param {any} s @param {Value} value */
+function mark(plane, place, s, value) {
+  const [x, y] = [plane.x(place.position[0]), plane.y(place.position[1])];
   const share = place.rank.why_not ? null : shareOf(s.ranking, place.rank, value);
   const rgb = share === null ? null : viridisAt(share);
   const best = s.ranking[0].stations[place.name] !== undefined;
@@ -107,29 +51,29 @@ export function stationMap(s) {
       );
     const width = Math.min(900, holder.clientWidth);
     if (width < 60) return;
-    const frame = new Frame(points, width);
+    const plane = new Plane(points, width, 0.5);
     const middle = (hull) => [0, 1].map((axis) => hull.reduce((sum, p) => sum + p[axis], 0) / hull.length);
-    const outline = (hull) => hull.map(([x, y]) => `${frame.x(x)},${frame.y(y)}`).join(' ');
+    const outline = (hull) => hull.map(([x, y]) => `${plane.x(x)},${plane.y(y)}`).join(' ');
     const best = Object.keys(s.ranking[0].stations).map((name) => places.find((p) => p.name === name).position);
     holder.replaceChildren(
       svg(
         'svg',
         {
           class: 'map',
-          viewBox: `0 0 ${frame.width} ${frame.height}`,
-          width: frame.width,
-          height: frame.height,
+          viewBox: `0 0 ${plane.width} ${plane.height}`,
+          width: plane.width,
+          height: plane.height,
           role: 'img',
           'aria-label': `Places from above, coloured by ${values[Number(select.value)].name}`,
         },
-        gridOf(frame),
+        gridOf(plane),
         bodies.flatMap(({ name, hull }) => [
           svg('polygon', { class: 'obstacle', points: outline(hull) }),
-          svg('text', { x: frame.x(middle(hull)[0]), y: frame.y(middle(hull)[1]) + 4, 'text-anchor': 'middle' }, name),
+          svg('text', { x: plane.x(middle(hull)[0]), y: plane.y(middle(hull)[1]) + 4, 'text-anchor': 'middle' }, name),
         ]),
         best.length > 1 ? svg('polyline', { class: 'link', fill: 'none', points: outline(best.map((p) => [p[0], p[1]])) }) : null,
-        s.base ? baseMark(frame, s.base) : null,
-        places.flatMap((place) => mark(frame, place, s, values[Number(select.value)])),
+        s.base ? baseMark(plane, s.base) : null,
+        places.flatMap((place) => mark(plane, place, s, values[Number(select.value)])),
       ),
     );
   };
@@ -143,9 +87,9 @@ export function stationMap(s) {
   );
 }
 
-/** @param {Frame} frame @param {number[]} base */
-function baseMark(frame, [x, y]) {
-  const [u, v] = [frame.x(x), frame.y(y)];
+/** @param {Plane} plane @param {number[]} base */
+function baseMark(plane, [x, y]) {
+  const [u, v] = [plane.x(x), plane.y(y)];
   return svg(
     'g',
     {},

@@ -83,9 +83,9 @@ def design(random, robot, measurement):
     return chosen
 
 
-def random_problem(folder, random, number):
+def random_problem(folder, random, number, robots=ROBOTS):
     """Writes the file; its path and what it is."""
-    robot = ROBOTS[number % len(ROBOTS)](random, folder)
+    robot = robots[number % len(robots)](random, folder)
     measurement = INSTRUMENTS[pick(random, robot.instruments)](random, robot)
     if measurement["type"] != "joints" and robot.kind != "compensator":
         stays(random, measurement)

@@ -51,7 +51,7 @@ def stated(calibration, kind):
 def prepare(folder, *instrument):
     (folder / "arm.urdf").write_text((SOURCE / "examples/kr270/kr270.urdf").read_text())
     run(folder, "init", "arm.urdf", *instrument, "--force")
-    run(folder, "plan", "problem.yaml", "--candidates", "200", "--restarts", "1", "--force", "-o", "plan.json")
+    run(folder, "plan", "problem.yaml", "--candidates", "200", "--restarts", "1", "--proof-time", "0", "--force", "-o", "plan.json")
     run(folder, "simulate", "problem.yaml", "plan.json", "--draws", "2", "--data", "measured.csv", "--force")
 
 
@@ -83,7 +83,7 @@ def check_lost(folder, chain):
     for robots in (20, 0):
         problem = folder / "problem.yaml"
         problem.write_text(problem.read_text().replace("readable_for: 20", f"readable_for: {robots}"))
-        said = run(folder, "plan", "problem.yaml", "--candidates", "200", "--restarts", "1", "--force", "-o", "plan.json")
+        said = run(folder, "plan", "problem.yaml", "--candidates", "200", "--restarts", "1", "--proof-time", "0", "--force", "-o", "plan.json")
         assert ("cannot be read at these poses" in said) == (robots == 0), said
         simulated = json.loads(run(folder, "simulate", "problem.yaml", "plan.json", "--draws", "200", "--json"))["lost"]["poses_a_draw"]
         lost[robots], poses = lost_poses(folder, chain)

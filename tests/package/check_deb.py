@@ -22,7 +22,8 @@ HELD = {
         "usr/lib/ARCH/cmake/posewright/posewright-targets.cmake", "usr/lib/ARCH/cmake/posewright/dependencies.cmake"],
     "python3-posewright": ["usr/lib/python3/dist-packages/posewright/__init__.py", "usr/lib/python3/dist-packages/posewright/py.typed"],
     "posewright-mpi": ["usr/lib/posewright/modules/posewright_mpi.so"]}
-LIBRARIES = ("libc6", "libompl16", "libfcl0.7", "libnlopt0", "libyaml-cpp0.7")
+# Their numbers differ between releases of Debian.
+LIBRARIES = (r"libc6", r"libompl\d+", r"libfcl0\.\d", r"libnlopt0", r"libyaml-cpp0\.\d")
 
 
 def depends(file):

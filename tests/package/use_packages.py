@@ -3,6 +3,7 @@
 The root holds what Debian calls essential, the three packages, what they depend on, and a compiler: nothing of this machine."""
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -18,6 +19,7 @@ made = packages(repository)
 if scratch.exists():
     shutil.rmtree(scratch)
 
+suite = platform.freedesktop_os_release()["VERSION_CODENAME"]
 # Debian's packages come from where this machine has them from.
 sources = [file for file in (pathlib.Path("/etc/apt/sources.list.d/debian.sources"), pathlib.Path("/etc/apt/sources.list"))
            if file.exists() and "deb" in file.read_text()]
@@ -25,7 +27,7 @@ ours = f"deb [signed-by={repository}/posewright.asc] copy:{repository} ./"
 left_out = [f"--dpkgopt=path-exclude=/usr/share/{part}/*" for part in ("man", "locale", "doc")]
 done = subprocess.run(
     ["mmdebstrap", "--variant=essential", "--aptopt=APT::Install-Recommends \"false\"", "--dpkgopt=force-unsafe-io", *left_out,
-     "--include=" + ",".join([*made, "g++", "cmake", "ninja-build"]), "bookworm", str(scratch), *map(str, sources[:1]), ours],
+     "--include=" + ",".join([*made, "g++", "cmake", "ninja-build"]), suite, str(scratch), *map(str, sources[:1]), ours],
     capture_output=True, text=True)
 if re.search("Temporary failure resolving|Could not resolve|Could not connect|Network is unreachable", done.stderr):
     skip("Debian's packages are out of reach")

@@ -56,7 +56,7 @@ class Robot:
                 continue
             nominal = np.concatenate([origin[:3, :3].T @ origin[:3, 3], np.zeros(4)])
             for key, value in zip(("x", "y", "z", "rx", "ry", "rz", "offset"), nominal + self.off[joint]):
-                lines.append(f"  {joint}.{key}: {{value: {value!r}, unit: {'m' if key in 'xyz' else 'rad'}}}")
+                lines.append(f"  {joint}.{key}: {{value: {float(value)!r}, unit: {'m' if key in 'xyz' else 'rad'}}}")
         (folder / "calibrated.yaml").write_text("\n".join(lines) + "\n")
 
     def run(self, *words, status=0):

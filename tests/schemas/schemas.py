@@ -45,7 +45,15 @@ def closed(schemas):
     return result
 
 
+def others(name, schemas):
+    """How a validator finds the schemas that one refers to: a registry since jsonschema 4.18, a resolver before."""
+    try:
+        from referencing import Registry, Resource
+    except ImportError:
+        return {"resolver": jsonschema.RefResolver(name, schemas[name], store=schemas)}
+    return {"registry": Registry().with_resources((file, Resource.from_contents(schema)) for file, schema in schemas.items())}
+
+
 def errors(name, document, schemas=SCHEMAS):
-    resolver = jsonschema.RefResolver(name, schemas[name], store=schemas)
-    validator = jsonschema.Draft202012Validator(schemas[name], resolver=resolver)
+    validator = jsonschema.Draft202012Validator(schemas[name], **others(name, schemas))
     return [f"{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(document)]

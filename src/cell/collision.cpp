@@ -191,10 +191,10 @@ void Collision::necessary_values(std::span<const double> q, std::span<double> va
   }
 }
 
-std::string Collision::colliding(std::span<const double> q) const {
+std::optional<std::pair<std::string, std::string>> Collision::colliding(std::span<const double> q) const {
   const BodyPair* pair = first_violation(*scene_, q);
-  if (pair == nullptr) return {};
-  return scene_->bodies[std::size_t(pair->b)].name + " and " + scene_->bodies[std::size_t(pair->a)].name;
+  if (pair == nullptr) return std::nullopt;
+  return std::pair(scene_->bodies[std::size_t(pair->b)].name, scene_->bodies[std::size_t(pair->a)].name);
 }
 
 double Collision::slack(std::span<const double> q, double cap) const {

@@ -217,6 +217,7 @@ int run_init(const po::variables_map& values, const Words& positional) {
     return done;
   }
   InitFacts facts = given_facts(values, positional);
+  facts.files_beside = text_of(values, "output") != "-";
   const std::string output = values.count("output") > 0 ? text_of(values, "output") : "problem.yaml";
   if (output.empty()) throw InputError({}, "-o names no file", "a file, or - for stdout");
   const bool to_stdout = output == "-";
@@ -237,14 +238,23 @@ int run_init(const po::variables_map& values, const Words& positional) {
     fmt::print("{}", result.text);
     return done;
   }
-  write_results({{output, result.text}});
+  std::vector<FileToWrite> files;
+  if (!result.expanded.file.empty()) {
+    require_new(result.expanded.file, result.expanded.bytes, values.count("force") > 0);
+    check_outputs({output, result.expanded.file}, {facts.robot}, true);
+    files.push_back(result.expanded);
+  }
+  files.push_back({output, result.text});
+  write_results(files);
   if (common.json)
-    fmt::print("{}", json_text(nlohmann::ordered_json{{"schema", "posewright/init/1"},
-                                                      {"problem", output},
-                                                      {"base", result.base},
-                                                      {"tip", result.tip},
-                                                      {"joints", result.joints},
-                                                      {"notes", result.notes}}));
+    fmt::print("{}", json_text(nlohmann::ordered_json{
+                         {"schema", "posewright/init/1"},
+                         {"problem", output},
+                         {"urdf", result.expanded.file.empty() ? facts.robot.string() : result.expanded.file.string()},
+                         {"base", result.base},
+                         {"tip", result.tip},
+                         {"joints", result.joints},
+                         {"notes", result.notes}}));
   else print_summary(facts, result, output, values);
   return done;
 }

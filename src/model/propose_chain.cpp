@@ -86,6 +86,11 @@ LinkPtr given_link(const UrdfDocument& urdf, const std::string& name, const std:
                    fmt::format("links: {}", fmt::join(names, ", ")));
 }
 
+/// A base that drives or floats: its joint is of no axis.
+bool carries(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::FLOATING || joint.type == urdf::Joint::PLANAR;
+}
+
 /// Parent of the first moving joint, or a fixed link above it with the name of a base.
 std::string base_of(const urdf::ModelInterface& model, LinkPtr tip) {
   std::vector<LinkPtr> way;
@@ -95,9 +100,11 @@ std::string base_of(const urdf::ModelInterface& model, LinkPtr tip) {
   }
   std::string base = way.back()->name;
   for (auto link = way.rbegin(); link != way.rend(); ++link) {
-    if ((*link)->parent_joint != nullptr && moves(*(*link)->parent_joint)) break;
+    if ((*link)->parent_joint != nullptr && moves(*(*link)->parent_joint) && !carries(*(*link)->parent_joint)) break;
     base = (*link)->name;
-    if (std::any_of(base_names.begin(), base_names.end(), [&](std::string_view name) { return is_called(base, name); }))
+    const bool stands = (*link)->parent_joint == nullptr || !carries(*(*link)->parent_joint);
+    if (stands &&
+        std::any_of(base_names.begin(), base_names.end(), [&](std::string_view name) { return is_called(base, name); }))
       break;
   }
   return base;

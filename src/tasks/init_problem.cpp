@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "init_text.hpp"
@@ -24,8 +25,16 @@ namespace fs = std::filesystem;
 constexpr int tried_configurations = 60;
 constexpr std::size_t drawn_homes = 300;
 constexpr std::uint64_t home_seed = 1618;
-constexpr double most_room = 0.3;  // m from the nearest body: more makes no home better
-constexpr double to_grid = 20;     // places are on a grid of 50 mm
+constexpr double most_room = 0.3;    // m from the nearest body: more makes no home better
+constexpr double to_grid = 20;       // places are on a grid of 50 mm
+constexpr double least_scale = 0.9;  // m
+constexpr int drawn_collisions = 200;
+constexpr std::uint64_t collision_seed = 2718;
+// Share of configurations with a collision from which collisions are what leaves none, and how many causes are left
+// out.
+constexpr double nearly_all = 0.98;
+constexpr std::size_t most_left_out = 6;
+constexpr double most_turns = 8;  // of a joint: more are degrees
 
 /// Possible places, best first; one if it is given. Shares of the reach.
 std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& robot) {
@@ -35,9 +44,11 @@ std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& rob
   if (facts.camera && facts.on_hand)
     shares = {{0.5, 0, 0}, {0.4, 0.2, 0}, {0.6, 0, 0.1}, {0.5, 0, 0.2}, {0.3, 0.3, 0}, {0.6, 0, 0.4}, {-0.5, 0, 0}};
   if (facts.camera && !facts.on_hand) shares = {{1.1, 0, 0.5}, {0.9, 0, 0.6}, {1.3, 0, 0.4}, {0, 1.1, 0.5}};
+  // A tracker sees nothing that is nearer than 0.8 m.
+  const double scale = facts.camera ? robot.reach : std::max(robot.reach, least_scale);
   std::vector<Eigen::Vector3d> result;
   for (const Eigen::Vector3d& share : shares) {
-    Eigen::Vector3d place = (robot.reach * share * to_grid).array().round() / to_grid;
+    Eigen::Vector3d place = (scale * share * to_grid).array().round() / to_grid;
     place.z() += floor;
     // A board lies on what is there.
     if (facts.camera && facts.on_hand && share.z() == 0) place.z() = floor + 0.01;
@@ -57,8 +68,11 @@ void try_out(const std::string& text, const fs::path& file, const InitFacts& fac
   if (!found.front().practical) throw CannotDo("what is planned for cannot be identified");
 }
 
-/// A place that is inside none of the robot's bodies.
-InitPlace far_away(const InitRobot& robot) { return {{3 * robot.reach, 0, 3 * robot.reach}, true, {}, {}}; }
+/// A place that is inside none of the robot's bodies, be they in millimetres.
+InitPlace far_away(const InitRobot& robot) {
+  const double far = std::min(300 * robot.reach, 900.0);
+  return {{far, 0, far}, true, {}, {}};
+}
 
 /// Looks at the bodies of the robot, if its meshes are there; why not, else nothing.
 std::string look_at_bodies(InitFacts facts, InitRobot& robot, const fs::path& file) {
@@ -99,20 +113,90 @@ std::vector<double> free_home(const MotionSpace& space, const Collision& collisi
   return best;
 }
 
-/// A free home for the arm above its floor; empty, with a note, where motions cannot be planned.
-std::vector<double> find_home(InitFacts facts, const InitRobot& robot, const fs::path& file,
-                              std::vector<std::string>& notes) {
+/// The problem of the arm and its surroundings alone.
+Problem cell_problem(InitFacts facts, const InitRobot& robot, const InitPlace& place, const fs::path& file) {
   facts.camera = false;
+  InitPlace far = far_away(robot);
+  far.left_out = place.left_out;
+  return parse_problem(init_text(facts, robot, far), file, facts.packages);
+}
+
+/// A free home for the arm above its floor; empty, and why, where motions cannot be planned.
+std::vector<double> find_home(const Problem& problem, std::string& why) {
+  why.clear();
   try {
-    const Problem problem = parse_problem(init_text(facts, robot, far_away(robot)), file, facts.packages);
     const std::shared_ptr<const Cell> cell = make_cell(problem);
     std::vector<double> home = free_home(MotionSpace(problem, cell), *cell->collision);
-    if (home.empty()) notes.emplace_back("no home was found that is free: which poses can be reached is not checked");
+    if (home.empty()) why = "no home was found that is free";
     return home;
   } catch (const InputError& error) {
-    notes.push_back("which poses can be reached is not checked: " + std::string(error.what()));
+    why = error.what();
     return {};
   }
+}
+
+/// What most random configurations collide with, if nearly all of them collide; none else.
+std::optional<InitObstacle> obstacle_of(const Problem& problem) {
+  const std::shared_ptr<const Cell> cell = make_cell(problem);
+  Random random(collision_seed, 0);
+  std::map<std::pair<std::string, std::string>, int> counts;
+  int collisions = 0;
+  for (int i = 0; i < drawn_collisions; ++i) {
+    std::vector<double> q;
+    for (const Coordinate& c : cell->model->coordinates())
+      q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+    const auto pair = cell->collision->colliding(q);
+    if (!pair) continue;
+    ++collisions;
+    ++counts[*pair];
+  }
+  if (collisions < nearly_all * drawn_collisions) return std::nullopt;
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return InitObstacle{most->first.first, most->first.second, double(most->second) / drawn_collisions};
+}
+
+int line_of(const std::string& text, const std::string& part) {
+  return int(std::count(text.begin(), text.begin() + std::ptrdiff_t(std::min(text.find(part), text.size())), '\n')) + 1;
+}
+
+/// Which line of the file leaves an obstacle out.
+std::string left_out_note(const InitObstacle& obstacle, const std::string& text, const fs::path& file) {
+  const std::string line = obstacle.is_floor() ? fmt::format("{{name: {}", InitObstacle::floor_name)
+                                               : fmt::format("- [\"{}\", \"{}\"]", obstacle.first, obstacle.second);
+  return fmt::format("{} and {} are too near in {:.0f} % of random configurations, no pose was free: {} in {}:{}",
+                     in_quotes(obstacle.first), in_quotes(obstacle.second), 100 * obstacle.share,
+                     obstacle.is_floor() ? "the floor is a comment" : "this pair is ignored", file.string(),
+                     line_of(text, line));
+}
+
+/// The first place from which a plan can be made; empty, and why, if there is none.
+std::string place_instrument(const InitFacts& facts, const InitRobot& robot, InitPlace& place, const fs::path& file,
+                             const Monitor& monitor) {
+  const std::vector<Eigen::Vector3d> candidates = places(facts, robot);
+  for (std::size_t i = 0;; ++i) {
+    place.position = candidates[i];
+    const bool last = i + 1 == candidates.size();
+    try {
+      try_out(init_text(facts, robot, place), file, facts, monitor);
+      return {};
+    } catch (const StationInside&) {
+      if (last) throw;
+    } catch (const CannotDo& error) {
+      if (monitor.should_stop()) throw;
+      if (last) return error.what();
+    }
+  }
+}
+
+/// Limits so wide that they were not meant as radians.
+void note_degrees(const InitRobot& robot, std::vector<std::string>& notes) {
+  for (const Coordinate& c : robot.chain.coordinates)
+    if (c.unit == "rad" && c.upper - c.lower > most_turns * 2 * std::numbers::pi) {
+      notes.push_back(fmt::format("joint {} has limits of {:g} to {:g} rad, which may be degrees: URDF has radians",
+                                  in_quotes(c.name), c.lower, c.upper));
+      return;
+    }
 }
 
 }  // namespace
@@ -149,20 +233,22 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
   place.no_cell = look_at_bodies(facts, robot, file);
   place.cell = place.no_cell.empty();
   if (!place.cell) result.notes.push_back("no collision is checked: " + place.no_cell);
-  if (place.cell) place.home = find_home(facts, robot, file, result.notes);
-  const std::vector<Eigen::Vector3d> candidates = places(facts, robot);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    place.position = candidates[i];
-    result.text = init_text(facts, robot, place);
-    try {
-      try_out(result.text, file, facts, monitor);
-      break;
-    } catch (const StationInside&) {
-      if (i + 1 == candidates.size()) throw;
-    } catch (const CannotDo&) {
-      if (monitor.should_stop() || i + 1 == candidates.size()) throw;
-    }
+  note_degrees(robot, result.notes);
+  std::string no_home;
+  while (true) {
+    if (place.cell) place.home = find_home(cell_problem(facts, robot, place, file), no_home);
+    const std::string why = place_instrument(facts, robot, place, file, monitor);
+    if (why.empty()) break;
+    if (!place.cell || place.left_out.size() == most_left_out) throw CannotDo(why);
+    const std::optional<InitObstacle> obstacle = obstacle_of(cell_problem(facts, robot, place, file));
+    if (!obstacle || (obstacle->is_floor() && facts.floor)) throw CannotDo(why);
+    place.left_out.push_back(*obstacle);
   }
+  if (!no_home.empty()) result.notes.push_back("which poses can be reached is not checked: " + no_home);
+  if (facts.files_beside) result.expanded = expanded_robot(facts, file);
+  result.text = init_text(facts, robot, place, result.expanded.file.filename());
+  for (const InitObstacle& obstacle : place.left_out)
+    result.notes.push_back(left_out_note(obstacle, result.text, file));
   return result;
 }
 

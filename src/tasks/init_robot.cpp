@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "init_text.hpp"
 #include "posewright/cell/cell.hpp"
 #include "posewright/cell/drawing.hpp"
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/problem/package_search.hpp"
 #include "posewright/problem/read_robot_file.hpp"
 
 namespace posewright {
@@ -14,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double robot_smallest = 0.05, robot_largest = 100;  // m, reach
+constexpr double links_smallest = 2e-3, links_largest = 20;   // the largest one, of the reach: beyond, a unit is wrong
+constexpr double joined_gap = 0.02;                           // m between bodies that stand on each other
 
 /// As the problem file names it: relative to its folder where that is near, so that both may be moved together.
 std::string file_name_of(const fs::path& robot, const fs::path& file) {
@@ -67,6 +72,70 @@ double extent_at(const DrawnBody& body, const Eigen::Isometry3d& X, const Eigen:
   return X.translation().dot(d) + extent(body, X.linear().transpose() * d);
 }
 
+Eigen::AlignedBox3d box_around(const DrawnBody& body, const Eigen::Isometry3d& X) {
+  Eigen::AlignedBox3d box;
+  for (int k = 0; k < 3; ++k) {
+    box.max()[k] = extent_at(body, X, Eigen::Vector3d::Unit(k));
+    box.min()[k] = -extent_at(body, X, -Eigen::Vector3d::Unit(k));
+  }
+  return box;
+}
+
+/// Lowest point of what stands still beneath the first joint: the body nearest to it, and all that are joined to it. A
+/// camera or a fixture elsewhere is not what the arm stands on.
+double foot_of(std::vector<Eigen::AlignedBox3d> still, const Eigen::Vector3d& first_joint) {
+  if (still.empty()) return 0.0;
+  const auto nearer = [&](const auto& a, const auto& b) {
+    return a.exteriorDistance(first_joint) < b.exteriorDistance(first_joint);
+  };
+  std::swap(*std::min_element(still.begin(), still.end(), nearer), still.front());
+  double lowest = 0.0;
+  for (auto joined = still.begin(), end = joined + 1; joined != end; ++joined) {
+    lowest = std::min(lowest, joined->min().z());
+    end = std::partition(end, still.end(),
+                         [&](const Eigen::AlignedBox3d& box) { return box.exteriorDistance(*joined) < joined_gap; });
+  }
+  return lowest;
+}
+
+double size_of(const DrawnBody& body) { return box_around(body, Eigen::Isometry3d::Identity()).sizes().maxCoeff(); }
+
+/// Refuses links of another unit than the arm.
+/// @param largest  of the bodies that move; null: there is none
+void require_size(const DrawnBody* largest, const InitRobot& robot, const Problem& problem) {
+  const double size = largest == nullptr ? robot.reach : size_of(*largest);
+  if (size > links_smallest * robot.reach && size < links_largest * robot.reach) return;
+  const auto& arm = std::get<SerialArmSpec>(problem.robot);
+  int line = 0;
+  for (const std::vector<LinkGeometry>& links : {read_urdf_links(arm, {}), read_urdf_visuals(arm, {})})
+    for (const LinkGeometry& link : links)
+      if (link.name == largest->name) line = link.line;
+  throw InputError(
+      {arm.urdf.string(), line},
+      fmt::format("link '{}' is {:.2g} m large on an arm that reaches {:.2g} m", largest->name, size, robot.reach),
+      size > robot.reach ? "a mesh in mm needs scale=\"0.001 0.001 0.001\"" : "a mesh in m needs no scale");
+}
+
+/// The same text, with the full paths of the meshes that are found around the xacro file.
+std::string with_meshes_found(std::string text, const InitFacts& facts) {
+  const fs::path folder = fs::absolute(facts.robot).lexically_normal().parent_path();
+  constexpr std::string_view key = "filename=\"";
+  std::string result;
+  std::size_t begin = 0;
+  for (std::size_t at = 0; (at = text.find(key, begin)) != std::string::npos;) {
+    const std::size_t first = at + key.size(), last = std::min(text.find('"', first), text.size());
+    const fs::path name = text.substr(first, last - first);
+    std::error_code code;
+    fs::path found =
+        names_package(name.string()) ? find_model(name.string(), facts.packages, facts.robot) : folder / name;
+    const bool readable = found.string().find_first_of("&<\"") == std::string::npos;
+    if (found.empty() || !readable || !fs::is_regular_file(found, code)) found = name;
+    result += text.substr(begin, first - begin) + found.string();
+    begin = last;
+  }
+  return result + text.substr(begin);
+}
+
 }  // namespace
 
 InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
@@ -85,6 +154,14 @@ InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
   return robot;
 }
 
+FileToWrite expanded_robot(const InitFacts& facts, const fs::path& file) {
+  const SerialArmSpec arm = read_robot_file(facts.robot, facts.xacro);
+  if (arm.expanded == nullptr) return {};
+  const auto folder = [](const fs::path& of) { return fs::absolute(of).lexically_normal().parent_path(); };
+  const bool moved = folder(file) != folder(facts.robot);
+  return {fs::path(file).replace_extension(".urdf"), moved ? with_meshes_found(*arm.expanded, facts) : *arm.expanded};
+}
+
 void add_bodies(InitRobot& robot, const Problem& problem) {
   const std::shared_ptr<const Cell> cell = make_cell(problem);
   const Drawing drawing(problem, *cell);
@@ -95,15 +172,21 @@ void add_bodies(InitRobot& robot, const Problem& problem) {
     if (c.choice()) here.back() = 0.0;
   }
   const DrawnPose a = drawing.at(here), b = drawing.at(there);
+  std::vector<Eigen::AlignedBox3d> still;
+  const DrawnBody* largest = nullptr;
+  double face = 0.0;
   for (const DrawnBody& body : drawing.bodies()) {
     if (std::string(body.kind) != "robot") continue;
     const Eigen::Isometry3d &Xa = a.frames[std::size_t(body.frame)], &Xb = b.frames[std::size_t(body.frame)];
     const Eigen::Isometry3d X_TipFrame = a.tip.inverse() * Xa;
-    if (Xa.isApprox(Xb, 1e-9))
-      robot.lowest = std::min(robot.lowest, -extent_at(body, Xa * body.X_FrameBody, -Eigen::Vector3d::UnitZ()));
+    if (body.frame > 0 && (largest == nullptr || size_of(body) > size_of(*largest))) largest = &body;
+    if (Xa.isApprox(Xb, 1e-9)) still.push_back(box_around(body, Xa * body.X_FrameBody));
     else if (X_TipFrame.isApprox(b.tip.inverse() * Xb, 1e-9))
-      robot.face = std::max(robot.face, extent_at(body, X_TipFrame * body.X_FrameBody, robot.outward));
+      face = std::max(face, extent_at(body, X_TipFrame * body.X_FrameBody, robot.outward));
   }
+  require_size(largest, robot, problem);
+  robot.face = face;
+  robot.lowest = foot_of(std::move(still), robot.chain.joints.front().X_ParentJoint.translation());
 }
 
 }  // namespace posewright

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -59,7 +60,25 @@ std::string schema_line(const std::string& schema) {
   return schema.empty() ? std::string() : fmt::format("# yaml-language-server: $schema={}\n", schema);
 }
 
-std::string robot_text(const InitFacts& facts, const InitRobot& robot) {
+std::string xacro_text(const InitFacts& facts) {
+  std::string text;
+  for (const auto& [name, value] : facts.xacro)
+    text += fmt::format("{}{}: {}", text.empty() ? "xacro: {" : ", ", quoted(name), quoted(value));
+  return text.empty() ? text : text + "}";
+}
+
+/// The file that the arm is read from.
+std::string source_text(const InitFacts& facts, const InitRobot& robot, const std::filesystem::path& expanded) {
+  const std::string xacro = xacro_text(facts);
+  if (!expanded.empty())
+    return fmt::format(
+        "  urdf: {}\n  # Made by xacro from the file below, which `compensate --xacro` needs in its place:\n"
+        "  # urdf: {}\n{}",
+        quoted(expanded.string()), quoted(robot.urdf), xacro.empty() ? "" : "  # " + xacro + "\n");
+  return fmt::format("  urdf: {}\n{}", quoted(robot.urdf), xacro.empty() ? "" : "  " + xacro + "\n");
+}
+
+std::string robot_text(const InitFacts& facts, const InitRobot& robot, const std::filesystem::path& expanded) {
   std::string joints;
   for (const Coordinate& c : robot.chain.coordinates) joints += (joints.empty() ? "" : ", ") + c.name;
   std::string text = fmt::format(
@@ -72,13 +91,7 @@ std::string robot_text(const InitFacts& facts, const InitRobot& robot) {
       text += (i == 0 ? " " : ", ") + robot.links.other_tips[i];
     text += ".\n";
   }
-  text += fmt::format("robot:\n  urdf: {}\n", quoted(robot.urdf));
-  if (!facts.xacro.empty()) {
-    text += "  xacro: {";
-    for (std::size_t i = 0; i < facts.xacro.size(); ++i)
-      text += fmt::format("{}{}: {}", i == 0 ? "" : ", ", quoted(facts.xacro[i].first), quoted(facts.xacro[i].second));
-    text += "}\n";
-  }
+  text += "robot:\n" + source_text(facts, robot, expanded);
   return text + fmt::format("  base: {}\n  tip: {}\n", quoted(robot.links.base), quoted(robot.links.tip));
 }
 
@@ -200,6 +213,34 @@ std::string joints_text(const InitRobot& robot) {
       limits);
 }
 
+/// Pairs of links that leave no configuration free.
+std::string ignored_text(const InitPlace& place) {
+  std::string text;
+  for (const InitObstacle& pair : place.left_out)
+    if (!pair.is_floor())
+      text +=
+          fmt::format("      - [{}, {}]   # too near in {:.0f} % of random configurations, or they touch by design\n",
+                      quoted(pair.first), quoted(pair.second), 100 * pair.share);
+  return text.empty() ? text : "    ignore:                            # pairs of links that may touch\n" + text;
+}
+
+std::string floor_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+  const std::optional<double> floor = floor_of(facts, robot);
+  if (!floor) return {};
+  const auto hinders =
+      std::find_if(place.left_out.begin(), place.left_out.end(), [](const InitObstacle& o) { return o.is_floor(); });
+  const bool out = hinders != place.left_out.end();
+  std::string text;
+  if (out)
+    text = fmt::format("    # The floor is left out: {} is too near in {:.0f} % of random configurations.\n",
+                       quoted(hinders->first), 100 * hinders->share);
+  return text + fmt::format(
+                    "    {0}obstacles:                         # add tables, walls, fixtures: box, cylinder, sphere, "
+                    "plane, mesh\n"
+                    "    {0}  - {{name: {1}, plane: [0, 0, 1], at: [0, 0, {2}]}}\n",
+                    out ? "# " : "", InitObstacle::floor_name, length(*floor));
+}
+
 std::string cell_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
   std::string text =
       "\n# 3. Cell: what a pose must keep off, and what the instrument must see.\n"
@@ -210,11 +251,7 @@ std::string cell_text(const InitFacts& facts, const InitRobot& robot, const Init
         "  collision:                           # links among themselves and with what stands around\n"
         "    clearance: \"30 mm\"\n"
         "    hulls: true                        # meshes as their convex hulls: faster, a little larger\n";
-    if (const std::optional<double> floor = floor_of(facts, robot))
-      text += fmt::format(
-          "    obstacles:                         # add tables, walls, fixtures: box, cylinder, sphere, plane, mesh\n"
-          "      - {{name: floor, plane: [0, 0, 1], at: [0, 0, {}]}}\n",
-          length(*floor));
+    text += ignored_text(place) + floor_text(facts, robot, place);
   } else {
     text += fmt::format("  # No collision is checked: {}.\n", place.no_cell);
   }
@@ -274,13 +311,15 @@ std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
 
 int default_poses(const InitFacts& facts) { return facts.camera && !facts.arm ? 15 : 30; }
 
-std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
+                      const std::filesystem::path& expanded) {
   return schema_line(facts.schema) +
          fmt::format(
              "# Made by posewright init for {}: yours to change. Lengths in m and angles in rad where no unit is "
              "written.\nposewright: 1\n\n",
              facts.robot.filename().string()) +
-         robot_text(facts, robot) + (facts.camera ? camera_text(facts, robot, place) : tracker_text(robot, place)) +
+         robot_text(facts, robot, expanded) +
+         (facts.camera ? camera_text(facts, robot, place) : tracker_text(robot, place)) +
          cell_text(facts, robot, place) + variants_text(facts) + design_text(facts);
 }
 

@@ -9,6 +9,7 @@
 #include "posewright/model/propose_chain.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/tasks/init_problem.hpp"
 
 namespace posewright {
@@ -20,14 +21,27 @@ struct InitRobot {
   double reach = 0.0;                ///< m, no point of the tip is farther from the first joint
   Eigen::Vector3d outward{0, 0, 1};  ///< tip frame, unit, along an axis: where a tool points
   std::string urdf;                  ///< as the problem file names it
-  double lowest = 0.0;               ///< m, of the bodies that stand still, base frame; at most 0
+  double lowest = 0.0;               ///< m, of what the arm stands on, base frame; at most 0
   double face = 0.0;                 ///< m, how far bodies reach beyond the tip along `outward`
 };
 
 /// Text of the file. Throws as init_problem().
 InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
-/// Adds `lowest` and `face`. Throws InputError where meshes are missing.
+/// Adds `lowest` and `face`. Throws InputError where meshes are missing, and for links that are far larger or smaller
+/// than the arm: a scale is missing or one too many.
 void add_bodies(InitRobot& robot, const Problem& problem);
+/// What xacro made of the robot's file, to be written beside the problem `file`; meshes are named so that they are
+/// found from there. Empty for a URDF.
+FileToWrite expanded_robot(const InitFacts& facts, const std::filesystem::path& file);
+
+/// Two bodies that hinder nearly all configurations: one of them the floor, or two links.
+struct InitObstacle {
+  std::string first, second;  ///< a link, a link or "floor"
+  double share = 0.0;         ///< of random configurations in which they are too near
+
+  bool is_floor() const { return second == floor_name; }
+  static constexpr const char* floor_name = "floor";
+};
 
 /// Place of the instrument or its target, and presence of a cell.
 struct InitPlace {
@@ -36,10 +50,13 @@ struct InitPlace {
   std::string no_cell;  ///< why there is none
   /// Collision-free home, one value per joint; empty: no motions are searched.
   std::vector<double> home{};
+  std::vector<InitObstacle> left_out{};  ///< written as comments, or ignored, so that a plan can be made
 };
 
 /// The commented file.
-std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place);
+/// @param expanded  file beside it that xacro made; empty: the robot is named as the user did
+std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
+                      const std::filesystem::path& expanded = {});
 
 /// Height of the floor, m in the base frame: what is said, else under the bodies that stand still; none: no floor.
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot);

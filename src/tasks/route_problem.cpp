@@ -149,9 +149,10 @@ class Router {
   }
 
   std::string collision(std::size_t stop) const {
-    const std::string pair =
-        cell_->collision == nullptr ? std::string() : cell_->collision->colliding(stops_[stop].configuration);
-    return pair.empty() ? space_.violation(space_.reduced(stops_[stop].configuration)) : pair + " are too near";
+    if (cell_->collision != nullptr)
+      if (const auto pair = cell_->collision->colliding(stops_[stop].configuration))
+        return pair->first + " and " + pair->second + " are too near";
+    return space_.violation(space_.reduced(stops_[stop].configuration));
   }
 
   /// Why no motion can end at a stop, whatever the way; empty if one may.

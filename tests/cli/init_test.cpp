@@ -8,10 +8,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/file.hpp"
@@ -128,6 +130,135 @@ TEST(Init, LeavesMotionsOutWhereNoVelocityIsKnown) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("which poses can be reached is not checked"));
   EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("reachable")));
+}
+
+/// A program `xacro` that is first in the search path, as long as this lives: it writes the file without its macros.
+class OwnXacro {
+ public:
+  explicit OwnXacro(const TemporaryFolder& folder) : path_(std::getenv("PATH")) {
+    std::filesystem::create_directories(folder / "bin");
+    const auto script = folder.write("bin/xacro", "#!/bin/sh\ngrep -v xacro: \"$1\"\n");
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    ::setenv("PATH", ((folder / "bin").string() + ":" + path_).c_str(), 1);
+  }
+  ~OwnXacro() { ::setenv("PATH", path_.c_str(), 1); }
+  OwnXacro(const OwnXacro&) = delete;
+  OwnXacro& operator=(const OwnXacro&) = delete;
+
+ private:
+  std::string path_;
+};
+
+TEST(Init, WritesTheExpandedRobotBesideTheProblemSoThatLaterCommandsNeedNoXacro) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "robots/meshes");
+  folder.write("robots/meshes/tip.obj",
+               "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  std::string text = hanging;
+  const std::string tip = "<box size=\"0.06 0.06 0.3\"/>";
+  text.replace(text.find(tip), tip.size(), "<mesh filename=\"meshes/tip.obj\"/>");
+  text.insert(text.find('\n') + 1, "<xacro:arg name=\"side\"/>\n");
+  folder.write("robots/arm.urdf.xacro", text);
+  {
+    const OwnXacro xacro(folder);
+    const ProgramRun run =
+        init(folder, {"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "--poses", "8", "-o", "cell.yaml"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err, "") << "the mesh is found";
+  }
+  const std::string problem = read_file(folder / "cell.yaml"), urdf = read_file(folder / "cell.urdf");
+  EXPECT_THAT(problem, HasSubstr("urdf: \"cell.urdf\""));
+  EXPECT_THAT(problem, HasSubstr("# urdf: \"robots/arm.urdf.xacro\"\n  # xacro: {\"side\": \"left\"}\n"));
+  EXPECT_THAT(urdf, Not(HasSubstr("xacro:")));
+  EXPECT_THAT(urdf, HasSubstr("filename=\"" + (folder / "robots/meshes/tip.obj").string() + "\""));
+  EXPECT_EQ(run_program(folder.path(), {"plan", "cell.yaml", "--proof-time", "0"}).exit_code, 0);
+
+  const OwnXacro xacro(folder);
+  folder.write("other.urdf", "mine\n");
+  const ProgramRun refused =
+      init(folder, {"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "-o", "other.yaml"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("other.urdf exists; --force replaces it"));
+  EXPECT_EQ(read_file(folder / "other.urdf"), "mine\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.yaml"));
+}
+
+/// The lines that notes of what is left out name, "problem.yaml:41", in their order.
+std::vector<std::string> lines_named(const std::string& notes, const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream each(text);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(each, line);) all.push_back(line);
+  const std::string key = "problem.yaml:";
+  for (std::size_t at = 0; (at = notes.find(key, at)) != std::string::npos; at += key.size())
+    lines.push_back(all.at(std::size_t(std::stoi(notes.substr(at + key.size()))) - 1));
+  return lines;
+}
+
+TEST(Init, WritesTheFloorAsACommentWhereAnArmHangsBelowIt) {
+  const TemporaryFolder folder;
+  std::string text = hanging;
+  for (const auto& [above, below] : {std::pair("0 0 0.3", "0 0 -0.3"), std::pair("0.4 0 0", "0 0 0")})
+    text.replace(text.find(above), std::string(above).size(), below);
+  folder.write("arm.urdf", text);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("and 'floor' are too near in"));
+  const auto lines = lines_named(run.err, read_file(folder / "problem.yaml"));
+  ASSERT_EQ(lines.size(), 1U) << run.err;
+  EXPECT_EQ(lines.front(), "    #   - {name: floor, plane: [0, 0, 1], at: [0, 0, \"-100 mm\"]}");
+  EXPECT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+
+  const ProgramRun said = init(folder, {"arm.urdf", "--tracker", "--floor", "-100mm", "--force"});
+  EXPECT_EQ(said.exit_code, 1) << "a floor that somebody names is there";
+  EXPECT_THAT(said.err, HasSubstr("'collision with floor' rejects"));
+}
+
+TEST(Init, IgnoresThePairOfLinksThatLeavesNoPoseFreeAndNamesTheLine) {
+  const TemporaryFolder folder;
+  // Two cabinets, one on each side, and the arm is in one of them wherever it stands.
+  std::string text = hanging;
+  const std::string base = "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link>";
+  text.replace(text.find(base), base.size(),
+               base +
+                   "<link name=\"left\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
+                   "<link name=\"right\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
+                   "<joint name=\"a\" type=\"fixed\"><parent link=\"base\"/><child link=\"left\"/>"
+                   "<origin xyz=\"0 2.01 0\"/></joint><joint name=\"b\" type=\"fixed\"><parent link=\"base\"/>"
+                   "<child link=\"right\"/><origin xyz=\"0 -2.01 0\"/></joint>");
+  folder.write("arm.urdf", text);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8", "--floor", "none"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("random configurations, no pose was free: this pair is ignored in problem.yaml:"));
+  const auto lines = lines_named(run.err, read_file(folder / "problem.yaml"));
+  ASSERT_FALSE(lines.empty()) << run.err;
+  for (const std::string& line : lines)
+    EXPECT_THAT(line, testing::ContainsRegex("      - \\[\"l[123]\", \"(left|right)\"\\]"));
+  EXPECT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+}
+
+TEST(Init, RefusesLinksOfAnotherUnitThanTheArm) {
+  const TemporaryFolder folder;
+  std::string text = hanging;
+  text.replace(text.find("0.08 0.08 0.5"), 13, "80 80 500");
+  folder.write("arm.urdf", text);
+  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("arm.urdf:4: link 'l2' is 5e+02 m large on an arm that reaches 1.4 m"));
+  EXPECT_FALSE(read_problem(folder / "problem.yaml").workspace.collision);
+}
+
+TEST(Init, PutsTheFloorUnderWhatTheArmStandsOnAndNotUnderAFixtureElsewhere) {
+  const TemporaryFolder folder;
+  std::string text = hanging;
+  const std::string base = "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link>";
+  text.replace(text.find(base), base.size(),
+               "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link><link name=\"camera\"><collision><geometry>"
+               "<sphere radius=\"0.05\"/></geometry></collision></link><joint name=\"a\" type=\"fixed\"><parent "
+               "link=\"base\"/><child link=\"camera\"/><origin xyz=\"0.8 0 -0.4\"/></joint>");
+  folder.write("arm.urdf", text);
+  ASSERT_EQ(init(folder, {"arm.urdf", "--tracker", "--poses", "8"}).exit_code, 0);
+  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("plane: [0, 0, 1], at: [0, 0, \"-100 mm\"]"));
 }
 
 TEST(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posewright/blocks/necessary_limits.hpp"
@@ -55,8 +56,8 @@ class Collision {
   /// Functions that are never negative where violation() is −1: balls within bodies are above half spaces.
   NecessaryLimits necessary_limits() const;
   void necessary_values(std::span<const double> q, std::span<double> values) const;
-  /// "link_3 and table" for the first pair that is too near; empty if q is free.
-  std::string colliding(std::span<const double> q) const;
+  /// The first pair that is too near, "link_3", "table"; none if q is free.
+  std::optional<std::pair<std::string, std::string>> colliding(std::span<const double> q) const;
   /// Smallest distance of any pair beyond its clearance (m), at most `cap`; negative: none of its clearance is kept.
   double slack(std::span<const double> q, double cap) const;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "posewright/problem/package_search.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/tasks/known_cameras.hpp"
 
@@ -38,6 +39,7 @@ struct InitFacts {
   std::optional<double> floor;     ///< m, height of floor or table in the base frame; none: under the robot's foot
   std::optional<int> poses;        ///< none: the number that reaches the accuracy, else a default
   std::optional<double> accuracy;  ///< m
+  bool files_beside = true;        ///< the robot of a xacro file may be written beside the problem, expanded
   std::string schema;              ///< file in the modeline for editors; empty: no modeline
 };
 
@@ -46,11 +48,15 @@ struct InitResult {
   std::string base, tip;
   int joints = 0;
   std::vector<std::string> notes;  ///< default choices
+  /// What xacro made of the robot's file, which `text` names in its place: to be written beside the problem. Empty for
+  /// a URDF, and without InitFacts::files_beside.
+  FileToWrite expanded;
 };
 
 /// The problem file, tried before it is returned: it is read, the cell is made, and a small pool of configurations
 /// identifies the planned parameters. Where the instrument, or what it looks at, may stand anywhere, the first of some
-/// places from which that holds is taken. Meshes that are not found leave out the cell, with a comment.
+/// places from which that holds is taken. Meshes that are not found leave out the cell, with a comment. If nearly every
+/// configuration collides, the floor or the pair of links that does so most is left out, with a note and a comment.
 /// @param file  where the text will be: paths in it are relative to its folder
 /// Throws InputError as propose_chain() and for numbers out of range; CannotDo where no pose is feasible from any
 /// place.

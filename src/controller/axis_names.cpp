@@ -20,4 +20,19 @@ const std::vector<std::string>& tp_axis_names() {
   return names;
 }
 
+const std::vector<std::string>& urscript_axis_names() {
+  static const std::vector<std::string> names = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"};
+  return names;
+}
+
+const std::vector<std::string>& inform_axis_names() {
+  static const std::vector<std::string> names = {"S", "L", "U", "R", "B", "T"};
+  return names;
+}
+
+const std::vector<std::string>& val3_axis_names() {
+  static const std::vector<std::string> names = {"j1", "j2", "j3", "j4", "j5", "j6"};
+  return names;
+}
+
 }  // namespace posewright

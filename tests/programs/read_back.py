@@ -19,9 +19,10 @@ variants: {all: {parameters: auto}}
 workspace: {collision: {self: false, obstacles: [{name: post, box: [0.1, 0.1, 2], at: [0.45, 0.3, 1]}, {name: other, box: [0.1, 0.1, 2], at: [0.4, -0.4, 1]}]}}
 design: {poses: 14, candidates: 60, method: greedy, restarts: 1}
 """
-YASKAWA = "sign: [1, -1, 1, -1, 1, 1]\nzero_deg: [0, 5, 0, 0, 0, 0]\npulses_per_degree: [1435.1, 1435.1, 1300.5, 1024, 1024, 568.9]\ncoupling: 0\n"
+YASKAWA = "sign: [1, -1, 1, -1, 1, 1]\nzero_deg: [0, 5, 0, 0, 0, 0]\npulses_per_degree: [1435.1, 1435.1, 1300.5, 1024, 1024, 568.9]\ncoupling: 0\naxes: [S, L, U, R, B, T]\n"
+UNIVERSAL = "axes: [base, shoulder, elbow, wrist1, wrist2, wrist3]\n"
 FORMATS = {"kuka-krl": ("ROUTE.src", []), "abb-rapid": ("ROUTE.mod", ["--coupling", "-1"]), "fanuc-tp": ("ROUTE.ls", ["--coupling", "1"]),
-           "urscript": ("ROUTE.script", []), "yaskawa-inform": ("ROUTE.JBI", ["--controller", "yaskawa.yaml"]), "staubli-val3": ("ROUTE", [])}
+           "urscript": ("ROUTE.script", ["--controller", "universal.yaml"]), "yaskawa-inform": ("ROUTE.JBI", ["--controller", "yaskawa.yaml"]), "staubli-val3": ("ROUTE", []), "joint-trajectory": ("ROUTE.yaml", [])}
 
 
 def run(*words):
@@ -54,7 +55,7 @@ def read_back(source, language, file, words):
     made = next(p for p in ([FOLDER / file] if "." in file else (FOLDER / file).glob("**/*.dtx")))
     off = difference(scores(source), scores(str(made.relative_to(FOLDER)), "--from", language, *words))
     print(f"{language}: scores differ by {off:.1e}")
-    assert 0 < off < 1e-4, off
+    assert off < 1e-4 and (off > 0 or language == "joint-trajectory"), off  # programs have rounded numbers
 
 
 with tempfile.TemporaryDirectory() as name:
@@ -62,6 +63,7 @@ with tempfile.TemporaryDirectory() as name:
     arm = [(o, a, "revolute", 2.2) for o, a in JOINTS]
     write_robot(arm)
     (FOLDER / "yaskawa.yaml").write_text(YASKAWA)
+    (FOLDER / "universal.yaml").write_text(UNIVERSAL)
     run("plan", "p.yaml", "-o", "plan.json", "--poses-csv", "-")
     run("route", "plan.json", "--from-home", "-o", "route.json")
     route = json.loads((FOLDER / "route.json").read_text())

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "program.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 
 const ProgramRules val3_rules = {.format = "staubli-val3",
                                  .longest_name = 32,
-                                 .axes = {"j1", "j2", "j3", "j4", "j5", "j6"},
+                                 .axes = val3_axis_names(),
                                  .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"}};
 
 constexpr const char* xml = "<?xml version=\"1.0\" encoding=\"utf-8\" ?>\n";

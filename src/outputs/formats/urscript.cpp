@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
@@ -22,7 +23,7 @@ namespace {
 const ProgramRules urscript_rules = {.format = "urscript",
                                      .default_name = "calposes",
                                      .longest_name = 64,
-                                     .axes = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"},
+                                     .axes = urscript_axis_names(),
                                      .settings = {"sign", "zero_deg", "range_deg", "axes", "decimals"},
                                      .decimals = 6};
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "formats.hpp"
+#include "posewright/controller/axis_names.hpp"
 #include "posewright/outputs/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
@@ -20,7 +21,7 @@ const ProgramRules inform_rules = {
     .format = "yaskawa-inform",
     .longest_name = 32,
     .capitals = true,
-    .axes = {"S", "L", "U", "R", "B", "T"},
+    .axes = inform_axis_names(),
     .settings = {"sign", "zero_deg", "range_deg", "pulses_per_degree", "coupling", "axes"},
     .coupling_needed =
         "some arms count U from the horizontal (F such that U = U - F*L of a URDF), "

@@ -22,6 +22,7 @@ po::options_description route_command_options() {
       ("closed", "end where the route began")                                                        //
       ("start", text("ID"), "pose to begin with")                                                    //
       ("problem", text("FILE"), "problem file (the one the plan names)")                             //
+      ("replace", "take the next best poses in place of those that no motion reaches")               //
       ("milestones", text("n"), "of the roadmap for motions that cannot be straight (200)")          //
       ("settle", text("S"), "seconds at rest before a pose is read (workspace: motion: settle, 0)")  //
       ("reading", text("S"),
@@ -43,6 +44,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
   if (!from.empty()) find_readable_format(from);
   route_options.from_home = values.count("from-home") > 0;
   route_options.closed = values.count("closed") > 0;
+  route_options.replace = values.count("replace") > 0;
   route_options.start = whole_number(values, "start", 1, 1000000);
   route_options.milestones = whole_number(values, "milestones", 1, 100000).value_or(200);
   route_options.settle = number_between(values, "settle", 0, 3600);
@@ -73,7 +75,9 @@ int run_route(const po::variables_map& values, const Words& positional) {
   if (common.json) fmt::print("{}", text);
   else print_report(route_summary(route) + written_text({json, csv}));
   if (was_interrupted) return interrupted;
-  if (!route.unreachable.empty()) throw CannotDo(plan.string() + ": " + route_loss(route));
+  if (!route.unreachable.empty())
+    throw CannotDo(plan.string() + ": " + route_loss(route) +
+                   (route_options.replace ? "" : "; --replace takes the next best poses in their place"));
   return done;
 }
 

@@ -166,6 +166,9 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
   json["unreachable"] = Json::array();
   for (const SkippedPose& skipped : route.unreachable)
     json["unreachable"].push_back({{"pose", skipped.pose}, {"reason", skipped.reason}});
+  json["replaced"] = Json::array();
+  for (const SkippedPose& lost : route.replaced)
+    json["replaced"].push_back({{"pose", lost.pose}, {"reason", lost.reason}, {"by", lost.by}});
   json["worth"] = nullptr;
   if (const auto& worth = route.worth)
     json["worth"] = {{"efficiency", worth->efficiency},
@@ -175,12 +178,14 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
 }
 
 std::string route_loss(const Route& route) {
-  if (route.unreachable.empty()) return {};
-  const std::size_t lost = route.unreachable.size();
-  std::string text =
-      fmt::format("{} of {} poses {} left out: ", lost, lost + route.poses.size(), lost == 1 ? "is" : "are");
-  if (!route.worth) return text + "those left do not identify all parameters";
-  text += fmt::format("{:.1f} % of the plan's information is left", 100 * route.worth->efficiency);
+  const std::size_t lost = route.unreachable.size(), replaced = route.replaced.size(), all = lost + route.poses.size();
+  if (lost + replaced == 0) return {};
+  std::string text;
+  if (replaced > 0) text = fmt::format("{} of {} poses {} replaced", replaced, all, replaced == 1 ? "is" : "are");
+  if (lost > 0)
+    text += fmt::format("{}{} of {} poses {} left out", replaced > 0 ? ", " : "", lost, all, lost == 1 ? "is" : "are");
+  if (!route.worth) return text + ": those left do not identify all parameters";
+  text += fmt::format(": {:.1f} % of the plan's information is left", 100 * route.worth->efficiency);
   if (route.worth->planned && route.worth->left)
     text += fmt::format(", predicted position error {:.3g} mm in place of {:.3g} mm", 1e3 * *route.worth->left,
                         1e3 * *route.worth->planned);
@@ -201,6 +206,8 @@ std::string route_summary(const Route& route) {
   if (const double still = route.settle_seconds() + route.reading_seconds(); still > 0)
     text += fmt::format("The whole job takes {}{}.\n", seconds_text(total + still),
                         route.reading_seconds() > 0 ? "" : ", readings not counted (motion: reading)");
+  text += fmt::format("At the {:g} % of exported programs about {} of motion (export --speed).\n", usual_percent,
+                      seconds_text(100 / usual_percent * route.travel_seconds()));
   if (route.planned_seconds > 0)
     text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
                         seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
@@ -209,6 +216,8 @@ std::string route_summary(const Route& route) {
   text += "\n" + steps_table(route) + nearest_text(route.motions, between_stops) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)
     text += fmt::format("Pose {} is left out: {}.\n", skipped.pose, skipped.reason);
+  for (const SkippedPose& lost : route.replaced)
+    text += fmt::format("Pose {} is replaced by pose {}: {}.\n", lost.pose, lost.by, lost.reason);
   return text + fmt::format("Computed in {:.1f} s\n", route.computing_seconds);
 }
 

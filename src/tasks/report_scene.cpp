@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
@@ -84,14 +85,17 @@ class MotionRecorder {
   }
 
  private:
-  /// A stop of the route is where the plan's pose of that id is.
+  /// A stop of the route is where the plan's pose of that id is; joints may stand on another turn.
   void require_same(const Json& stop, const std::vector<std::pair<int, std::vector<double>>>& poses) const {
     const int id = stop.at("id").get<int>();
     const std::vector<double>& q = base(poses, id);
     std::size_t k = 0;
-    for (std::size_t i = 0; i < coordinates_.size(); ++i)
-      if (!coordinates_[i].choice() && !(std::abs(stop.at("configuration").at(k++).get<double>() - q[i]) < same_stop))
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+      if (coordinates_[i].choice()) continue;
+      const double off = stop.at("configuration").at(k++).get<double>() - q[i];
+      if (!(std::abs(coordinates_[i].unit == "rad" ? std::remainder(off, 2 * std::numbers::pi) : off) < same_stop))
         throw std::invalid_argument("pose " + std::to_string(id) + " is elsewhere");
+    }
   }
 
   /// Whole configuration of a pose; of home, whose choices show nothing, that of the first one.

@@ -30,14 +30,13 @@ Configurations configurations_of(const PoseList& list, std::size_t dimension) {
 
 }  // namespace
 
-std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const Route& route,
-                                         const Monitor& monitor) {
+std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const PoseList& routed,
+                                         const Route& route, const Monitor& monitor) {
   const auto measured = [&](std::size_t i) { return !plan.measured.empty() && plan.measured[i]; };
-  const auto on_route = [&](std::size_t i, int id) {
-    return !measured(i) &&
-           std::any_of(route.poses.begin(), route.poses.end(), [&](const PlannedPose& pose) { return pose.id == id; });
+  const auto on_route = [&](std::size_t, int id) {
+    return std::any_of(route.poses.begin(), route.poses.end(), [&](const PlannedPose& pose) { return pose.id == id; });
   };
-  const PoseList kept = subset(plan, on_route);
+  const PoseList kept = subset(routed, on_route);
   const PoseList all = subset(plan, [&](std::size_t i, int) { return !measured(i); });
   PlanOptions options;
   options.candidates_from = kept;

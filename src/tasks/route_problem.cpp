@@ -1,5 +1,7 @@
 #include "posewright/tasks/route_problem.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -7,6 +9,7 @@
 
 #include "fill_plan.hpp"
 #include "motions.hpp"
+#include "nearest_turn.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/variant.hpp"
@@ -16,6 +19,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
+#include "replacements.hpp"
 #include "route_loss.hpp"
 #include "without_roadmap.hpp"
 
@@ -26,6 +30,8 @@ namespace {
 constexpr double no_way = 1e7;
 // A tour's search takes seconds by more than the square of their number: a minute of this many.
 constexpr std::size_t most_routed = 1000;
+// Replacements that are lost themselves are replaced again.
+constexpr int most_rounds = 3;
 
 struct Stop {
   int id = 0;  ///< of the pose; 0: home
@@ -93,10 +99,13 @@ class Router {
     route_.notes = list.notes;
     note_parameters(list, problem_, route_.notes);
     stops_.push_back({0, space_.whole(space_.home()), {}});
+    std::vector<int> turned;
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
       const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
-      Stop stop{id, list.configurations[i], pose_of(*variant_.model, list.configurations[i])};
+      std::vector<double> q = nearest_turn(problem_, variant_, stops_.front().configuration, list.configurations[i]);
+      if (q != list.configurations[i]) turned.push_back(id);
+      Stop stop{id, q, pose_of(*variant_.model, q)};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
       stops_.push_back(std::move(stop));
@@ -105,6 +114,9 @@ class Router {
       if (stops_[i].id > 0) stops_[i].pose.nearest = nearest_at(*cell_, stops_[i].configuration);
     });
     if (monitor_.should_stop()) throw CannotDo("stopped before all motions were found");
+    if (!turned.empty())
+      route_.notes.push_back(fmt::format("joints of pose{} {} stand on another turn than in the plan, nearer to home",
+                                         turned.size() == 1 ? "" : "s", fmt::join(turned, ", ")));
     std::vector<int> near;
     for (const Stop& stop : stops_)
       if (stop.id > 0 && !variant_.workspace->within_margin(stop.configuration).empty()) near.push_back(stop.id);
@@ -404,7 +416,17 @@ Route route_problem(const Problem& problem, const PoseList& poses, const RouteOp
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(poses, most_routed, "route orders");
   Route route = Router(problem, poses, options, monitor).make();
-  if (!route.unreachable.empty()) route.worth = worth_of_route(problem, poses, route, monitor);
+  PoseList list = poses;
+  for (int round = 0; options.replace && round < most_rounds && !route.unreachable.empty() && !route.interrupted;
+       ++round) {
+    std::vector<SkippedPose> replaced = route.replaced;
+    list = with_replacements(problem, list, route, options.seed, monitor, replaced);
+    route = Router(problem, list, options, monitor).make();
+    route.replaced = std::move(replaced);
+  }
+  settle_replaced(route);
+  if (!route.unreachable.empty() || !route.replaced.empty())
+    route.worth = worth_of_route(problem, poses, list, route, monitor);
   route.computing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return route;
 }

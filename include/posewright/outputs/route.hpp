@@ -28,7 +28,11 @@ struct ReferenceCheck {
 struct SkippedPose {
   int pose = 0;
   std::string reason;
+  int by = 0;  ///< the pose that is measured in its place; 0: none
 };
+
+/// Percent of full speed at which programs move unless the user asks for another.
+inline constexpr double usual_percent = 10.0;
 
 /// Efficiency of the poses of a route against all poses of its plan.
 struct RouteWorth {
@@ -51,7 +55,8 @@ struct Route {
   std::vector<RouteMotion> motions;  ///< in order: from home (if asked), between the poses, back (if closed)
   std::vector<ReferenceCheck> references;
   std::vector<SkippedPose> unreachable;
-  std::optional<RouteWorth> worth;  ///< where poses are left out; none: those left do not identify all parameters
+  std::vector<SkippedPose> replaced;  ///< poses of the plan in whose place another one is on the route
+  std::optional<RouteWorth> worth;    ///< where poses are left out or replaced; none: the others do not determine all
   double planned_seconds = 0.0;  ///< of the same poses in the plan's own order at least: straight motions, free or not
   bool optimal = false;          ///< no order of these motions is shorter
   bool interrupted = false;      ///< the search was ended: its best order so far

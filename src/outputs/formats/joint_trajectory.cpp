@@ -6,6 +6,7 @@
 
 #include "formats.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "posewright/outputs/route.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
 #include "yaml_list.hpp"
@@ -15,8 +16,7 @@
 namespace posewright::formats {
 namespace {
 
-constexpr double first_arrival = 5.0, default_wait = 5.0;  // s
-constexpr double default_percent = 10.0;
+constexpr double first_arrival = 5.0, default_wait = 5.0;              // s
 constexpr double full_turn_rate = std::numbers::pi, full_speed = 1.0;  // rad/s, m/s; --speed is a part of it
 // Between points at rest a cubic is 1.5 times as fast as its mean.
 constexpr double cubic_peak = 1.5;
@@ -24,7 +24,7 @@ constexpr double cubic_peak = 1.5;
 class Writer {
  public:
   Writer(const PoseSequence& sequence, const ExportOptions& options)
-      : sequence_(sequence), speed_(options.speed.value_or(default_percent) / 100) {
+      : sequence_(sequence), speed_(options.speed.value_or(usual_percent) / 100) {
     hold_ = options.settle.value_or(sequence.settle > 0 ? sequence.settle : default_settle) +
             options.wait.value_or(default_wait);
   }
@@ -99,7 +99,7 @@ Exported write_joint_trajectory(const PoseSequence& all, const ExportOptions& op
         "the motions between the poses are not checked for collisions: `posewright route` finds motions that are");
   notes.push_back(fmt::format("{} is reached {} s after the start: begin there",
                               sequence.from_home ? "home" : "the first pose", first_arrival));
-  notes.push_back(fmt::format("speed {} % of {}{}", options.speed.value_or(default_percent),
+  notes.push_back(fmt::format("speed {} % of {}{}", options.speed.value_or(usual_percent),
                               sequence.is_route ? "the route's" : "full speed",
                               options.speed ? "" : " (--speed changes it)"));
   if (sequence.speeds.empty()) notes.emplace_back("speeds are not checked against the robot's");

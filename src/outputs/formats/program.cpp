@@ -8,13 +8,12 @@
 
 #include "controller_axes.hpp"
 #include "posewright/outputs/format_text.hpp"
+#include "posewright/outputs/route.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/sha256.hpp"
 
 namespace posewright::formats {
 namespace {
-
-constexpr double default_speed = 10.0;  // percent
 
 bool is_identifier(const std::string& text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -133,6 +132,14 @@ int number_of(const std::vector<ProgramPoint>& points) {
   return int(std::stoul(sha256_hex(text).substr(0, 8), nullptr, 16) & 0x7fffffffU);
 }
 
+/// Of a route's motions, whose seconds are those of full speed.
+std::string time_of(const PoseSequence& sequence, double percent) {
+  double seconds = 0;
+  for (const SequenceMotion& motion : sequence.motions) seconds += motion.seconds;
+  if (seconds == 0) return {};
+  return fmt::format(": about {:.0f} s of motion, {:.0f} s at full speed", 100 / percent * seconds, seconds);
+}
+
 }  // namespace
 
 RobotProgram make_program(const PoseSequence& all, const ExportOptions& options, const ProgramRules& rules) {
@@ -143,7 +150,7 @@ RobotProgram make_program(const PoseSequence& all, const ExportOptions& options,
   const Axes axes(sequence, options, rules);
   program.axes = axes.names();
   for (const std::string& unit : sequence.units) program.slides.push_back(unit == "m");
-  program.speed = options.speed.value_or(default_speed);
+  program.speed = options.speed.value_or(usual_percent);
   program.settle = options.settle.value_or(sequence.settle > 0 ? sequence.settle : default_settle);
   program.wait = options.wait;
   if (options.wait && !options.digital_input.empty())
@@ -152,8 +159,8 @@ RobotProgram make_program(const PoseSequence& all, const ExportOptions& options,
   Composer(sequence, axes, rules, program).compose();
   program.number = number_of(program.points);
   program.notes = motion_notes(sequence);
-  program.notes.push_back(
-      fmt::format("speed {} % of full speed{}", program.speed, options.speed ? "" : " (--speed changes it)"));
+  program.notes.push_back(fmt::format("speed {} % of full speed{}{}", program.speed,
+                                      options.speed ? "" : " (--speed changes it)", time_of(sequence, program.speed)));
   for (std::string& note : axes.notes()) program.notes.push_back(std::move(note));
   return program;
 }

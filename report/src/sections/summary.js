@@ -43,12 +43,15 @@ const onDrawnRobots = (robust) =>
     ? tile(percentDown(robust.value), `on ${robust.draws} drawn robots`, `of the best plan for each, ${robust.measure}`)
     : null;
 
+/** Percent of full speed at which exported programs move unless --speed asks for another. */
+const PROGRAM_SPEED = 10;
+
 /** How long the robot is taken, by the route. @param {any} route */
 function jobTime(route) {
   if (!route || route.motions.length === 0) return null;
   const { travel, changes, settle, reading = 0 } = route.seconds;
   const parts = [
-    `${duration(travel)} moving`,
+    `${duration(travel)} moving (about ${duration((travel * 100) / PROGRAM_SPEED)} at the ${PROGRAM_SPEED} % of exported programs)`,
     settle > 0 && `${duration(settle)} settling`,
     reading > 0 && `${duration(reading)} reading`,
     changes > 0 && `${duration(changes)} changes`,

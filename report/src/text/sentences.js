@@ -164,6 +164,7 @@ export function warnings(report) {
       'The problem file has changed since the plan was made; the route belongs to the new one. Plan again.',
     ...(report.notes ?? []),
     ...(route?.unreachable ?? []).map((u) => `Pose ${u.pose} is left out of the route: ${u.reason}.`),
+    route?.worth && `The poses of the route have ${percentDown(route.worth.efficiency, 1)} of the plan's information.`,
     plan.criterion.prior === 'tolerance' &&
       'Tolerances count as prior knowledge: σ is what is known after the measurement together with them.',
   ].filter((text) => typeof text === 'string');

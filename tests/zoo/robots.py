@@ -227,7 +227,7 @@ def finger_that_follows_an_axis(folder):
     robot = arm()
     robot.link("cover", box(0.05, 0.05, 0.05, (-0.15, 0, 0)))
     robot.joint("cover_joint", "link_2", "cover", (0, 0, 0.6), (0, 1, 0), more='<mimic joint="joint_3" multiplier="0.5"/>')
-    return Kind(robot.write(folder))
+    return Kind(robot.write(folder), note="link 'cover' is moved by joint 'cover_joint'")
 
 
 # ---- cameras
@@ -424,7 +424,7 @@ def links_in_several_pieces(folder):
 def shapes_without_size(folder):
     robot = arm()
     robot.links["link_4"][0].append('<geometry><sphere radius="0"/></geometry>')
-    return Kind(robot.write(folder), note="sphere radius")
+    return Kind(robot.write(folder), note="radius")
 
 
 # ---- where it stands

@@ -25,7 +25,7 @@ function choiceSection(all) {
     'Which model?',
     all.recommended ? `Recommended: ${all.recommended}, which ${all.why}.` : `No model is recommended: ${all.why}.`,
     table(
-      ['model', '#parameters', '#residuals / noise', '#left out / noise', '#with base and tool alone', '#AICc', 'F', '#p'],
+      ['model', '#parameters', '#residuals / noise', '#new poses / noise', '#uncalibrated', '#AICc', 'F', '#p'],
       rows,
       'Models',
     ),

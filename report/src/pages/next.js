@@ -40,7 +40,7 @@ function tiles(n) {
 function warnings(n) {
   return [
     n.unmodelled &&
-      `The residuals hold a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the figures allow for it.`,
+      `The residuals contain a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the figures include it.`,
     n.interrupted && 'Stopped early.',
     ...(n.notes ?? []),
   ].filter(Boolean);
@@ -82,7 +82,7 @@ function estimatesSection(n) {
   return section(
     'parameters',
     'Parameters so far',
-    `Estimated from what is measured; ${n.parameters.told} of ${n.parameters.count} are told by the readings alone. posewright calibrate judges them.`,
+    `Estimated from what is measured; ${n.parameters.told} of ${n.parameters.count} are determined by the readings alone. posewright calibrate tests them.`,
     h(
       'details',
       { class: 'printed' },

@@ -49,8 +49,8 @@ function tiles(s) {
 function warnings(s) {
   const { draws } = s;
   return [
-    draws.interrupted && `Stopped early: ${draws.asked.toLocaleString('en')} draws were asked for.`,
-    draws.not_converged > 0 && `${plural(draws.not_converged, 'draw')} did not converge and are in no figure.`,
+    draws.interrupted && `Stopped early: ${draws.asked.toLocaleString('en')} draws were requested.`,
+    draws.not_converged > 0 && `${plural(draws.not_converged, 'draw')} did not converge and are left out.`,
     draws.failed > 0 && `${plural(draws.failed, 'draw')} could not be calibrated: ${draws.first_failure}.`,
   ].filter(Boolean);
 }
@@ -63,8 +63,8 @@ function truthText(s) {
     .map(([name, v]) => `${name} ${number(v)}`);
   return [
     `The robot that is measured is ${o.exact ? `the nominal one of ${s.truth}` : o.truth_nominal ? `nominal as in ${s.truth}, off by one tolerance (1σ) where ${s.variant} estimates` : `of ${s.truth}, each parameter off by its tolerance (1σ)`}.`,
-    noise.length > 0 && ` Its noise is not the one stated (SI): ${noise.join(', ')}.`,
-    o.missing > 0 && ` ${percent(o.missing)} of the targets are not read; the prediction counts on it.`,
+    noise.length > 0 && ` Its noise differs from the stated one (SI): ${noise.join(', ')}.`,
+    o.missing > 0 && ` ${percent(o.missing)} of the targets are missing; the prediction includes that.`,
     o.outliers > 0 && ` ${percent(o.outliers)} of the targets are ${number(o.outlier_size)} σ off.`,
   ]
     .filter(Boolean)

@@ -76,11 +76,11 @@ function rankingSection(s) {
       ? h(
           'ul',
           { class: 'sentences' },
-          refused.map((r) => h('li', {}, `${namesOf(r)} gives no plan: ${r.why_not}`)),
+          refused.map((r) => h('li', {}, `${namesOf(r)} allows no plan: ${r.why_not}`)),
         )
       : null,
     open.length > 0
-      ? h('p', {}, `Not looked at, because the search was ended before: ${open.map(namesOf).join('; ')}.`)
+      ? h('p', {}, `Not scored, because the search ended before: ${open.map(namesOf).join('; ')}.`)
       : null,
   );
 }
@@ -111,7 +111,7 @@ export function stationsPage(s, report) {
         section(
           'map',
           'Map of the places',
-          `${plural(s.ranking.length, 'choice')} of ${Object.keys(s.ranking[0].stations).length > 1 ? 'places' : 'a place'}, each judged by the plan that it allows.`,
+          `${plural(s.ranking.length, 'choice')} of ${Object.keys(s.ranking[0].stations).length > 1 ? 'places' : 'a place'}, each scored by its best plan.`,
           stationMap(s),
         ),
       ],

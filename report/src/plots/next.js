@@ -33,7 +33,7 @@ export function nextPlot(n) {
     id: 'plot-next',
     title: 'Predicted error over the number of poses',
     caption:
-      `Root mean square of the position error at ${n.places.count} ${n.places.test_poses ? 'test poses' : 'places through the workspace'}, from the poses measured in their order and, dashed, with those to come` +
+      `Root mean square of the position error at ${n.places.count} ${n.places.test_poses ? 'test poses' : 'poses throughout the workspace'}, from the poses measured in their order and, dashed, with those to come` +
       (n.required === null ? '.' : `; enough is measured if the bound is at or below ${quantity(n.required, 'm', 3)}.`) +
       ' Between the line and its bound lies what chance may add.',
     options: {

@@ -16,7 +16,7 @@ const row = (p) => [
 
 /** @param {any} a of aliases */
 function pair(a) {
-  const title = `${a.fitted} fitted while ${a.truth} is the case, ${a.plan}`;
+  const title = `${a.fitted} fitted while ${a.truth} is true, ${a.plan}`;
   if (a.why_not) return h('p', { class: 'note' }, `${title}: ${a.why_not}`);
   const parameters = [...a.parameters].sort((p, q) => inSigma(q) - inSigma(p));
   const worst = parameters[0];

@@ -34,7 +34,7 @@ function axesTable(c) {
     h(
       'p',
       { class: 'note' },
-      `Along and about the instrument’s axes; distance and angle: all axes together. Before: ${c.before === 'placed' ? 'base, tool, targets and nuisance fitted alone, since nobody knows where an instrument stands' : 'nominal parameters'}. The instrument’s own noise is in every figure.`,
+      `Along and about the instrument’s axes; distance and angle: all axes together. Before: ${c.before === 'placed' ? 'uncalibrated, with base, tool, targets and nuisance parameters fitted' : 'nominal parameters'}. The instrument’s own noise is in every figure.`,
     ),
   );
 }

@@ -147,7 +147,7 @@ export function calibratedParametersSection(c) {
       ? h(
           'p',
           { class: 'note' },
-          `σ and intervals count the noise that the residuals show, ${number(c.noise_factor, 3)} times the stated one.`,
+          `σ and intervals use the noise of the residuals, ${number(c.noise_factor, 3)} times the stated one.`,
         )
       : null,
   );

@@ -14,7 +14,7 @@ const asked = [
     'chi_square',
     'Is the noise as stated? (χ²)',
     (statistic, c) => `${number(statistic, 4)} of ${c.freedom}`,
-    (c) => `${number(c.noise_scale, 3)} times the stated noise: as it should be`,
+    (c) => `${number(c.noise_scale, 3)} times the stated noise, as expected`,
     (c) =>
       `${number(c.noise_scale, 3)} times the stated noise: ${c.noise_scale > 1 ? 'the model lacks something, or the noise is larger' : 'it is smaller than stated'}`,
   ],
@@ -98,7 +98,7 @@ function addSmooth(c, rows) {
       ? h(
           'span',
           { class: 'refused' },
-          c.smooth_effect.counted ? 'yes; σ and intervals count it' : 'yes: plain intervals are too small; let the variant have unmodelled',
+          c.smooth_effect.counted ? 'yes; σ and intervals include it' : 'yes: plain intervals are too small; let the variant have unmodelled',
         )
       : 'no clear sign of it',
   ]);

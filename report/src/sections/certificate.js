@@ -169,7 +169,7 @@ function cell(cell) {
   if (!cell) return null;
   const notes = [
     cell.always_touching?.length > 0 &&
-      `Not checked for collision, because they touch wherever the robot stands: ${cell.always_touching.join(', ')}.`,
+      `Not checked for collision, because they touch in every configuration: ${cell.always_touching.join(', ')}.`,
     cell.reduced_clearances?.length > 0 &&
       `Near by design, with a part of the clearance asked for: ${cell.reduced_clearances
         .map((pair) => `${pair.between.join(' and ')} (${quantity(pair.clearance, 'm')})`)

@@ -69,7 +69,7 @@ function warningsOf(list) {
   const { unknown } = list;
   const refused = list.ids.filter((id) => list.moves.has(id) && list.known(id)?.reason);
   return [
-    unknown.length > 0 && `Figures are those of the list without pose ${joined(unknown.map(String))}: what is told there is not known on this page.`,
+    unknown.length > 0 && `Figures are those of the list without pose ${joined(unknown.map(String))}: its readings are not known on this page.`,
     refused.length > 0 && `Pose ${joined(refused.map(String))}: not feasible where it is now.`,
     Boolean(list.report.route) &&
       list.changed &&

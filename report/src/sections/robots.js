@@ -17,7 +17,7 @@ export function robotsSection(plan) {
     own > 0 && `It does not determine all parameters of ${own} of them.`,
     before > 0 && `The plan for the nominal robot does not determine all parameters of ${before} of them.`,
     share !== null &&
-      `The plan for the nominal robot has ${percentDown(robust.nominal_plan.value)}: ${share < 0.01 ? 'planning for the tolerances is not worth it, it gains' : 'planning for the tolerances gains'} ${percent(share, 2)}.`,
+      `The plan for the nominal robot has ${percentDown(robust.nominal_plan.value)}: ${share < 0.01 ? 'planning for the tolerances is not worthwhile, it gains' : 'planning for the tolerances gains'} ${percent(share, 2)}.`,
     robust.interrupted && 'The search over drawn robots was ended before it was done.',
   ].filter(Boolean);
   return section(

@@ -30,7 +30,7 @@ export function what(plan) {
     (plan.variant ? ` (${variants > 1 ? 'model variants' : 'model variant'} ${plan.variant})` : '') +
     '.' +
     (nuisance > 0
-      ? ` ${nuisance} more have to be estimated along with them because nobody knows them, such as where the robot stands; they are of no interest themselves.`
+      ? ` ${nuisance} more are estimated along with them, such as the pose of the base; their values are of no interest.`
       : '')
   );
 }
@@ -41,7 +41,7 @@ export function accuracy(plan) {
   if (rho0 === null) return '';
   return (
     `After calibration the tip is expected to be off by ${quantity(rho0, 'm')} (1σ, root mean square over ${plural(errors.length, 'test pose')}; ` +
-    `${quantity(Math.max(...errors), 'm')} at the worst). This is what the measurement noise leaves; effects that the model does not have come on top.`
+    `${quantity(Math.max(...errors), 'm')} at the worst). This is the effect of the measurement noise; effects missing in the model add to it.`
   );
 }
 
@@ -54,12 +54,12 @@ export function worth(plan) {
   const useless = known.filter((p) => !p.worth_identifying);
   const start =
     useless.length === 0
-      ? `All ${known.length} come out better than the tolerance they were made to`
-      : `${known.length - useless.length} of ${known.length} come out better than the tolerance they were made to`;
+      ? `All ${known.length} are determined better than their manufacturing tolerance`
+      : `${known.length - useless.length} of ${known.length} are determined better than their manufacturing tolerance`;
   return (
     `${start}; the one known least, ${worst.name}, at ${number(ratio(worst), 3)} of it.` +
     (useless.length > 0
-      ? ` Not worth identifying, because the measurement tells less than the tolerance: ${list(useless.map((p) => p.name))}.`
+      ? ` Not worth identifying, because their tolerance is smaller than σ: ${list(useless.map((p) => p.name))}.`
       : '')
   );
 }
@@ -68,7 +68,7 @@ export function worth(plan) {
 export function proof(plan) {
   const c = plan.certificate.candidates;
   if (!c)
-    return `For criterion ${plan.criterion.name} no bound is computed: how near this plan is to the best one is not proved.`;
+    return `For criterion ${plan.criterion.name} no bound is computed: the distance to the best plan is not proved.`;
   const as = isDeterminant(plan) ? 'as informative as' : `as good by criterion ${plan.criterion.name} as`;
   const repeats =
     c.repeats === 'forbid'
@@ -98,7 +98,7 @@ export function searched(plan) {
   if (w?.proved)
     return `Proved ${w.within}${limits}: between the candidates too, it reaches at least ${percentDown(w.efficiency, 1)} of the best.`;
   return w
-    ? `Searched, not proved: over the whole workspace, between the candidates too, ${isSettled(w) ? `it reaches ${searchedShare(w)} of the best` : 'no figure: the search for better poses did not come to an end'}.`
+    ? `Searched, not proved: over the whole workspace, between the candidates too, ${isSettled(w) ? `it reaches ${searchedShare(w)} of the best` : 'no figure: the search for better poses was not finished'}.`
     : '';
 }
 
@@ -115,7 +115,7 @@ export function loss(plan) {
   const worst = poses.reduce((a, b) => (b.efficiency_without < a.efficiency_without ? b : a));
   return worst.efficiency_without <= 0
     ? `Without pose ${worst.id} not all parameters can be identified: it must not be lost.`
-    : `If one pose cannot be measured, at least ${percentDown(worst.efficiency_without)} of the plan is left; pose ${worst.id} would be missed most.`;
+    : `If one pose cannot be measured, at least ${percentDown(worst.efficiency_without)} of the plan remains (worst: pose ${worst.id}).`;
 }
 
 /** Two bodies and how far they are apart. @param {{distance: number, between: [string, string]}} nearest */

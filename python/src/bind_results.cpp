@@ -109,7 +109,7 @@ void bind_observation(py::module_& m) {
   using O = Observation;
   py::class_<O>(m, "Observation", "Which parameters of one variant a pool of configurations can identify.")
       .def_readonly("variant", &O::variant)
-      .def_readonly("configurations", &O::configurations, "in the pool")
+      .def_readonly("configurations", &O::configurations, "number of drawn configurations")
       .def_readonly("rows", &O::rows, "readings of one configuration")
       .def_property_readonly("rank", [](const O& o) { return o.identifiability.rank; })
       .def_readonly("exact_rank", &O::exact_rank, "where only dependencies to rounding count")

@@ -118,7 +118,8 @@ Route route(const GivenProblem& given, const py::object& poses, const std::strin
   options.milestones = checked("milestones", milestones, 1, 100000);
   options.seed = seed_of(seed);
   options.threads = checked("threads", threads, 0, most_threads);
-  if (from_home && options.start) throw InputError({}, "start stands beside from_home", "one of both is allowed");
+  if (from_home && options.start)
+    throw InputError({}, "start and from_home cannot be combined", "leave one of them out");
   const PoseList list = pose_list(poses, coordinates_of(given), format);
   Route result;
   Watch watch(time_limit, std::move(progress));
@@ -159,7 +160,7 @@ drop, add: which so many poses to leave out, or to measure more; format: of a li
 (docs/export.md).)");
   m.def("observe", &observe, py::arg("problem"), py::arg("variant") = "", py::kw_only(), py::arg("candidates") = 2000,
         py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
-        "What can be identified: {variant: Observation}, of one variant or of all.");
+        "Identifiability of one variant or of all: {variant: Observation}.");
   m.def("route", &route, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("format") = "",
         py::arg("from_home") = false, py::arg("closed") = false, py::arg("start") = none, py::arg("settle") = none,
         py::arg("reading") = none, py::arg("milestones") = 200, py::arg("seed") = 0, py::arg("threads") = 0,

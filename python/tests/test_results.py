@@ -128,7 +128,7 @@ def test_a_route_knows_whether_the_plan_was_made_for_this_problem(kr270, small_p
 
 
 def test_bad_arguments_of_a_route(kr270, small_plan):
-    with pytest.raises(pw.InputError, match="start stands beside from_home"):
+    with pytest.raises(pw.InputError, match="start and from_home cannot be combined"):
         pw.route(kr270, small_plan, from_home=True, start=1)
     with pytest.raises(pw.InputError, match="start= 99 is not a pose of"):
         pw.route(kr270, small_plan, start=99)

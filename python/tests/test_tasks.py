@@ -100,7 +100,7 @@ def test_an_export_that_moves_a_robot_is_checked_against_it(kr270, small_plan, t
     path.write_text(json.dumps(plan))
     with pytest.raises(pw.InputError, match="joint_a1"):
         pw.export(path, "abb-rapid", kr270, coupling=0)
-    assert "nothing is checked" in " ".join(pw.export(path, "abb-rapid", coupling=0, unchecked=True).notes)
+    assert "are not checked" in " ".join(pw.export(path, "abb-rapid", coupling=0, unchecked=True).notes)
     for wrong in (lambda: pw.export(small_plan, "abb-rapid", coupling=0), lambda: pw.export(small_plan, "no-such-format"),
                   lambda: pw.export(small_plan, "abb-rapid", kr270, speed=200), lambda: pw.export(3, "abb-rapid", kr270),
                   lambda: pw.export(small_plan, "figaroh", speed=10)):
@@ -163,5 +163,5 @@ def test_next_poses_says_what_the_command_line_says(program, kr270, data, tmp_pa
     assert first.verdict == "not_determined" and first.error is None and len(first) == 1
     other = tmp_path / "measured.csv"
     other.write_text(data.read_text().replace("0.1", "0.2"))
-    with pytest.raises(pw.InputError, match="is another file"):
+    with pytest.raises(pw.InputError, match="differs from the file"):
         pw.next_poses(kr270, other, **asked)

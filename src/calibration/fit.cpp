@@ -204,7 +204,7 @@ Fit fit(const IdentificationModel& model, const VariantColumns& columns, const s
   if (options.weighting != Weighting::weighted && stacked.counted() == stacked.columns())
     throw CannotDo("as many readings as parameters leave no residual to estimate the noise from: use weights wls");
   if (options.effect != nullptr && options.weighting != Weighting::weighted)
-    throw CannotDo("an unmodelled effect counts with weights wls alone");
+    throw CannotDo("an unmodelled effect needs weights wls");
   stacked.correlate(options.effect);
   Fit result;
   Eigen::VectorXd x = stacked.start();
@@ -239,7 +239,7 @@ std::vector<Eigen::VectorXd> residuals_of(const IdentificationModel& model, cons
   Eigen::VectorXd y, difference;
   for (const MeasuredPose& pose : poses) {
     if (!model.predict(pose.q, correction, y))
-      throw CannotDo("pose " + std::to_string(pose.id) + " is out of reach with the parameters at hand");
+      throw CannotDo("pose " + std::to_string(pose.id) + " is out of reach with the current parameters");
     model.difference(pose.y, y, difference);
     residuals.push_back(difference);
   }
@@ -254,7 +254,7 @@ BlockArray blocks_of(const IdentificationModel& model, const VariantColumns& col
   Eigen::VectorXd y;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (!linearise_at(model, poses[k], correction, columns.selected, out, y))
-      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the parameters at hand");
+      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the current parameters");
     const std::vector<int> read = indices_read(poses[k].y);
     Eigen::MatrixXd rows = out.G(read, Eigen::all);
     factorise_covariance(out.covariance(read, read), out.factor);

@@ -96,7 +96,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
   LeaveOut result;
   VariantColumns place = placing_columns(columns);
   if (place.selected.size() == columns.selected.size()) {
-    result.why_not = "nothing but where things stand is estimated";
+    result.why_not = "only base, tool and targets are estimated";
     return result;
   }
   place = place.selected.empty() ? place : determined(model, place, poses, start, options.prior);
@@ -156,8 +156,8 @@ std::string weakest_combination(const Fit& result, const VariantColumns& columns
     names += fmt::format("{}{:.2g} {}", i == 0 ? (share < 0 ? "−" : "") : (share < 0 ? " − " : " + "), std::abs(share),
                          columns.parameters[std::size_t(order[i])].name);
   }
-  return names + (least > 0 ? fmt::format(" (in tolerances) is known to {:.3g} tolerances only", 1 / least)
-                            : " (in tolerances) is not known at all");
+  return names + (least > 0 ? fmt::format(" (in tolerances) has σ of {:.3g} tolerances", 1 / least)
+                            : " (in tolerances) is not determined");
 }
 
 }  // namespace posewright

@@ -110,7 +110,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   }
   result.poses = int(taken);
   const int left = some.readings - int(columns.selected.size());
-  if (model.tips() == 0) result.why_not = "the readings tell of no tip";
+  if (model.tips() == 0) result.why_not = "the readings contain no position of the tip";
   else if (result.poses < fewest_poses || left < fewest_left)
     result.why_not = fmt::format("{} poses leave {} degrees of freedom; at least {} poses and {} are needed",
                                  result.poses, left, fewest_poses, fewest_left);

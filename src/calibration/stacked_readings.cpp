@@ -148,9 +148,8 @@ Eigen::VectorXd StackedReadings::start() const {
 }
 
 void StackedReadings::refuse(std::size_t pose) const {
-  throw CannotDo(
-      "pose " + std::to_string(poses_[pose].id) +
-      " is out of reach with the parameters at hand: is it in the list's units, is the nominal robot right?");
+  throw CannotDo("pose " + std::to_string(poses_[pose].id) +
+                 " is out of reach with the current parameters: check its units and the nominal robot");
 }
 
 const std::vector<double>& StackedReadings::correction_of(const Eigen::VectorXd& x) {

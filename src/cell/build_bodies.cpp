@@ -58,7 +58,7 @@ void add_obstacles(const ObstacleFileSpec& spec, const Problem& problem, std::ve
   for (PlacedShape& placed : read_obstacle_file(spec, problem)) {
     if (taken.count(placed.name) > 0)
       throw InputError(problem.at(spec.line),
-                       "'" + spec.file.string() + "' has a body called '" + placed.name + "', as another one is",
+                       "'" + spec.file.string() + "' has a body named '" + placed.name + "', as another one is",
                        "except: [" + placed.name + "], or another name");
     shapes.push_back({placed.name, "", "", BodyShape::Kind::obstacle, 0, isometry(spec.placement) * placed.X,
                       std::move(placed.shape), SourcePlace{spec.file.string(), placed.line}});

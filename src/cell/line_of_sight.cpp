@@ -53,11 +53,11 @@ std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const Ide
   const auto& asked = problem.workspace.line_of_sight;
   if (!asked) return sight->station_names_.empty() ? nullptr : std::move(sight);
   if (sight->station_names_.empty())
-    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument stands nowhere",
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no position",
                      "measurement.device.stations are needed (line_of_sight.stations for photogrammetry of a pose)");
   if (sight->targets_.empty())
     throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no targets to be seen",
-                     "it is for points, position, camera, and pose by photogrammetry");
+                     "line_of_sight is for points, position, camera, and pose by photogrammetry");
   if (sight->all_stations_ && asked->visible > 0 && asked->visible < sight->targets())
     throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
                      "a pose is fitted to all its points: visible: all");
@@ -77,7 +77,8 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
   number_ = ++made;
   const InstrumentView view = view_of(problem.measurement);
   if (view.has_places && !spec_.stations.empty())
-    throw InputError(problem.at(spec_.line), "workspace.line_of_sight.stations stands beside the device's own",
+    throw InputError(problem.at(spec_.line),
+                     "workspace.line_of_sight.stations cannot be combined with stations of the device",
                      "stations of trackers belong to measurement.device");
   all_stations_ = view.all_places;
   station_on_tip_ = view.places_on_tip;

@@ -30,7 +30,7 @@ TriangleMesh triangles_of(const fs::path& file) {
   const std::string ending = ending_of(file);
   if (ending == ".stl") return read_stl(read_file(file, largest_mesh));
   if (ending == ".obj") return read_obj(read_file(file, largest_mesh));
-  if (ending != ".dae") throw BadMesh("is of a kind that is not read: .stl, .obj and .dae are");
+  if (ending != ".dae") throw BadMesh("has an unknown format: .stl, .obj and .dae are read");
   std::error_code code;
   if (fs::file_size(file, code) > largest_mesh || code) throw BadMesh("is too large");
   record_input(file);

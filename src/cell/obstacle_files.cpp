@@ -50,8 +50,7 @@ std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const 
   const std::string ending = spec.file.extension().string();
   const auto reader = std::find_if(readers.begin(), readers.end(), [&](const auto& r) { return r.ending == ending; });
   if (reader == readers.end())
-    throw InputError(place, "'" + spec.file.string() + "' is of a kind that is not read",
-                     ".sdf, .world, .urdf, .scene");
+    throw InputError(place, "'" + spec.file.string() + "' has an unknown format", ".sdf, .world, .urdf, .scene");
   std::error_code code;
   if (!std::filesystem::is_regular_file(spec.file, code))
     throw InputError(place, "'" + spec.file.string() + "' is not there", "a file of obstacles is needed");
@@ -63,7 +62,7 @@ std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const 
       std::string names;
       for (const PlacedShape& s : shapes) names += (names.empty() ? "" : ", ") + s.name;
       throw InputError(problem.at(except.line), "'" + except.value + "' is not in " + spec.file.filename().string(),
-                       names.empty() ? "nothing is left" : "allowed: " + names);
+                       names.empty() ? "no obstacle is left" : "allowed: " + names);
     }
   return shapes;
 }

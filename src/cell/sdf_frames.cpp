@@ -32,7 +32,7 @@ std::vector<const SdfFrames::Named*> SdfFrames::way(const std::string& frame, co
     const auto found = frames_.find(at);
     if (found == frames_.end())
       by.fail("the frame " + in_quotes(at) + " is not there",
-              "a model, link, joint or frame beside it, or one below (MODEL::LINK)");
+              "a model, link, joint or frame of the same level, or one below (MODEL::LINK)");
     if (way.size() == frames_.size()) by.fail("the pose of " + in_quotes(at) + " depends on itself", frames_allowed);
     way.push_back(&*found);
     at = found->second.base;

@@ -60,7 +60,7 @@ class SdfReader {
 
   void read_children(const SdfElement& element, const SdfScope& scope) {
     for (const SdfElement& child : element.children()) {
-      if (++elements_ > most_elements) child.fail("is beyond what a world may hold", "200,000 elements");
+      if (++elements_ > most_elements) child.fail("exceeds the allowed size of a world", "200,000 elements");
       const std::string tag = child.tag();
       if (tag == "model") read_model({child, child.name(), child.pose(), child.attribute("placement_frame")}, scope);
       else if (tag == "include") read_include(child, scope);
@@ -120,7 +120,8 @@ class SdfReader {
     if (!element) include.fail("'" + root.file().string() + "' has no <model>", "a file with one model is needed");
     SdfModel model{*element, name.empty() ? element->name() : name, (include.child("pose") ? include : *element).pose(),
                    include.text_of("placement_frame"), include.attribute("merge") == "true"};
-    if (model.merged && scope.model.empty()) include.fail("merge=\"true\" stands outside a model", "leave it out here");
+    if (model.merged && scope.model.empty())
+      include.fail("merge=\"true\" is allowed only inside a model", "leave it out here");
     if (model.placement.empty()) model.placement = element->attribute("placement_frame");
     const int outermost = line_;
     if (line_ == 0) line_ = include.line();

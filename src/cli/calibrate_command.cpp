@@ -23,26 +23,26 @@ po::options_description calibrate_command_options() {
   po::options_description options("Options");
   options.add_options()  //
       ("variant", po::value<Words>()->value_name("V")->composing(),
-       "which variant is calibrated (design: variant, or the first); a list A,B: all of them, in one table")  //
+       "variant to calibrate (design: variant, or the first); a list A,B compares them in one table")  //
       ("weights", text("KIND"),
-       "ols: all readings of a unit alike; wls: by the instrument's noise; robust: gross errors lose their weight "
-       "(wls)")                                                                                //
-      ("no-prior", "plain least squares: tolerances of what was manufactured do not count")    //
-      ("validate", text("FILE"), "more data, not fitted, to judge the result by")              //
-      ("hold-back", text("K"), "do not fit every K-th pose, judge the result by it")           //
-      ("in-steps", "identify base and tool, geometry and stiffness one after the other, too")  //
+       "ols: equal weights; wls: weights by the instrument's noise; robust: small weights for gross errors (wls)")  //
+      ("no-prior", "plain least squares, without manufacturing tolerances as prior knowledge")                      //
+      ("validate", text("FILE"), "more measured data, for validation; they are not fitted")                         //
+      ("hold-back", text("K"), "keep every K-th pose for validation; it is not fitted")                             //
+      ("in-steps", "also estimate base and tool, geometry, and stiffness in turn")                                  //
       ("profile", text("WHICH"),
-       "intervals by profile likelihood: auto (parameters that the curvature names), none, all, or names and globs "
-       "with commas between them (auto)")  //
+       "intervals by profile likelihood: auto (parameters with a large curvature), none, all, or a list of names and "
+       "globs (auto)")  //
       ("interpolate",
-       "predict with what the parameters leave, too, interpolated between the poses (variant with `unmodelled`); "
-       "refused if poses left out gain nothing");
-  options.add_options()                                                                                           //
-      ("output,o", text("FILE"), "calibrated parameters as YAML; observe, plan, … take them by --parameters")     //
-      ("deformation", text("FILE.svg"), "picture of how a platform's joint centres move, if the data have them")  //
-      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                   //
-      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")               //
-      ("force", "replace files that posewright did not write; write an estimate that is not to be used");
+       "add the residuals, interpolated between the poses, to predictions (variant with `unmodelled`); refused unless "
+       "cross-validation shows a gain");
+  options.add_options()                                                                                //
+      ("output,o", text("FILE"), "calibrated parameters as YAML, for --parameters of other commands")  //
+      ("deformation", text("FILE.svg"),
+       "picture of the motion of a platform's joint centres, if the data contain them")              //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")  //
+      ("force", "replace files that posewright did not write; write even an estimate that is not fit for use");
   options.add(problem_options());
   return options;
 }

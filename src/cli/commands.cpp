@@ -19,14 +19,14 @@ const std::vector<Command>& commands() {
 
 po::options_description common_options() {
   po::options_description options("Common options");
-  options.add_options()                                                //
-      ("seed", text("S"), "seed of everything random (0)")             //
-      ("threads", text("T"), "threads (all); never changes a result")  //
-      ("json", "result as JSON on stdout, nothing else there")         //
-      ("markdown", "tables as Markdown")                               //
-      ("quiet", "no progress")                                         //
-      ("verbose", "progress also if stderr is not a terminal")         //
-      ("help", "this text");
+  options.add_options()                                                           //
+      ("seed", text("S"), "seed of all random numbers (0)")                       //
+      ("threads", text("T"), "number of threads (all); does not change results")  //
+      ("json", "print the result as JSON, and nothing else, to stdout")           //
+      ("markdown", "tables as Markdown")                                          //
+      ("quiet", "do not show progress")                                           //
+      ("verbose", "show progress even if stderr is not a terminal")               //
+      ("help", "show this help");
   return options;
 }
 

@@ -17,13 +17,13 @@ namespace {
 
 po::options_description compare_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                     //
-      ("variant", po::value<Words>()->value_name("V")->composing(), "these variants, or a list A,B (all)")  //
-      ("truth", text("V"), "what this variant does to the others: every parameter, tolerances too")         //
-      ("poses", text("N"), "poses of each plan that is searched (design: poses)")                           //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                     //
-      ("candidates", text("n"), "feasible configurations to compare with (as plan)")                        //
-      ("restarts", text("k"), "starts of a search (as plan)")                                               //
+  options.add_options()                                                                                              //
+      ("variant", po::value<Words>()->value_name("V")->composing(), "variants to compare, one or a list A,B (all)")  //
+      ("truth", text("V"), "effects of this variant on the others, by parameter, tolerances included")               //
+      ("poses", text("N"), "number of poses of each searched plan (design: poses)")                                  //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                              //
+      ("candidates", text("n"), "feasible configurations to compare with (as plan)")                                 //
+      ("restarts", text("k"), "starts of a search (as plan)")                                                        //
       ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
   options.add(resume_option()).add(problem_options());
   return options;
@@ -41,8 +41,7 @@ CompareOptions options_of(const Problem& problem, const po::variables_map& value
     if (given && values.count(option) > 0)
       throw InputError({}, std::string("--") + option + " is for plans that are searched",
                        "leave it out, or the plans");
-  if (!given && !from.empty())
-    throw InputError({}, "--from is for plans that are given", "name them after the problem");
+  if (!given && !from.empty()) throw InputError({}, "--from is for given plans", "name them after the problem");
   compare.plan.poses = whole_number(values, "poses", 1, 1000000);
   compare.plan.method = text_of(values, "method");
   compare.plan.candidates = whole_number(values, "candidates", 1, 10000000);
@@ -80,7 +79,7 @@ int run_compare(const po::variables_map& values, const Words& positional) {
 Command compare_command() {
   return {"compare",
           "PROBLEM [PLAN...]",
-          "Variants against plans: efficiency, σ, accuracy, what one variant's effects do to another.",
+          "Compares variants and plans: efficiency, σ, accuracy, bias by effects of another variant.",
           compare_command_options,
           "posewright compare examples/telescope/problem.yaml --variant rigid,linear,matrix",
           run_compare,

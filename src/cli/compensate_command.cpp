@@ -31,29 +31,31 @@ namespace fs = std::filesystem;
 
 po::options_description compensate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                      //
-      ("output,o", text("FILE|DIR"), "the files again with the joints to command; a folder for several")     //
-      ("partial", "write although some poses or program lines are not compensated: these stay as they are")  //
-      ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")   //
-      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")    //
-      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3")    //
+  options.add_options()                                                                                         //
+      ("output,o", text("FILE|DIR"), "corrected file; a folder for several files")                              //
+      ("partial", "write files even if some poses or program lines are not compensated; those stay unchanged")  //
+      ("from", text("FORMAT"), "format of the files (by ending and first character: JSON, CSV, programs)")      //
+      ("controller", text("NAME"),
+       "controller of programs: known name, or YAML file with sign, zero_deg, range_deg, …")               //
+      ("coupling", text("F"), "programs: J3 of the controller is J3 - F*J2 of the robot; 0: no coupling")  //
       ("tool", po::value<Words>(),
-       "of poses in programs: [NAME=]X Y Z and turns as the language writes them, mm and deg")                 //
-      ("base", po::value<Words>(), "the same of the frame that they are in")                                   //
-      ("world", text("POSE"), "the controller's world in the robot's base: x y z roll pitch yaw, mm and deg")  //
-      ("flange", text("POSE"), "the controller's flange in the robot's tip, the same way")                     //
-      ("line-deviation", text("MM"), "largest distance of the tool from lines between poses of programs")      //
-      ("problem", text("FILE"), "problem file of the robot (the one the parameters name, unchanged)")          //
-      ("with-base", "poses in the measurement frame: where the base was found to stand counts")                //
-      ("without-tool", "the tool's correction is that of what was measured and does not count")                //
-      ("position-only", "position of the tip alone (robots of fewer than six axes)")                           //
-      ("elastic-target", "the poses were found with the nominal springs bent by the load")                     //
-      ("most", text("DEG"), "largest turn of a joint that is still a correction (10; slides 10 mm a degree)");
-  options.add_options()                                                                              //
-      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
-      ("xacro", text("FILE"), "the same as the robot's xacro file, its comments and macros kept")    //
-      ("ur-kinematics", text("FILE"), "kinematics.yaml of ur_description (Universal Robots)")        //
-      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")  //
+       "tool frame of poses in programs: [NAME=]X Y Z and angles in the language's order, mm and deg")  //
+      ("base", po::value<Words>(), "base or user frame of these poses, in the same form")               //
+      ("world", text("POSE"),
+       "pose of the controller's world frame in the robot's base: x y z roll pitch yaw, mm and deg")          //
+      ("flange", text("POSE"), "pose of the controller's flange in the robot's tip, in the same form")        //
+      ("line-deviation", text("MM"), "largest allowed distance of the tool from straight lines of programs")  //
+      ("problem", text("FILE"), "problem file of the robot (the one named by the parameters, unchanged)")     //
+      ("with-base", "poses refer to the measurement frame: include the estimated pose of the base")           //
+      ("without-tool", "leave out the tool's correction, if another tool was measured")                       //
+      ("position-only", "correct the position of the tip only (robots with fewer than six axes)")             //
+      ("elastic-target", "the poses include the nominal deflection under load already")                       //
+      ("most", text("DEG"), "largest correction of a joint (10; prismatic joints: 10 mm per degree)");
+  options.add_options()                                                                                           //
+      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                   //
+      ("xacro", text("FILE"), "the robot's xacro file with the calibrated kinematics; comments and macros stay")  //
+      ("ur-kinematics", text("FILE"), "kinematics.yaml of ur_description (Universal Robots)")                     //
+      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")               //
       ("force", "replace files that posewright did not write");
   options.add(package_options());
   return options;
@@ -219,7 +221,7 @@ struct RobotFiles {
                                             "posewright_" + problem.parameters->sha256.substr(0, 16));
       add(kinematics, ur.text, "kinematics file", ur.left_out);
       notes.emplace_back(
-          "the hash in the kinematics file is not that of the controller's own calibration: the driver warns");
+          "the hash of the kinematics file differs from the controller's own calibration, so the driver will warn");
     }
     if (!dh_.empty())
       table = dh_table(*arm, place, variant.convention, values,
@@ -330,7 +332,7 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
     write_results(all);
     for (const FileToWrite& file : all) written.push_back(file.file);
   } else if (!to.empty() || !robot.files.empty()) {
-    result.notes.emplace_back("nothing is written; --partial leaves what is not compensated as it is");
+    result.notes.emplace_back("no file is written; --partial keeps uncompensated poses unchanged");
   }
   show_compensation(common, problem, result, robot, written);
   return good ? done : cannot_do;
@@ -341,7 +343,7 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
 Command compensate_command() {
   return {"compensate",
           "PARAMETERS [FILE…]",
-          "Corrects poses and robot programs so that the calibrated robot stands where the nominal one was meant to.",
+          "Corrects poses and robot programs so that the real robot reaches the intended poses.",
           compensate_command_options,
           "posewright compensate calibrated.yaml program.src program.dat -o corrected/",
           run_compensate};

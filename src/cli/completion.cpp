@@ -116,11 +116,10 @@ std::string zsh_script() {
   for (const Command& command : commands())
     text += fmt::format("    '{}:{}'\n", command.name, zsh_text(command.summary));
   text += fmt::format(
-      "    'help:Options of a command.'\n    'completion:Completion for a shell.'\n  )\n"
-      "  _arguments -C '(- *)--help[this text]' '(- *)--version[version]' '1:command:->command' "
-      "'*::argument:->argument'\n"
-      "  case $state in\n    command) _describe command commands ;;\n    argument) case $words[1] in\n"
-      "      help) _arguments '1:command:({}--man)' ;;\n      completion) _arguments '1:shell:(bash zsh)' ;;\n",
+      "    'help:Options of a command.'\n    'completion:Completion for a shell.'\n  )\n  _arguments -C '(- "
+      "*)--help[show this help]' '(- *)--version[version]' '1:command:->command' '*::argument:->argument'\n  case "
+      "$state in\n    command) _describe command commands ;;\n    argument) case $words[1] in\n      help) _arguments "
+      "'1:command:({}--man)' ;;\n      completion) _arguments '1:shell:(bash zsh)' ;;\n",
       command_words());
   for (const Command& command : commands()) text += zsh_command(command);
   return text +

@@ -21,21 +21,22 @@ namespace {
 
 po::options_description evaluate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                               //
-      ("drop", text("k"), "which k poses to leave out")                                               //
-      ("add", text("k"), "which k poses to measure more")                                             //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                       //
-      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
-      ("criterion", text("NAME"), ("what counts: " + criterion_names() + " (o1)").c_str())            //
-      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())      //
+  options.add_options()                                                                           //
+      ("drop", text("k"), "suggest k poses to leave out")                                         //
+      ("add", text("k"), "suggest k additional poses")                                            //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                   //
+      ("truth", text("V"), "alternative model to test the fitted one against (design: truth)")    //
+      ("criterion", text("NAME"), ("criterion: " + criterion_names() + " (o1)").c_str())          //
+      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
       ("candidates", text("n"),
        help_with_default("feasible configurations to compare with", default_candidates).c_str())  //
       ("restarts", text("k"), "starts of a search (10)")                                          //
       ("time-limit", text("S"), "stop searching after S seconds")                                 //
       ("from", text("FORMAT"),
        ("format of POSES: " + readable_format_names() + "; of programs: " + program_format_names()).c_str())  //
-      ("controller", text("NAME"), "of programs: known one, or YAML file (sign, zero_deg, range_deg, …)")     //
-      ("coupling", text("F"), "of programs: J3 of the controller is J3 - F*J2 of the robot; 0: it is J3");
+      ("controller", text("NAME"),
+       "controller of programs: known name, or YAML file with sign, zero_deg, range_deg, …")  //
+      ("coupling", text("F"), "programs: J3 of the controller is J3 - F*J2 of the robot; 0: no coupling");
   options.add(problem_options());
   return options;
 }
@@ -90,7 +91,7 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
 Command evaluate_command() {
   return {"evaluate",
           "PROBLEM POSES",
-          "Scores poses that you have (CSV or plan.json): every criterion, each pose's share, what to drop and add.",
+          "Scores given poses (CSV or plan.json): every criterion, each pose's share, poses to drop and to add.",
           evaluate_command_options,
           "posewright evaluate examples/telescope/problem.yaml poses.csv --drop 2 --add 3",
           run_evaluate};

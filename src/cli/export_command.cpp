@@ -25,28 +25,28 @@ constexpr std::uintmax_t plan_limit = 200'000'000;
 
 po::options_description export_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                              //
-      ("to", text("FORMAT"), "format; list or none: the table of formats")                           //
-      ("output,o", text("FILE|DIR"), "where to (a name of the format's own; - for stdout)")          //
-      ("force", "replace files that posewright did not write")                                       //
-      ("name", text("NAME"), "of the program (as the file), of the robot in an SRDF")                //
-      ("speed", text("%"), "whole percent of full speed (10; of the route's for joint-trajectory)")  //
-      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")            //
-      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")              //
+  options.add_options()                                                                                          //
+      ("to", text("FORMAT"), "format; list, or no --to: print the table of formats")                             //
+      ("output,o", text("FILE|DIR"), "file or folder to write (a default name of the format; - for stdout)")     //
+      ("force", "replace files that posewright did not write")                                                   //
+      ("name", text("NAME"), "name of the program (as the file), or of the robot in an SRDF")                    //
+      ("speed", text("%"), "speed in whole percent of full speed (10; joint-trajectory: of the route's speed)")  //
+      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")                        //
+      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")                          //
       ("digital-output", text("N"),
-       "signals the instrument to measure: number, or name for abb-rapid and staubli-val3")                        //
-      ("digital-input", text("N"), "signals that it has measured")                                                 //
+       "output that triggers the instrument: number, or name for abb-rapid and staubli-val3")                      //
+      ("digital-input", text("N"), "input that reports the end of a measurement")                                  //
       ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")                 //
       ("payload", text("N|KG,X,Y,Z"), "load: payload schedule for fanuc-tp; kg and m of its centre for urscript")  //
       ("base", text("N"), "base or user frame of the controller")                                                  //
-      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: it is J3")                        //
+      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: no coupling")                     //
       ("controller", text("NAME"),
-       "known one, or YAML file: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
-      ("station", text("NAME"), "whose targets a list of targets has")                                               //
-      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                                             //
+       "known name, or YAML file: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
+      ("station", text("NAME"), "station whose targets a list of targets contains")                                   //
+      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                                              //
       ("problem", text("FILE"),
-       "problem file of the robot that a program is checked against (the one the plan names)")  //
-      ("unchecked", "a program without asking whether the robot can do what it says");
+       "problem file for the check of the program (the one named by the plan)")  //
+      ("unchecked", "write the program without a check of limits and velocities");
   options.add(problem_options());
   return options;
 }
@@ -224,7 +224,7 @@ int run_export(const po::variables_map& values, const Words& positional) {
   const std::string given = text_of(values, "output");
   const bool to_stdout = given == "-";
   if (to_stdout && (common.json || format.several_files))
-    throw InputError({}, format.several_files ? format.name + " has several files" : "--json and -o - both want stdout",
+    throw InputError({}, format.several_files ? format.name + " has several files" : "--json and -o - both need stdout",
                      "give -o a file or folder");
   const fs::path output = to_stdout ? fs::path() : fs::path(given);
   const ExportOptions export_settings = export_options(format, values, output);

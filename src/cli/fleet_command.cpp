@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 
 po::options_description fleet_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                         //
-      ("output-dir", text("DIR"), "folder for NAME.plan.json and NAME.poses.csv of each, made if need be (.)")  //
-      ("poses", text("N"), "number of poses of every plan (design: poses of each problem)")                     //
-      ("restarts", text("k"), "starts of each search (10)")                                                     //
-      ("force", "replace files that posewright did not write")                                                  //
-      ("time-limit", text("S"), "stop after S seconds; what is planned by then is written");
+  options.add_options()                                                                                    //
+      ("output-dir", text("DIR"), "folder for NAME.plan.json and NAME.poses.csv, created if missing (.)")  //
+      ("poses", text("N"), "number of poses of each plan (design: poses of each problem)")                 //
+      ("restarts", text("k"), "starts of each search (10)")                                                //
+      ("force", "replace files that posewright did not write")                                             //
+      ("time-limit", text("S"), "stop after S seconds; finished plans are written");
   options.add(task_options()).add(package_options());
   return options;
 }
@@ -42,7 +42,7 @@ std::vector<std::string> names_of(const std::vector<Problem>& problems) {
     const bool plain = file.stem() == "problem" && file.has_parent_path();
     names.push_back(plain ? file.parent_path().filename().string() : file.stem().string());
     if (count[names.back()]++ > 0)
-      throw InputError({}, problem.file.string() + ": its plan would be called " + names.back() + " as another's",
+      throw InputError({}, problem.file.string() + ": its plan would be named " + names.back() + " as another's",
                        "problem files of different names are needed");
   }
   return names;

@@ -35,11 +35,15 @@ std::string general_help() {
 }
 
 std::string command_help(const Command& command) {
+  const po::options_description options = command.options(), common = common_options();
+  const unsigned column = std::max(options.get_option_column_width(), common.get_option_column_width());
   std::ostringstream text;
   text << "Usage: posewright " << command.name << " " << command.arguments << " [options]\n\n"
-       << command.summary << "\n\n"
-       << command.options() << "\n"
-       << common_options() << "\nExample:\n  " << command.example << "\n";
+       << command.summary << "\n\n";
+  options.print(text, column);
+  text << "\n";
+  common.print(text, column);
+  text << "\nExample:\n  " << command.example << "\n";
   return text.str();
 }
 

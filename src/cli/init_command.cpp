@@ -24,22 +24,23 @@ namespace fs = std::filesystem;
 
 po::options_description init_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                           //
-      ("tracker", "a laser tracker reads three reflectors on the flange")                                         //
-      ("camera", text("NAME"), "a camera sees a board; list: the table, or WIDTHxHEIGHT@FOCAL in px")             //
-      ("board", text("RxCxS"), "rows, columns, spacing of its points (6x9x25mm)")                                 //
-      ("fixed-camera", "the camera stands in the cell, the board is on the hand")                                 //
-      ("arm", "plan for the arm's parameters too, not only for where the camera is")                              //
-      ("at", text("X,Y,Z"), "where tracker, board or fixed camera stands, base frame (in front)")                 //
-      ("poses", text("N"), "number of poses (30; where a camera is: 15)")                                         //
-      ("accuracy", text("LENGTH"), "that is asked for, with unit; without --poses as many as it takes")           //
-      ("base", text("LINK"), "link that the chain begins at (what the first joint stands on)")                    //
-      ("tip", text("LINK"), "link that it ends at (tool0, flange or the last one)")                               //
-      ("floor", text("HEIGHT"), "of floor or table in the base frame, with unit; none (under the robot's foot)")  //
-      ("xacro", po::value<Words>()->value_name("NAME=VALUE")->composing(), "argument of a .xacro file")           //
-      ("output,o", text("FILE"), "problem file (problem.yaml; - for stdout)")                                     //
-      ("force", "replace a file that is there")                                                                   //
-      ("yes", "no questions, also on a terminal");
+  options.add_options()                                                                                               //
+      ("tracker", "laser tracker, with three reflectors on the flange")                                               //
+      ("camera", text("NAME"), "camera and board: a name, WIDTHxHEIGHT@FOCAL in px, or list for the table of names")  //
+      ("board", text("RxCxS"), "rows, columns, spacing of its points (6x9x25mm)")                                     //
+      ("fixed-camera", "camera fixed in the cell, board on the hand")                                                 //
+      ("arm", "identify the arm's parameters too, not only the pose of the camera")                                   //
+      ("at", text("X,Y,Z"), "position of tracker, board or fixed camera in the base frame (in front)")                //
+      ("poses", text("N"), "number of poses (30; hand-eye calibration: 15)")                                          //
+      ("accuracy", text("LENGTH"), "required accuracy, with unit; without --poses it sets their number")              //
+      ("base", text("LINK"), "first link of the chain (parent of the first joint)")                                   //
+      ("tip", text("LINK"), "last link of the chain (tool0, flange or the last one)")                                 //
+      ("floor", text("HEIGHT"),
+       "height of floor or table in the base frame, with unit, or none (under the robot's foot)")        //
+      ("xacro", po::value<Words>()->value_name("NAME=VALUE")->composing(), "argument of a .xacro file")  //
+      ("output,o", text("FILE"), "problem file (problem.yaml; - for stdout)")                            //
+      ("force", "replace an existing file")                                                              //
+      ("yes", "ask no questions, even on a terminal");
   options.add(package_options());
   return options;
 }
@@ -123,7 +124,7 @@ void take_instrument(InitFacts& facts, const po::variables_map& values) {
   facts.camera = camera;
   for (const char* option : {"board", "fixed-camera", "arm"})
     if (tracker && values.count(option) > 0)
-      throw InputError({}, fmt::format("--{} beside --tracker", option), "it belongs to --camera");
+      throw InputError({}, fmt::format("--{} does not go with --tracker", option), "it belongs to --camera");
   if (camera) facts.lens = find_camera(text_of(values, "camera"));
   if (values.count("board") > 0) facts.board = parse_board(text_of(values, "board"));
   facts.on_hand = values.count("fixed-camera") == 0;
@@ -172,7 +173,7 @@ void ask_for_the_rest(InitFacts& facts, const po::variables_map& values) {
       if (answer != "in front") facts.place = place_of(answer);
     });
   if (!facts.accuracy && !facts.poses) {
-    ask("Accuracy that is asked for, with unit", "none", [&](const std::string& answer) {
+    ask("Required accuracy, with unit", "none", [&](const std::string& answer) {
       if (answer != "none") facts.accuracy = accuracy_of(answer);
     });
     const std::string standard = facts.accuracy ? "as many as it takes" : facts.camera && !facts.arm ? "15" : "30";
@@ -207,7 +208,7 @@ void print_summary(const InitFacts& facts, const InitResult& result, const fs::p
              !facts.camera   ? std::string("laser tracker")
              : facts.on_hand ? facts.lens.name + " on the hand"
                              : facts.lens.name + " fixed in the cell");
-  fmt::print("Look through it, then: posewright plan {}{}\n", file.string(), words_again(values));
+  fmt::print("Check the file, then run: posewright plan {}{}\n", file.string(), words_again(values));
 }
 
 int run_init(const po::variables_map& values, const Words& positional) {
@@ -221,7 +222,7 @@ int run_init(const po::variables_map& values, const Words& positional) {
   const std::string output = values.count("output") > 0 ? text_of(values, "output") : "problem.yaml";
   if (output.empty()) throw InputError({}, "-o names no file", "a file, or - for stdout");
   const bool to_stdout = output == "-";
-  if (to_stdout && common.json) throw InputError({}, "--json and -o - both want stdout", "give -o a file");
+  if (to_stdout && common.json) throw InputError({}, "--json and -o - both need stdout", "give -o a file");
   if (!to_stdout) {
     require_new(output, "", values.count("force") > 0);
     check_outputs({output}, {facts.robot}, true);

@@ -67,7 +67,7 @@ int run_command(const Command& command, const Words& words) {
   if (!command.shares_tasks && started_workers()->processes() > 1)
     throw InputError({}, command.name + " runs in one process", "start it without mpirun");
   if (values.count("markdown") > 0) {
-    if (values.count("json") > 0) throw InputError({}, "--markdown and --json", "one of both is allowed");
+    if (values.count("json") > 0) throw InputError({}, "--markdown and --json", "leave one of them out");
     set_table_layout(TableLayout::markdown);
   }
   return command.run(values, values.count("positional") > 0 ? values["positional"].as<Words>() : Words{});

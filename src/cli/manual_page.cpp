@@ -67,7 +67,7 @@ std::string exit_status() {
   return ".SH EXIT STATUS\n"
          ".TP\n0\nDone.\n"
          ".TP\n1\nWell\\-formed, but it cannot be done: infeasible, not identifiable,\na file cannot be written.\n"
-         ".TP\n2\nBad usage or bad input. The message names file and line,\nwhat is wrong, and what is allowed.\n"
+         ".TP\n2\nBad usage or bad input. The message names file and line,\nthe mistake, and the allowed values.\n"
          ".TP\n130\nInterrupted by Ctrl\\-C. The best plan so far is written.\n";
 }
 
@@ -82,20 +82,20 @@ std::string manual_page() {
       ".PP\n.B posewright help\n\\fICOMMAND\\fR | \\fB\\-\\-man\\fR\n"
       ".PP\n.B posewright completion\nbash | zsh\n"
       ".PP\n.B posewright \\-\\-version\n"
-      ".SH DESCRIPTION\nSearches for the poses from which a measurement identifies best a robot's\n"
-      "geometric or elastic parameters, and says how near the best possible\nplan the result is. Tables go to "
+      ".SH DESCRIPTION\nSearches for the poses that identify a robot's geometric or elastic\n"
+      "parameters best, and bounds the distance to the best possible plan.\nTables go to "
       "standard output, progress and messages\nto standard error.\n"
       ".SH COMMANDS\n",
       release_date, version, roff(purpose));
   for (const Command& command : commands()) text += command_section(command, common.size());
-  text += ".SH COMMON OPTIONS\nEvery command knows them.\n";
+  text += ".SH COMMON OPTIONS\nEvery command has them.\n";
   for (const OptionFacts& option : common) text += option_item(option);
   text += exit_status();
   text +=
       ".SH ENVIRONMENT\n"
       ".TP\n.B NO_COLOR\nNot empty: no bold or coloured text on a terminal.\n"
       ".TP\n.B ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH\n"
-      "Folders in which package://NAME/ and model://NAME/ of meshes and models are\nlooked for.\n"
+      "Folders in which package://NAME/ and model://NAME/ of meshes and models are\nsearched.\n"
       ".SH FILES\nJSON Schemas of problem, plan and route, for editors and programs, are\nin share/posewright/schemas, "
       "examples "
       "in share/posewright/examples.\n";

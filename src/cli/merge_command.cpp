@@ -12,8 +12,8 @@ namespace {
 
 po::options_description merge_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                    //
-      ("output,o", text("LOG"), "the whole log, for --resume (required)")  //
+  options.add_options()                                                 //
+      ("output,o", text("LOG"), "joined log, for --resume (required)")  //
       ("force", "replace a file that posewright did not write");
   return options;
 }

@@ -22,25 +22,25 @@ namespace {
 
 po::options_description next_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                     //
-      ("data", text("FILE"), "readings so far, CSV; more may come at its end (none: nothing is measured)")  //
-      ("poses,k", text("k"), "how many next poses (1)")                                                     //
-      ("required", text("LENGTH"), "error at the test poses that suffices (design: require: accuracy)")     //
-      ("watch", "go on while the file grows, until poses suffice, the curve is flat, or Ctrl-C")            //
-      ("variant", text("V"), "model variant that is fitted (design: variant, else the first)")              //
+  options.add_options()                                                                                           //
+      ("data", text("FILE"), "CSV of the readings so far; rows may be appended (none: no pose is measured yet)")  //
+      ("poses,k", text("k"), "number of next poses (1)")                                                          //
+      ("required", text("LENGTH"), "required error at the test poses (design: require: accuracy)")                //
+      ("watch", "repeat whenever the file grows, until the requirement is met, the curve is flat, or Ctrl-C")     //
+      ("variant", text("V"), "model variant to fit (design: variant, else the first)")                            //
       ("criterion", text("NAME"),
-       ("what the next poses maximise: " + criterion_names() + " (the problem's; else o1, later test_pose)").c_str())(
-          "no-prior", "tolerances of what was manufactured do not count in the fit")(
+       ("criterion for the next poses: " + criterion_names() + " (the problem's; else o1, later test_pose)").c_str())(
+          "no-prior", "fit without manufacturing tolerances as prior knowledge")(
           "candidates", text("n"),
           help_with_default("feasible configurations to choose from", default_candidates).c_str())(
           "candidates-from", text("POSES"),
           "choose among these configurations instead (CSV, plan.json, measured data)");
   options.add_options()  //
       ("state", text("FILE"),
-       "what is remembered from call to call (DATA.next-state.json beside the data; - for none)")(
-          "restart", "forget the state: another problem, another file of readings")                 //
-      ("output,o", text("FILE"), "next poses as CSV")                                               //
-      ("result", text("FILE"), "what --json prints, as a file that is written anew at every step")  //
+       "file that keeps the state between calls (DATA.next-state.json beside the data; - for none)")(
+          "restart", "discard the state, after a change of problem or data file")         //
+      ("output,o", text("FILE"), "next poses as CSV")                                     //
+      ("result", text("FILE"), "file for the output of --json, rewritten at every step")  //
       ("force", "replace files that posewright did not write");
   options.add(problem_options());
   return options;
@@ -142,7 +142,7 @@ int run_next(const po::variables_map& values, const Words& positional) {
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   if (const std::string list = text_of(values, "candidates-from"); !list.empty()) {
     if (next.candidates)
-      throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
+      throw InputError({}, "--candidates and --candidates-from cannot be combined", "leave one of them out");
     next.candidates_from = read_poses(list, without_limits(pose_coordinates(problem, next.variant)));
   }
   return NextSession(values, common, problem, std::move(next)).run();
@@ -153,7 +153,7 @@ int run_next(const po::variables_map& values, const Words& positional) {
 Command next_command() {
   return {"next",
           "PROBLEM",
-          "Fits what is measured so far, chooses the next poses, says when to stop.",
+          "Fits the readings so far, chooses the next poses, reports when to stop.",
           next_command_options,
           "posewright next problem.yaml --data measured.csv --required 0.1mm --watch",
           run_next};

@@ -12,10 +12,10 @@ namespace {
 
 po::options_description observe_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                //
-      ("variant", text("V"), "only this variant (all)")                                //
-      ("candidates", text("n"), "feasible configurations in the pool (2000)")          //
-      ("poses", text("N"), "number of poses that σ is predicted for (design: poses)")  //
+  options.add_options()                                                              //
+      ("variant", text("V"), "only this variant (all)")                              //
+      ("candidates", text("n"), "number of feasible configurations to draw (2000)")  //
+      ("poses", text("N"), "number of poses for the predicted σ (design: poses)")    //
       ("spectrum", "print the singular values of G too");
   options.add(problem_options());
   return options;
@@ -50,7 +50,7 @@ int run_observe(const po::variables_map& values, const Words& positional) {
 Command observe_command() {
   return {"observe",
           "PROBLEM",
-          "What can be identified: rank, dependencies, smallest number of poses, what is worth identifying.",
+          "Analyses identifiability: rank, dependencies, smallest number of poses, parameters worth identifying.",
           observe_command_options,
           "posewright observe examples/telescope/problem.yaml",
           run_observe};

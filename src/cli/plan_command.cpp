@@ -20,25 +20,28 @@ po::options_description plan_command_options() {
   options.add_options()                                                                               //
       ("poses", text("N|auto"), "number of poses; auto: the smallest that reaches design: require")   //
       ("variant", text("V"), "model variant (design: variant, else the first)")                       //
-      ("truth", text("V"), "variant that may be the case while the other is fitted (design: truth)")  //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())       //
+      ("truth", text("V"), "alternative model to test the fitted one against (design: truth)")        //
+      ("criterion", text("NAME"), ("criterion to maximise: " + criterion_names() + " (o1)").c_str())  //
       ("method", text("NAME"), ("planner: " + planner_names() + " (auto)").c_str())                   //
       ("candidates", text("n"),
        help_with_default("feasible configurations to choose from", default_candidates).c_str())                       //
       ("candidates-from", text("FILE"), "choose among these configurations instead (CSV, plan.json, measured data)")  //
       ("validation", text("k"),
-       "k more poses to judge the calibration by: plan-validation.json, poses-validation.csv")  //
-      ("restarts", text("k"), "starts of the search (10)")                                      //
-      ("repeats", text("allow|forbid|k"), "whether, or how often, a pose may be measured (forbid)")(
+       "k additional poses for validation: plan-validation.json, poses-validation.csv")  //
+      ("restarts", text("k"), "starts of the search (10)")                               //
+      ("repeats", text("allow|forbid|k"), "how often a pose may be measured (forbid)")(
           "scaling", text("tolerance|norm|none"), "units of the columns for o2 to o5 and a (tolerance)")(
-          "augment", text("POSES"), "poses that are measured already (CSV or plan.json): N more come to them")(
-          "fixed", text("POSES"), "poses that the plan has among its N: CSV or plan.json; of marked ones those")(
-          "reserve", "maximise what is left when the pose that hurts most is lost")(
+          "augment", text("POSES"), "already measured poses, CSV or plan.json; plans N additional ones")(
+          "fixed", text("POSES"),
+          "poses that must be in the plan, CSV or plan.json; with a column `fixed`, only rows marked yes")(
+          "reserve", "optimise for the loss of the worst single pose")(
           "robust", text("K"), "plan for K robots drawn from the tolerances, not for the nominal one alone")(
-          "robust-measure", text("M"), "what counts of their efficiencies: mean, worst, tail 0.1 (mean)")(
-          "prior", text("none|tolerance"), "count tolerances as prior knowledge (none)")(
-          "gap", text("P"), "percent: the proof over the workspace ends when it is that near (0.1)")(
-          "proof-time", text("S"), "seconds for that proof; 0: none (an amount of work, some seconds)");
+          "robust-measure", text("M"),
+          "summary of their efficiencies: mean, worst, or tail 0.1 for the worst tenth (mean)")(
+          "prior", text("none|tolerance"), "use tolerances as prior knowledge (none)")(
+          "gap", text("P"), "stop the workspace proof at this gap, in percent (0.1)")(
+          "proof-time", text("S"),
+          "time limit of the workspace proof in seconds; 0: no proof (an amount of work, some seconds)");
   options.add(output_options(true)).add(resume_option());
   options.add(problem_options());
   return options;
@@ -69,7 +72,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
     plan_options.scaling = scaling_of(scaling);
   const std::filesystem::path list = text_of(values, "candidates-from");
   if (!list.empty() && plan_options.candidates)
-    throw InputError({}, "--candidates stands beside --candidates-from", "drawn candidates or those of a list");
+    throw InputError({}, "--candidates and --candidates-from cannot be combined", "leave one of them out");
   const std::filesystem::path augment = text_of(values, "augment"), fixed = text_of(values, "fixed");
   plan_options.reserve = values.count("reserve") > 0;
   plan_options.robust = robust_spec(whole_number(values, "robust", least_robust_draws, most_robust_draws),

@@ -48,7 +48,7 @@ po::options_description problem_options() {
   po::options_description options("Problem");
   add_package_option(options);
   options.add_options()("parameters", po::value<std::string>()->value_name("FILE"),
-                        "calibrated parameters to linearise at (nominal ones; of a plan: those it was made at)");
+                        "calibrated parameters to linearise at (nominal ones; for a plan: its own)");
   return options;
 }
 

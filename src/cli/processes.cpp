@@ -44,7 +44,7 @@ std::shared_ptr<Workers> loaded_workers(int processes) {
   void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr) throw CannotDo(started + ", but Open MPI cannot be loaded: " + ::dlerror());
   auto* make = reinterpret_cast<MakeWorkers*>(::dlsym(module, make_workers_name));
-  if (make == nullptr) throw CannotDo(file.string() + " is of another posewright");
+  if (make == nullptr) throw CannotDo(file.string() + " belongs to another version of posewright");
   return std::shared_ptr<Workers>(make());
 }
 

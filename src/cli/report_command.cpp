@@ -20,14 +20,14 @@ namespace {
 
 po::options_description report_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                       //
-      ("output,o", text("FILE"), "the page (report.html; - for none)")                                        //
-      ("route", text("FILE"), "route of the plan: its order and motions are shown (none)")                    //
-      ("problem", text("FILE"), "problem file (the one the plan names)")                                      //
-      ("brief", "leave out what takes long: other numbers of poses, sensitivity of candidates, moved poses")  //
-      ("watch", "of a result: write the page anew whenever the file changes; the open page follows")          //
-      ("force", "replace files that posewright did not write")                                                //
-      ("time-limit", text("S"), "stop after S seconds with a page of what there is");
+  options.add_options()                                                                               //
+      ("output,o", text("FILE"), "the page (report.html; - for none)")                                //
+      ("route", text("FILE"), "route of the plan; the page shows its order and motions (none)")       //
+      ("problem", text("FILE"), "problem file (the one named by the plan)")                           //
+      ("brief", "leave out the slow parts: other numbers of poses, gain of candidates, moved poses")  //
+      ("watch", "result: rewrite the page whenever the file changes; the open page reloads")          //
+      ("force", "replace files that posewright did not write")                                        //
+      ("time-limit", text("S"), "stop after S seconds with the parts that are finished");
   options.add(problem_options());
   return options;
 }
@@ -90,7 +90,7 @@ int report_plans(const po::variables_map& values, const CommonOptions& common, c
   std::vector<GivenPlan> plans;
   TwoPlansReport report;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!is_plan(files[i])) throw InputError({files[i], 0}, "is no plan", "two plans are shown beside each other");
+    if (!is_plan(files[i])) throw InputError({files[i], 0}, "is no plan", "two plans are shown side by side");
     inputs.emplace_back(files[i]);
     plans.push_back(given_plan(values, files[i], inputs));
     report.files[i] = files[i];
@@ -178,7 +178,7 @@ Command report_command() {
   return {
       "report",
       "RESULT [PLAN]",
-      "Writes a page to look at: of a plan, of two plans, of a result of calibrate, compare, next, simulate, stations.",
+      "Writes an HTML page of a plan, of two plans, or of a result of calibrate, compare, next, simulate, stations.",
       report_command_options,
       "posewright report plan.json --route route.json -o report.html",
       run_report};

@@ -19,18 +19,18 @@ po::options_description route_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                              //
       ("from-home", "begin at home (workspace: motion: home, else zero)")                            //
-      ("closed", "end where the route began")                                                        //
+      ("closed", "return to the start at the end")                                                   //
       ("start", text("ID"), "pose to begin with")                                                    //
-      ("problem", text("FILE"), "problem file (the one the plan names)")                             //
+      ("problem", text("FILE"), "problem file (the one named by the plan)")                          //
       ("replace", "take the next best poses in place of those that no motion reaches")               //
-      ("milestones", text("n"), "of the roadmap for motions that cannot be straight (200)")          //
+      ("milestones", text("n"), "configurations in the roadmap for motions around obstacles (200)")  //
       ("settle", text("S"), "seconds at rest before a pose is read (workspace: motion: settle, 0)")  //
       ("reading", text("S"),
-       "seconds of one reading, of each target seen where they are read in turn (workspace: motion: reading, 0)")  //
-      ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                         //
-      ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                        //
-      ("force", "replace files that posewright did not write")                                                     //
-      ("time-limit", text("S"), "stop after S seconds with the best order so far")                                 //
+       "seconds of one reading; per target, where targets are read in turn (workspace: motion: reading, 0)")  //
+      ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                    //
+      ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                   //
+      ("force", "replace files that posewright did not write")                                                //
+      ("time-limit", text("S"), "stop after S seconds with the best order so far")                            //
       ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
   options.add(problem_options());
   return options;
@@ -52,7 +52,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
   route_options.seed = common.seed;
   route_options.threads = common.threads;
   if (route_options.from_home && route_options.start)
-    throw InputError({}, "--start stands beside --from-home", "one of both is allowed");
+    throw InputError({}, "--start and --from-home cannot be combined", "leave one of them out");
   if (!from.empty() && text_of(values, "problem").empty())
     throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
   const std::filesystem::path file = problem_file(values, plan);
@@ -86,7 +86,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
 Command route_command() {
   return {"route",
           "PLAN",
-          "Puts the poses of a plan in the order that takes least time, with collision-free motions between them.",
+          "Orders the poses of a plan for the shortest time, with collision-free motions between them.",
           route_command_options,
           "posewright route plan.json --from-home --closed -o route.json",
           run_route};

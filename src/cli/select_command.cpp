@@ -15,20 +15,19 @@ namespace {
 
 po::options_description select_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                          //
-      ("poses", text("N"), "number of blocks to choose (required)")                              //
-      ("rows", text("r"), "rows of a block; needed for CSV and two-dimensional .npy")            //
-      ("nuisance", text("k"), "the leading k columns are nuisance: eliminated (0)")              //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())  //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())          //
-      ("restarts", text("k"), "starts of the search (10, or what --time-limit allows)")          //
-      ("fixed", text("ROWS"), "blocks that are among the N: 3,17,25, from 0")                    //
-      ("augment", text("ROWS"), "blocks that are measured already: N more come to them")         //
-      ("repeats", text("allow|forbid|k"), "whether, or how often, a block may be chosen (forbid)")(
-          "gap", text("P"),
-          "percent: branch_and_bound ends once no plan is better by more than that (proved to rounding)")(
-          "reserve", "maximise what is left when the block that hurts most is lost")(
-          "spread", "each process (mpirun, srun) holds a share of the blocks: for more than fit into memory");
+  options.add_options()                                                                                            //
+      ("poses", text("N"), "number of blocks to choose (required)")                                                //
+      ("rows", text("r"), "rows of a block; needed for CSV and two-dimensional .npy")                              //
+      ("nuisance", text("k"), "the first k columns are nuisance parameters, estimated along with the others (0)")  //
+      ("criterion", text("NAME"), ("criterion to maximise: " + criterion_names() + " (o1)").c_str())               //
+      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                            //
+      ("restarts", text("k"), "starts of the search (10, or what --time-limit allows)")                            //
+      ("fixed", text("ROWS"), "blocks that must be chosen: 3,17,25, counted from 0")                               //
+      ("augment", text("ROWS"), "already measured blocks; chooses N additional ones")                              //
+      ("repeats", text("allow|forbid|k"), "how often a block may be chosen (forbid)")(
+          "gap", text("P"), "gap in percent at which branch_and_bound stops (proved to rounding)")(
+          "reserve", "optimise for the loss of the worst single block")(
+          "spread", "spread the blocks over the processes (mpirun, srun), if one memory cannot hold them");
   options.add(output_options(false)).add(task_options());
   return options;
 }
@@ -44,7 +43,7 @@ std::vector<int> row_list(const po::variables_map& values, const std::string& op
     const auto [next, code] = std::from_chars(at, end, row);
     if (code != std::errc() || row < 0 || (next != end && *next != ','))
       throw InputError({}, "--" + option + " '" + text.substr(0, 40) + "'",
-                       "numbers of blocks from 0, with commas between them: 3,17,25");
+                       "numbers of blocks from 0, separated by commas: 3,17,25");
     rows.push_back(row);
     if (next == end) return rows;
     at = next + 1;
@@ -79,7 +78,7 @@ int run_select(const po::variables_map& values, const Words& positional) {
   SelectOptions select;
   select.rows = whole_number(values, "rows", 1, 100000);
   const auto poses = whole_number(values, "poses", 1, 1000000);
-  if (!poses) throw InputError({}, "--poses is missing", "say how many blocks to choose");
+  if (!poses) throw InputError({}, "--poses is missing", "give the number of blocks to choose");
   select.poses = *poses;
   select.nuisance = whole_number(values, "nuisance", 0, 100000).value_or(0);
   if (values.count("criterion") > 0) select.criterion = text_of(values, "criterion");
@@ -117,7 +116,7 @@ int run_select(const po::variables_map& values, const Words& positional) {
 Command select_command() {
   return {"select",
           "BLOCKS",
-          "The same search on your own whitened Jacobian blocks (.npy n×r×m, or CSV of n·r rows × m columns).",
+          "Plans with your own Jacobian blocks, scaled to unit noise (.npy n×r×m, or CSV of n·r rows × m columns).",
           select_command_options,
           "posewright select blocks.npy --poses 20 -o plan.json",
           run_select,

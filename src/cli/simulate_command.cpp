@@ -22,26 +22,26 @@ namespace {
 
 po::options_description simulate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                               //
-      ("draws", text("n"), "virtual calibrations (1000)")                                                             //
-      ("truth", text("V"), "variant whose model gives the readings (the one that is calibrated)")                     //
-      ("truth-nominal", "of the truth only the nominal values differ")                                                //
-      ("truth-repeatability", text("LENGTH"), "how far the measured tip stands off at a visit, 1σ (as the problem)")  //
-      ("truth-independent", text("LENGTH"), "how far every target stands off on its own, 1σ (0)")                     //
-      ("truth-joints", text("ANGLE"), "what the measured robot's joint readings are off by, 1σ (as the problem)")     //
-      ("no-prior", "plain least squares: tolerances of what was manufactured do not count in a calibration")          //
-      ("exact", "true parameters are the nominal ones, not one tolerance off")                                        //
-      ("profile", "judge intervals by profiles, too: one more fit for every parameter and draw")                      //
-      ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                          //
-      ("weights", text("ols|wls|robust"), "what a reading counts: alike, by its noise, less far off (wls)")           //
-      ("missing", text("SHARE"), "share of the targets that are not read (0)")                                        //
-      ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                                      //
-      ("outlier-size", text("k"), "of a gross error, in σ of its target (20)")                                        //
-      ("validation", text("k"), "random places to check if there are no test poses (50)")                             //
+  options.add_options()                                                                                          //
+      ("draws", text("n"), "virtual calibrations (1000)")                                                        //
+      ("truth", text("V"), "variant that generates the readings (the calibrated one)")                           //
+      ("truth-nominal", "truth with other nominal values only")                                                  //
+      ("truth-repeatability", text("LENGTH"), "random offset of the tip at each visit, 1σ (as in the problem)")  //
+      ("truth-independent", text("LENGTH"), "random offset of every single target, 1σ (0)")                      //
+      ("truth-joints", text("ANGLE"), "error of the simulated robot's joint readings, 1σ (as in the problem)")   //
+      ("no-prior", "plain least squares: calibrate without manufacturing tolerances as prior knowledge")         //
+      ("exact", "true parameters equal the nominal ones, without random errors")                                 //
+      ("profile", "check intervals by profile likelihood too: one more fit per parameter and draw")              //
+      ("variant", text("V"), "model variant to calibrate (design: variant, else the first)")                     //
+      ("weights", text("ols|wls|robust"), "weights: equal, by noise, or small for gross errors (wls)")           //
+      ("missing", text("SHARE"), "share of missing targets (0)")                                                 //
+      ("outliers", text("SHARE"), "share of the targets with a gross error (0)")                                 //
+      ("outlier-size", text("k"), "size of a gross error, in σ of its target (20)")                              //
+      ("validation", text("k"), "number of random validation poses, if there are no test poses (50)")            //
       ("candidates", text("n"),
-       "configurations that choose the parameters of auto (as plan)")                   //
+       "configurations for choosing the parameters of auto (as plan)")                  //
       ("from", text("FORMAT"), ("format of PLAN: " + readable_format_names()).c_str())  //
-      ("data", text("FILE"), "writes the readings of the first draw, for calibrate")    //
+      ("data", text("FILE"), "write the readings of the first draw, for calibrate")     //
       ("force", "replace a file that posewright did not write");
   options.add(task_options()).add(problem_options());
   return options;
@@ -133,14 +133,13 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
 }  // namespace
 
 Command simulate_command() {
-  return {
-      "simulate",
-      "PROBLEM PLAN",
-      "Virtual experiment: measures a plan on drawn robots, calibrates, compares with the truth and the prediction.",
-      simulate_command_options,
-      "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000",
-      run_simulate,
-      true};
+  return {"simulate",
+          "PROBLEM PLAN",
+          "Simulates the measurement of a plan on random robots, calibrates, compares with truth and prediction.",
+          simulate_command_options,
+          "posewright simulate examples/kr270/problem.yaml plan.json --draws 5000",
+          run_simulate,
+          true};
 }
 
 }  // namespace posewright::cli

@@ -15,17 +15,17 @@ namespace {
 
 po::options_description stations_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                                               //
-      ("choose", text("k"), "how many stations are used (workspace: stations: choose, 1)")                            //
-      ("pairs", "every pair of places, however many (without: the best one gets the best second from 100 pairs on)")  //
-      ("full", text("n"), "how many of the best are planned in full (3)")                                             //
-      ("poses", text("N"), "number of poses (design: poses)")                                                         //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                                       //
-      ("criterion", text("NAME"), ("what to maximise: " + criterion_names() + " (o1)").c_str())(
+  options.add_options()                                                                                      //
+      ("choose", text("k"), "number of stations to use (workspace: stations: choose, 1)")                    //
+      ("pairs", "score every pair of places; without it, beyond 100 pairs, only pairs with the best place")  //
+      ("full", text("n"), "number of best places that get a full plan (3)")                                  //
+      ("poses", text("N"), "number of poses (design: poses)")                                                //
+      ("variant", text("V"), "model variant (design: variant, else the first)")                              //
+      ("criterion", text("NAME"), ("criterion to maximise: " + criterion_names() + " (o1)").c_str())(
           "candidates", text("n"),
           help_with_default("feasible configurations of the full plans", default_candidates).c_str())  //
       ("restarts", text("k"), "starts of the search of the full plans (10)")                           //
-      ("time-limit", text("S"), "stop after S seconds with what is known of the places");
+      ("time-limit", text("S"), "stop after S seconds with the results so far");
   options.add(task_options()).add(problem_options());
   return options;
 }
@@ -44,7 +44,7 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   stations.plan.threads = common.threads;
   stations.every_set = values.count("pairs") > 0;
   if (stations.every_set) {
-    if (stations.choose) throw InputError({}, "--choose stands beside --pairs", "one of them");
+    if (stations.choose) throw InputError({}, "--choose and --pairs cannot be combined", "one of them");
     stations.choose = 2;
   }
   const auto engine = engine_of(values, "stations");
@@ -62,7 +62,7 @@ int run_stations(const po::variables_map& values, const Words& positional) {
 Command stations_command() {
   return {"stations",
           "PROBLEM",
-          "Ranks places for the instrument by the plan that each of them allows.",
+          "Ranks places for the instrument by the best plan from each place.",
           stations_command_options,
           "posewright stations examples/cell/problem.yaml --choose 1",
           run_stations,

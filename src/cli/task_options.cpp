@@ -50,7 +50,7 @@ std::optional<TaskEngine::Shard> shard_of(const po::variables_map& values) {
                      std::from_chars(slash + 1, end, shard.parts).ptr == end && slash + 1 != end;
   if (!whole || shard.part < 1 || shard.parts < shard.part || shard.parts > 1000000)
     throw InputError({}, "--shard " + text, "i/n with 1 <= i <= n <= 1000000: 3/40");
-  if (values.count("resume") == 0) throw InputError({}, "--shard without a log", "--resume LOG says where it is kept");
+  if (values.count("resume") == 0) throw InputError({}, "--shard needs a log", "give --resume LOG");
   return shard;
 }
 
@@ -58,15 +58,14 @@ std::optional<TaskEngine::Shard> shard_of(const po::variables_map& values) {
 
 po::options_description resume_option() {
   po::options_description options("Large computations");
-  options.add_options()("resume", text("LOG"),
-                        "keep finished tasks in LOG, and take up those that it has (none: begin it)");
+  options.add_options()("resume", text("LOG"), "record finished tasks in LOG, and skip those already recorded there");
   return options;
 }
 
 po::options_description task_options() {
   po::options_description options = resume_option();
   options.add_options()("shard", text("i/n"),
-                        "do the i-th of n shares of the tasks alone; posewright merge joins the logs");
+                        "compute only the i-th of n shares of the tasks; posewright merge joins the logs");
   return options;
 }
 
@@ -74,7 +73,8 @@ std::unique_ptr<TaskEngine> engine_of(const po::variables_map& values, const std
   const std::shared_ptr<Workers> workers = started_workers();
   const std::optional<TaskEngine::Shard> shard = shard_of(values);
   if (workers->processes() > 1 && values.count("time-limit") > 0)
-    throw InputError({}, "--time-limit with several processes", "each would stop elsewhere; start one process");
+    throw InputError({}, "--time-limit with several processes",
+                     "processes would stop at different tasks; start one process");
   std::unique_ptr<TaskLog> log;
   if (const std::string file = text_of(values, "resume"); !file.empty() && workers->rank() == 0)
     log = std::make_unique<TaskLog>(file, [=] { return computation(values, command, file); });

@@ -72,9 +72,8 @@ std::string validation_text(const Plan& plan) {
   std::string ids;
   for (const PlannedPose& pose : plan.poses)
     if (!pose.measured) ids += (ids.empty() ? "" : ", ") + std::to_string(pose.id);
-  return fmt::format(
-      "\nTo judge the calibration by, not to be fitted: poses {}, by criterion {} on top of the plan's\n", ids,
-      plan.criterion);
+  return fmt::format("\nFor validation, not to be fitted: poses {}, chosen by criterion {} in addition to the plan's\n",
+                     ids, plan.criterion);
 }
 
 }  // namespace

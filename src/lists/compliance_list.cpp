@@ -74,7 +74,7 @@ Eigen::MatrixXd correlations(const ComplianceTable& table) {
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j)
       if (!(std::abs(R(i, j) - (i == j ? 1 : R(j, i))) < correlation_slack) || !(std::abs(R(i, j)) <= 1))
-        throw InputError(table.line(std::size_t(i)), "the correlations are those of no list",
+        throw InputError(table.line(std::size_t(i)), "this is not a matrix of correlations",
                          "symmetric, from -1 to 1, 1 of a line with itself");
   return R.selfadjointView<Eigen::Lower>();
 }

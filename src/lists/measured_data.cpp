@@ -215,7 +215,8 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
     row.q = columns.configuration(i);
     row.y = columns.readings(i);
     if (!row.y.array().isFinite().any()) {
-      data.notes.push_back(fmt::format("{}:{}: nothing was read as a whole; left out", file.string(), row.line));
+      data.notes.push_back(
+          fmt::format("{}:{}: no target was read completely; the row is left out", file.string(), row.line));
       --data.rows;
       continue;
     }

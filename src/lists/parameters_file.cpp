@@ -67,13 +67,12 @@ std::string parameters_note(const std::string& name, const ParametersFile& made_
   const ParametersFile now = parameters_of(problem);
   if (made_at.sha256 == now.sha256) return "";
   if (now.file.empty())
-    return fmt::format("{} was made at the parameters of {}; everything here is at nominal ones (--parameters {})",
-                       name, made_at.file, made_at.file);
+    return fmt::format("{} was made at the parameters of {}; this run uses nominal ones (--parameters {})", name,
+                       made_at.file, made_at.file);
   if (made_at.file.empty())
-    return fmt::format("{} was made at nominal parameters; everything here is at those of {}", name, now.file);
-  return fmt::format(
-      "{} was made at the parameters of {} with sha256 {:.8}…; everything here is at those of {} ({:.8}…)", name,
-      made_at.file, made_at.sha256, now.file, now.sha256);
+    return fmt::format("{} was made at nominal parameters; this run uses those of {}", name, now.file);
+  return fmt::format("{} was made at the parameters of {} with sha256 {:.8}…; this run uses those of {} ({:.8}…)", name,
+                     made_at.file, made_at.sha256, now.file, now.sha256);
 }
 
 void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes) {

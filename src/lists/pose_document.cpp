@@ -241,7 +241,7 @@ class ProgramPoses : public PoseDocument {
     for (const Coordinate& c : coordinates)
       if (c.choice() && c.labels.size() > 1)
         throw InputError({name, 0}, "has no place for the " + c.name + " of a pose",
-                         "a plan, route or list that says it; its result can be exported");
+                         "a plan, route or list with it; its result can be exported");
     poses_.name = name;
     std::vector<int> pose_of_point(program_->points().size(), -1);
     std::vector<std::string> reasons(program_->points().size());
@@ -359,8 +359,7 @@ class ListDocument : public PoseDocument {
       : format_(format), coordinates_(coordinates) {
     if (bytes.find(compensated_mark) != std::string::npos) refuse_twice(name);
     poses_ = read_poses_text(bytes, name, coordinates, format.name);
-    if (format.to_be_filled)
-      poses_.notes.push_back(name + ": what was measured is not taken over into the list that is written");
+    if (format.to_be_filled) poses_.notes.push_back(name + ": measured values are not copied to the written list");
   }
 
   std::string text(const OtherValues& values, const std::string&) const override {

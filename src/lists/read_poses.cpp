@@ -82,10 +82,9 @@ class ColumnMap {
       before = q[joint];
       q[approach] = side;
     }
-    list_.notes.push_back(
-        fmt::format("{} has no column '{}': the order of its poses says from which side {} arrived, "
-                    "{} at the first",
-                    file_, c.name, c.arrives, c.labels.front()));
+    list_.notes.push_back(fmt::format(
+        "{} has no column '{}': the order of its poses gives the side from which {} arrived, {} at the first", file_,
+        c.name, c.arrives, c.labels.front()));
   }
 
   void map_by_name() {
@@ -238,7 +237,7 @@ double as_allowed(double value, const Coordinate& c) {
 std::string margin_note(const std::string& file, const std::vector<int>& ids) {
   constexpr std::size_t most = 8;
   const std::size_t count = std::min(most, ids.size());
-  return fmt::format("{}: {} {} nearer to a limit than the margin that proposed poses keep: {}{}", file, ids.size(),
+  return fmt::format("{}: {} {} nearer to a limit than the margin of proposed poses: {}{}", file, ids.size(),
                      ids.size() == 1 ? "pose is" : "poses are", fmt::join(ids.begin(), ids.begin() + long(count), ", "),
                      ids.size() > most ? ", …" : "");
 }

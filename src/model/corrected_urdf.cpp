@@ -68,7 +68,7 @@ class XacroJoints {
 
  private:
   [[noreturn]] void refuse(const std::string& joint, const std::string& why) const {
-    throw CannotDo(file_ + ": joint '" + joint + "' " + why + "; --urdf writes what xacro made of it");
+    throw CannotDo(file_ + ": joint '" + joint + "' " + why + "; --urdf writes the expanded file");
   }
   std::string_view name_of(std::size_t tag) const {
     const XmlAttribute* name = tags_[tag].find("name");
@@ -96,7 +96,7 @@ std::vector<std::string> stray_mimics(const UrdfDocument& urdf, const std::vecto
     if (joint->mimic == nullptr || in_chain) continue;
     for (const CalibratedValue& value : values)
       if (value.name == joint->mimic->joint_name + ".offset" && value.correction() != 0.0)
-        notes.push_back(left_out_text(value, "joint '" + name + "' beside the chain follows this joint as before"));
+        notes.push_back(left_out_text(value, "joint '" + name + "' outside the chain follows this joint as before"));
   }
   return notes;
 }
@@ -128,7 +128,7 @@ ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place,
   if (has_tip) change(*last, correction.tip.X);
 
   for (const CalibratedValue& v : correction.base.by)
-    result.left_out.push_back(left_out_text(v, "where the robot stands is not part of the robot"));
+    result.left_out.push_back(left_out_text(v, "the pose of the base is not part of the robot"));
   if (!has_tip)
     for (const CalibratedValue& v : correction.tip.by)
       result.left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip() + "'"));

@@ -158,7 +158,7 @@ void JointEffects::add(const JointEffectsSpec& spec, int joint, const std::strin
   }
   if (!spec.temperature) return;
   if (temperature_ < 0)
-    throw InputError(place, "robot.joint_effects: joint '" + c.name + "' drifts with a temperature nobody states",
+    throw InputError(place, "robot.joint_effects: joint '" + c.name + "' has a drift term, but no temperature is given",
                      "robot: temperature: {reference: 20}, in degrees Celsius");
   parameters_.push_back(
       {c.name + ".temperature", c.unit + "/K", 0.0, turns ? drift_tolerance : drift_length_tolerance, Role::interest});

@@ -32,7 +32,7 @@ struct MakeTip {
     if (variant.convention != Convention::frames) {
       if (arm.elastostatic)
         throw CannotDo("variant '" + variant.name +
-                       "': parameters dh and mdh are geometric; name the frames' parameters beside elastostatic ones");
+                       "': parameters dh and mdh are geometric; list frame parameters together with elastostatic ones");
       const bool distal = variant.convention == Convention::dh;
       return std::make_unique<DhChain>(
           denavit_hartenberg(chain, distal ? DhConvention::distal : DhConvention::proximal));
@@ -71,8 +71,8 @@ void require_names_of_their_own(const IdentificationModel& model, const Problem&
     for (const Reading& reading : model.readings())
       if (c.name == reading.name)
         throw InputError(problem.at(problem.robot_line),
-                         "joint '" + c.name + "' is called as a reading of the instrument",
-                         "call the joint or the target otherwise");
+                         "joint '" + c.name + "' has the name of a reading of the instrument",
+                         "rename the joint or the target");
 }
 
 }  // namespace

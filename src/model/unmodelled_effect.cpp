@@ -20,7 +20,7 @@ UnmodelledEffect::UnmodelledEffect(const IdentificationModel& model, const Unmod
     : size_(size), tips_(model.tips()), coordinates_(model.tip_coordinates()) {
   if (tips_ == 0)
     throw CannotDo(
-        "an unmodelled effect moves the tip, and these readings do not tell where one is (joint sensors, differences "
+        "an unmodelled effect moves the tip, but these readings contain no tip position (joint sensors, differences "
         "between loads, a linkage): leave out `unmodelled`");
   for (std::size_t i = 0; i < coordinates_; ++i) {
     const Coordinate& c = model.coordinates()[i];

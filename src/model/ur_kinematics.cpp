@@ -35,12 +35,12 @@ UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, V
     if (joint->type == urdf::Joint::FIXED) continue;
     if (next >= ur_joints.size() || !joint->name.ends_with(ur_joints[next].second))
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
-                     "' is none of a Universal Robots arm (shoulder_pan_joint, shoulder_lift_joint, elbow_joint, "
-                     "wrist_1_joint, wrist_2_joint, wrist_3_joint)");
+                     "' does not belong to a Universal Robots arm (shoulder_pan_joint, shoulder_lift_joint, "
+                     "elbow_joint, wrist_1_joint, wrist_2_joint, wrist_3_joint)");
     if (joint->axis.x != 0 || joint->axis.y != 0 || !(joint->axis.z > 0))
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
-                     "' does not turn about z: the file is for ur_description's arms, whose joints all do; in another "
-                     "URDF its numbers would mean another robot (--urdf corrects this one)");
+                     "' does not turn about z: the file is for ur_description's arms, whose joints all do (use --urdf "
+                     "for this one)");
     const Eigen::Isometry3d X = isometry(joint->parent_to_joint_origin_transform) * correction.joints[next].X;
     const Eigen::Vector3d p = X.translation(), rpy = rpy_of(X.linear());
     result.text += fmt::format("  {}:\n    x: {}\n    y: {}\n    z: {}\n    roll: {}\n    pitch: {}\n    yaw: {}\n",
@@ -52,7 +52,7 @@ UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, V
     throw CannotDo(arm.urdf.string() + " has fewer than the six joints of a Universal Robots arm");
   result.text += "  hash: " + hash + "\n";
   for (const CalibratedValue& v : correction.base.by)
-    result.left_out.push_back(left_out_text(v, "where the robot stands is not part of the robot"));
+    result.left_out.push_back(left_out_text(v, "the pose of the base is not part of the robot"));
   for (const CalibratedValue& v : correction.tip.by)
     result.left_out.push_back(left_out_text(v, "the file ends at wrist_3"));
   for (const CalibratedValue& v : correction.left_out)

@@ -59,7 +59,7 @@ void check_name(const tinyxml2::XMLElement& joint, const std::string& file) {
   for (const char* word : {"pose", "id", "weight", "load_case", "station"})
     if (text == word)
       throw InputError({file, joint.GetLineNum()}, "joint name " + in_quotes(text) + " is a column of its own in lists",
-                       "call the joint otherwise");
+                       "rename the joint");
 }
 
 constexpr std::array<NumberAttribute, 7> shape_attributes = {{{"origin", "xyz", 3},

@@ -21,7 +21,7 @@ void narrow(Coordinate& c, double lower, double upper, const std::string& by, co
   c.periodic = false;
   c.limited_by += (c.limited_by.empty() ? "" : ", ") + by;
   if (!(c.lower < c.upper))
-    throw InputError(place, "nothing is left of the range of joint '" + c.name + "'", "it is narrowed by " + by);
+    throw InputError(place, "no range is left for joint '" + c.name + "'", "it is narrowed by " + by);
 }
 
 /// Hard and soft limits of a joint alone. Soft ones are those of <safety_controller>, where both are 0 none (the
@@ -64,8 +64,8 @@ void bind_follower(Coordinate& master, const urdf::Joint& follower, const Source
   if (follower.type == urdf::Joint::PRISMATIC || factor != std::round(factor)) master.periodic = false;
   if (factor == 0) {
     if (!own.periodic && (offset < own.lower || offset > own.upper))
-      throw InputError(place, "joint '" + follower.name + "' stands beyond its own limits",
-                       "its mimic multiplier is 0, so its offset is where it stands");
+      throw InputError(place, "joint '" + follower.name + "' is beyond its own limits",
+                       "its mimic multiplier is 0, so its offset is its position");
     return;
   }
   if (!own.periodic) {
@@ -102,7 +102,7 @@ class ChainBuilder {
     if (joint.type == urdf::Joint::FIXED) return;
     if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
         joint.type != urdf::Joint::PRISMATIC)
-      throw InputError(place, "joint '" + joint.name + "' is of a type that no arm has",
+      throw InputError(place, "joint '" + joint.name + "' has a type that no arm has",
                        "allowed: revolute, continuous, prismatic, fixed");
     ChainJoint result;
     result.name = joint.name;

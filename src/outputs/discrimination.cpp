@@ -28,13 +28,13 @@ std::string discrimination_text(const Discrimination& test, const std::string& f
   const auto times = [&](const std::optional<int>& k) {
     return k && *k > 1 ? fmt::format("; measured {} times {:.0f} %", *k, 100 * test.wanted) : "";
   };
-  std::string text = fmt::format("If {} is the case, fitting {} leaves residuals of noncentrality {:.4g}", test.truth,
+  std::string text = fmt::format("If {} is true, fitting {} leaves residuals of noncentrality {:.4g}", test.truth,
                                  fitted, test.noncentrality());
   if (test.by_nominal && test.by_tolerance)
     text +=
         fmt::format(" ({:.4g} by nominal values, {:.4g} expected by tolerances)", *test.by_nominal, *test.by_tolerance);
-  else if (test.by_tolerance) text += " (expected, its effects one tolerance off)";
-  if (!test.power) return text + ", but no reading is over to test them by.\n";
+  else if (test.by_tolerance) text += " (expected, for effects of one tolerance)";
+  if (!test.power) return text + ", but no degree of freedom is left for a test.\n";
   text +=
       fmt::format(":\n  a chi-square test of {} degrees of freedom at {:.0f} % rejects {} with {}{}\n",
                   test.degrees_of_freedom(), 100 * test.level, fitted, chance(*test.power), times(test.repetitions));

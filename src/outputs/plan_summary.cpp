@@ -26,7 +26,7 @@ std::string headline(const Plan& plan) {
   const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
   std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
   if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(" ({} fixed)", fixed);
-  if (measured > 0) text += fmt::format(" beside {} that are measured already,", measured);
+  if (measured > 0) text += fmt::format(" in addition to {} measured ones,", measured);
   if (!plan.variant.empty())
     text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);
   text += fmt::format(": {} parameters", kept - nuisance);
@@ -35,8 +35,7 @@ std::string headline(const Plan& plan) {
   text += "\n";
   if (!plan.parameters_file.file.empty())
     text += fmt::format("At the calibrated parameters of {}.\n", plan.parameters_file.file);
-  if (plan.prior)
-    text += "Tolerances count as prior knowledge: σ and log det are those after the measurement with them.\n";
+  if (plan.prior) text += "Tolerances are used as prior knowledge: σ and log det include them.\n";
   return text;
 }
 
@@ -58,15 +57,14 @@ std::string workspace_text(const Certificate::Workspace& w) {
   if (w.settled)
     return fmt::format("Over the whole workspace: {} of the best (by a search for the largest sensitivity, {}).\n",
                        searched_percent(w.efficiency), why);
-  return fmt::format(
-      "Over the whole workspace: no figure, the search for better poses did not come to an end{} ({}).\n",
-      w.at_most < 1 ? fmt::format("; at most {} of the best", at_most_percent(w.at_most)) : "", why);
+  return fmt::format("Over the whole workspace: no figure, the search for better poses was not finished{} ({}).\n",
+                     w.at_most < 1 ? fmt::format("; at most {} of the best", at_most_percent(w.at_most)) : "", why);
 }
 
 std::string certificate_text(const Plan& plan) {
   const Certificate& c = plan.certificate;
   if (!c.proved)
-    return fmt::format("No bound is computed for criterion {}: how near the best plan this is, is not proved.\n",
+    return fmt::format("No bound is computed for criterion {}: the distance to the best plan is not proved.\n",
                        plan.criterion);
   const bool determinant = plan.determinant;
   const std::string as = determinant ? "as informative as" : fmt::format("as good by criterion {} as", plan.criterion);
@@ -108,7 +106,7 @@ std::string curve_text(const Plan& plan) {
                point.rho0 ? shown_value(*point.rho0, "m") : "",
                point.worst_axis ? fmt::format("{:.3f}", *point.worst_axis) : "",
                point.worst_sigma ? fmt::format("{:.3f}", *point.worst_sigma) : "", point.enough ? "yes" : "no"});
-  return "Smallest number of poses that reaches what is required:\n" + table.text();
+  return "Smallest number of poses that meets the requirements:\n" + table.text();
 }
 
 /// Remaining efficiency after the loss of the worst pose.
@@ -118,8 +116,8 @@ std::string reserve_text(const Plan& plan) {
     if (!pose.measured && (worst == nullptr || pose.without < worst->without)) worst = &pose;
   if (worst == nullptr) return {};
   if (worst->without <= 0) return fmt::format("Without pose {} not all parameters can be identified.\n", worst->id);
-  return fmt::format("If one pose fails, at least {} of the plan is left (pose {} would be missed most).\n",
-                     percent(worst->without), worst->id);
+  return fmt::format("If one pose fails, at least {} of the plan remains (worst: pose {}).\n", percent(worst->without),
+                     worst->id);
 }
 
 /// A share of drawn robots and what they have at most.
@@ -140,8 +138,7 @@ std::string robust_text(const Plan& plan) {
   const RobustPlan& robust = *plan.robust;
   const std::string on = aim_text(robust.aim);
   if (robust.efficiency.empty())
-    return "Robots drawn from the tolerances: ended before all of them were looked at; the plan is the nominal "
-           "robot's.\n";
+    return "Robots drawn from the tolerances: stopped before all were evaluated; the plan is for the nominal robot.\n";
   const auto lost = std::count(robust.efficiency.begin(), robust.efficiency.end(), 0.0);
   std::string text = fmt::format(
       "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them below {}, lowest "
@@ -153,7 +150,7 @@ std::string robust_text(const Plan& plan) {
   if (lost > 0) text += fmt::format("It does not determine all parameters of {} of them.\n", lost);
   if (robust.unreached > 0)
     text += fmt::format(
-        "{:.2g} % of the candidates are out of reach or sight for a drawn robot: they tell nothing there.\n",
+        "{:.2g} % of the candidates are out of reach or sight for a drawn robot and add no information there.\n",
         100.0 * double(robust.unreached) / double(robust.draws) /
             std::max<double>(1.0, double(plan.certificate.count)));
   if (!robust.searched) return text;
@@ -161,7 +158,7 @@ std::string robust_text(const Plan& plan) {
     text += fmt::format("The plan for the nominal robot does not determine all parameters of {} of them.\n", missed);
   else
     text += fmt::format("The plan for the nominal robot has {} there: planning for the tolerances {} {:.2f} %.\n",
-                        percent(robust.nominal_value), robust.worth_it() ? "gains" : "is not worth it, it gains",
+                        percent(robust.nominal_value), robust.worth_it() ? "gains" : "is not worthwhile, it gains",
                         100 * robust.gain());
   if (robust.stopped) text += "The search over drawn robots was ended before it was done.\n";
   return text;
@@ -179,7 +176,7 @@ std::string stages_text(const Plan& plan) {
 std::string effect_text(const Plan& plan) {
   if (!plan.unmodelled) return {};
   const PlannedEffect& effect = *plan.unmodelled;
-  std::string text = fmt::format("Allows for an unmodelled effect of {}{}{} that changes over {:.3g} deg.\n",
+  std::string text = fmt::format("Includes an unmodelled effect of {}{}{} that changes over {:.3g} deg.\n",
                                  shown_value(effect.size, "m"), effect.size_assumed ? " (auto)" : "",
                                  effect.rotation > 0 ? " and " + shown_value(effect.rotation, "rad") : "",
                                  effect.length * 180 / std::numbers::pi);
@@ -193,16 +190,13 @@ std::string effect_text(const Plan& plan) {
                 shown_value(by_visits, "m"))
           : shown_value(*effect.by_noise, "m") + " come from noise";
   return text + fmt::format(
-                    "Of the position error {} and {} from the effect; with what is left interpolated between "
-                    "the poses it is {}.\n",
+                    "Of the position error {} and {} from the effect; with residuals interpolated between the poses it "
+                    "is {}.\n",
                     noise, shown_value(*effect.by_effect, "m"), shown_value(*effect.interpolated, "m"));
 }
 
-std::string indices_text(const Plan& plan) {
-  const ObservabilityIndices& o = plan.indices;
-  std::string text = fmt::format("log det {:.6f}", plan.log_det);
-  const bool bounded = plan.certificate.proved && plan.determinant;
-  text += bounded ? fmt::format(" (bound {:.6f})\n", plan.certificate.bound) : "\n";
+std::string accuracy_text(const Plan& plan) {
+  std::string text;
   if (plan.rho0)
     text +=
         fmt::format("Predicted position error after calibration: {} (root mean square over {} test poses, worst {})\n",
@@ -210,14 +204,22 @@ std::string indices_text(const Plan& plan) {
                     shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   if (plan.turn)
     text += fmt::format("Predicted orientation error: {} (root mean square)\n", shown_value(*plan.turn, "rad"));
-  text += effect_text(plan) + (plan.reliance ? reliance_text(*plan.reliance) : "");
+  return text + effect_text(plan) + (plan.reliance ? reliance_text(*plan.reliance) : "");
+}
+
+std::string indices_text(const Plan& plan) {
+  const ObservabilityIndices& o = plan.indices;
+  std::string text = fmt::format("log det {:.6f}", plan.log_det);
+  const bool bounded = plan.certificate.proved && plan.determinant;
+  text += bounded ? fmt::format(" (bound {:.6f})\n", plan.certificate.bound) : "\n";
   text += fmt::format("O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}  ({})\n", o.o1, o.o2, o.o3, o.o4, o.o5,
                       plan.scaling == "none" ? "columns not scaled" : "columns scaled by " + plan.scaling);
   if (plan.by_test_poses && plan.test_errors.size() == 1)
-    text += "A single test pose: the plan crowds around it and says little about other places; give several.\n";
+    text += "A single test pose: the plan is specialised to it; give several.\n";
   if (plan.condition > 1e6)
-    text += fmt::format("Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some directions are hardly measured.\n",
-                        plan.condition);
+    text += fmt::format(
+        "Ill-conditioned: σ1/σm = {:.2g} in units of tolerance; some combinations of parameters are hardly measured.\n",
+        plan.condition);
   return text;
 }
 
@@ -237,7 +239,7 @@ std::string parameter_table(const Plan& plan) {
     if (p.sigma)
       table.row({name(p), shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
                  shown_value(*p.sigma, p.label.unit), fmt::format("{:.3f}", *p.sigma / p.label.tolerance), verdict(p)});
-  return table.text() + "Predicted σ: what the stated noise alone leaves, if the model is complete.\n";
+  return table.text() + "Predicted σ: from the stated noise alone, for a complete model.\n";
 }
 
 std::string dropped_text(const Plan& plan) {
@@ -265,10 +267,10 @@ std::string cell_text(const CellNotes& cell) {
     for (const std::string& pair : list) text += (&pair == &list.front() ? lead : ", ") + pair;
     if (!list.empty()) text += "\n";
   };
-  pairs("Not checked, because they touch wherever the robot stands: ", cell.always_touching);
+  pairs("Not checked, because they touch in every configuration: ", cell.always_touching);
   for (const BodyDistance& pair : cell.reduced)
-    text += fmt::format("{} and {} are near by design and keep {} of the clearance asked for.\n", pair.first,
-                        pair.second, shown_value(pair.distance, "m"));
+    text += fmt::format("{} and {} are close by design; their clearance is reduced to {}.\n", pair.first, pair.second,
+                        shown_value(pair.distance, "m"));
   if (cell.margin > 0)
     text +=
         fmt::format("Until the robot is calibrated, clearances are up to {} wider.\n", shown_value(cell.margin, "m"));
@@ -285,7 +287,7 @@ std::string margins_text(const std::vector<LimitMargin>& margins) {
   for (const LimitMargin& m : margins)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", m.name, shown_value(m.margin, m.unit));
   const bool standard = std::any_of(margins.begin(), margins.end(), [](const LimitMargin& m) { return m.standard; });
-  return fmt::format("Proposed poses stay off the limits: {}{}.\n", text,
+  return fmt::format("Proposed poses keep a distance to the limits: {}{}.\n", text,
                      standard ? " (workspace: joints: margin; 0: not)" : "");
 }
 
@@ -314,10 +316,10 @@ std::string search_text(const Plan& plan) {
 }  // namespace
 
 std::string plan_summary(const Plan& plan) {
-  return headline(plan) + certificate_text(plan) + robust_text(plan) + reserve_text(plan) + indices_text(plan) +
+  return headline(plan) + accuracy_text(plan) + certificate_text(plan) + robust_text(plan) + reserve_text(plan) +
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
-         stages_text(plan) + search_text(plan);
+         stages_text(plan) + indices_text(plan) + search_text(plan);
 }
 
 }  // namespace posewright

@@ -15,7 +15,7 @@ constexpr double rank_tolerance = 1e-11;
 void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& parameters) {
   for (Eigen::Index j = 0; j < r.cols(); ++j)
     if (!(std::abs(r(j, j)) > rank_tolerance * r.col(j).norm()))
-      throw CannotDo("these poses do not identify all parameters: nothing separates " +
+      throw CannotDo("these poses do not identify all parameters: they do not separate " +
                      parameters[std::size_t(j)].name + " from the others");
 }
 

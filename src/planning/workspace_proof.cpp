@@ -105,10 +105,7 @@ std::string choose(Approach& approach, const WorkspaceBound& found, const Weight
   if (loose > most_loose && !approach.noise_by_boxes)
     return forms.forms.front()->random_columns() > 0 && !options.proof.seconds
                ? "large noise of the joints takes a minute to bound: --proof-time 60"
-               : fmt::format(
-                     "noise of the joints or of the visit, beside the instrument's, or deflections are bounded "
-                     "{:.0f} % too high",
-                     100 * loose);
+               : fmt::format("the bound of joint noise, visit noise or deflections is {:.0f} % too high", 100 * loose);
   if (!options.proof.seconds && grows_with_distance(forms))
     return "noise that grows with the distance takes minutes to bound: --proof-time 300";
   return {};

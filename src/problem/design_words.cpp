@@ -19,7 +19,7 @@ std::optional<RobustSpec> robust_spec(std::optional<int> draws, const std::strin
   robust.draws = draws.value_or(robust.draws);
   if (measure.empty()) return robust;
   const std::optional<RobustAim> aim = robust_aim_of(measure);
-  if (!aim) throw InputError({}, option + " '" + measure + "' is no measure", robust_aims_allowed);
+  if (!aim) throw InputError({}, option + " '" + measure + "' is not a measure", robust_aims_allowed);
   robust.aim = *aim;
   return robust;
 }

@@ -59,7 +59,7 @@ BodySpec read_body(const Value& value, const std::string& name, const std::files
     body.shape = read_mesh(section, *mesh, folder);
     ++found;
   } else if (const Value* scale = section.find("scale")) {
-    scale->fail("stands without mesh", "only meshes are scaled");
+    scale->fail("needs a mesh", "only meshes are scaled");
   }
   if (found != 1) value.fail("has " + std::to_string(found) + " shapes", "one of box, cylinder, sphere, plane, mesh");
   if (const Value* given = section.find("name")) body.name = given->exact_name().value;
@@ -91,7 +91,7 @@ void read_obstacles(const Value& value, const std::filesystem::path& folder, std
     collision.obstacles.push_back(
         read_body(item, "obstacle " + std::to_string(collision.obstacles.size() + 1), folder));
     if (!names.insert(collision.obstacles.back().name).second)
-      item.fail("is called " + in_quotes(collision.obstacles.back().name), "every name is allowed once");
+      item.fail("repeats the name " + in_quotes(collision.obstacles.back().name), "every name is allowed once");
   }
 }
 
@@ -100,7 +100,7 @@ std::vector<BodySpec> read_tool(const Value& value, const std::filesystem::path&
   for (const Value& item : value.items("a list of shapes is expected")) {
     bodies.push_back(read_body(item, "tool " + std::to_string(bodies.size() + 1), folder));
     if (!names.insert(bodies.back().name).second)
-      item.fail("is called " + in_quotes(bodies.back().name), "every name is allowed once");
+      item.fail("repeats the name " + in_quotes(bodies.back().name), "every name is allowed once");
   }
   return bodies;
 }

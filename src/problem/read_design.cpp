@@ -159,7 +159,7 @@ DesignSpec read_design(const Value& value, const std::vector<VariantSpec>& varia
   if (const Value* candidates = section.find("candidates")) design.candidates = read_count(*candidates, 10'000'000);
   if (const Value* list = section.find("candidates_from")) {
     design.candidates_from = folder / list->text("a file is expected");
-    if (section.has("candidates")) list->fail("stands beside candidates", "drawn candidates or those of a list");
+    if (section.has("candidates")) list->fail("cannot be combined with candidates", "leave one of them out");
   }
   if (const Value* restarts = section.find("restarts")) design.restarts = read_count(*restarts, 1'000'000);
   if (const Value* repeats = section.find("repeats")) design.repeats = read_repeats(*repeats);

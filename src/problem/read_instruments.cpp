@@ -26,7 +26,7 @@ DistanceMeasurement read_distance(const Section& section) {
   distance.targets = read_targets(section.at("targets"));
   if (const Value* between = section.find("between")) {
     between->choice({"configurations"});
-    if (section.has("anchors")) between->fail("stands beside anchors", "one of anchors, between is allowed");
+    if (section.has("anchors")) between->fail("cannot be combined with anchors", "one of anchors, between is allowed");
   } else {
     distance.anchors = read_targets(section.at("anchors"));
   }

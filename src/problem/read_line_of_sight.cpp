@@ -79,9 +79,9 @@ LineOfSightSpec read_line_of_sight(const Value& value) {
     for (const yaml::Entry& entry : Section(*normals).entries())
       sight.normals.emplace_back(entry.key, read_direction(entry.value));
   if (sight.acceptance && sight.normals.empty())
-    section.at("acceptance").fail("stands without normals", "the directions in which the targets face are needed");
+    section.at("acceptance").fail("needs normals", "the directions in which the targets face are needed");
   if (!sight.acceptance && !sight.normals.empty())
-    section.at("normals").fail("stand without acceptance", "the largest angle of incidence is needed");
+    section.at("normals").fail("need acceptance", "the largest angle of incidence is needed");
   if (const Value* beam = section.find("beam")) sight.beam = beam->number(Quantity::length, Sign::positive);
   if (const Value* radius = section.find("target_radius"))
     sight.target_radius = radius->number(Quantity::length, Sign::not_negative);
@@ -100,7 +100,7 @@ StationChoiceSpec read_station_choice(const Value& value) {
   choice.line = value.line();
   if (const Value* among = section.find("among")) choice.list = read_stations(*among);
   if (const Value* box = section.find("box")) {
-    if (!choice.list.empty()) box->fail("stands beside among", "one of among, box is allowed");
+    if (!choice.list.empty()) box->fail("cannot be combined with among", "one of among, box is allowed");
     choice.list = read_grid(Section(*box));
   }
   if (choice.list.empty()) value.fail("names no place", "one of among, box is needed");

@@ -186,7 +186,7 @@ Repeatability read_repeatability(const Value& value, const std::string& type) {
   const Measured given = value.measured({Quantity::length}, Sign::not_negative);
   if (type == "camera" && given.quantity == Quantity::number && given.value > 0)
     value.fail("is a plain number beside a noise in pixels",
-               "how far the robot stands off, with its unit: " + allowed_units({Quantity::length}));
+               "random offset of the robot, with its unit: " + allowed_units({Quantity::length}));
   return {given.value, 0.0, 0.0};
 }
 

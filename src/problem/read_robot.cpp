@@ -39,12 +39,12 @@ std::vector<JointEffectsSpec> read_joint_effects(const Value& value) {
     if (const Value* ratio = section.find("gear_ratio")) {
       effects.gear_ratio = ratio->number(Quantity::number, Sign::positive);
       if (effects.eccentricity && (*effects.gear_ratio == 1 || *effects.gear_ratio == 2))
-        ratio->fail("is a harmonic of eccentricity, too", "another ratio, or one of both");
+        ratio->fail("is a harmonic of eccentricity, too", "another ratio, or only one of them");
     }
     if (const Value* coupling = section.find("coupling")) effects.coupling = coupling->texts();
     if (const Value* backlash = section.find("backlash")) effects.backlash = backlash->flag();
     if (const Value* overrun = section.find("overrun")) {
-      if (!effects.backlash) overrun->fail("stands without backlash", "backlash: yes");
+      if (!effects.backlash) overrun->fail("needs backlash", "backlash: yes");
       effects.overrun = overrun->measured({Quantity::angle, Quantity::length}, Sign::positive);
     }
     if (const Value* temperature = section.find("temperature")) effects.temperature = temperature->flag();
@@ -73,7 +73,7 @@ TemperatureSpec read_temperature(const Value& value) {
 
 void read_xacro(const Section& robot, const Value& urdf, SerialArmSpec& arm) {
   const Value* arguments = robot.find("xacro");
-  if (arguments != nullptr && !is_xacro(arm.urdf)) arguments->fail("stands beside a URDF", "urdf: FILE.xacro");
+  if (arguments != nullptr && !is_xacro(arm.urdf)) arguments->fail("needs a xacro file", "urdf: FILE.xacro");
   if (!is_xacro(arm.urdf)) return;
   if (arguments != nullptr)
     for (const yaml::Entry& entry : Section(*arguments).entries())
@@ -94,8 +94,9 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
   if (const Value* srdf = robot.find("srdf")) arm.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
   if (const Value* group = robot.find("group")) {
     arm.group = group->exact_name();
-    if (!arm.srdf) group->fail("stands without srdf", "srdf: FILE");
-    if (robot.has("base") || robot.has("tip")) group->fail("stands beside base or tip", "group, or base and tip");
+    if (!arm.srdf) group->fail("needs srdf", "srdf: FILE");
+    if (robot.has("base") || robot.has("tip"))
+      group->fail("cannot be combined with base or tip", "group, or base and tip");
   }
   if (const Value* base = robot.find("base")) arm.base = base->exact_name();
   if (const Value* tip = robot.find("tip")) arm.tip = tip->exact_name();
@@ -150,11 +151,12 @@ Placement read_placement(const Section& section) {
 RobotSpec read_robot(const Value& value, const std::filesystem::path& file, const Packages& packages) {
   const Section robot(value);
   const Value* model = robot.find("model");
-  if (model != nullptr && robot.has("urdf")) model->fail("stands beside robot.urdf", "one of urdf, model is allowed");
+  if (model != nullptr && robot.has("urdf"))
+    model->fail("cannot be combined with robot.urdf", "one of urdf, model is allowed");
   if (model != nullptr) return read_model(*model, robot);
   if (!robot.has("urdf")) {
     robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model"});
-    value.fail("has neither urdf nor model", "one of both is required");
+    value.fail("has neither urdf nor model", "one of them is required");
   }
   return read_serial_arm(robot, file, packages);
 }

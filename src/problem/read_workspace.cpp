@@ -90,7 +90,7 @@ ToolBoxSpec read_tool_box(const Section& tool) {
       box.upper[k] = range.upper;
       any = true;
     }
-  if (!any) tool.value().fail("limits nothing", "at least one of x, y, z is needed");
+  if (!any) tool.value().fail("has no limits", "at least one of x, y, z is needed");
   return box;
 }
 
@@ -125,7 +125,7 @@ std::vector<std::pair<SamplerKind, double>> read_samplers(const Section& section
       if (number > 1e6) share->fail("is too large", "shares up to 1000000 are allowed");
       if (number > 0) samplers.emplace_back(kind, number);
     }
-  if (samplers.empty()) section.value().fail("draws nothing", "a share > 0 is needed");
+  if (samplers.empty()) section.value().fail("has no sampler with a share above 0", "a share > 0 is needed");
   return samplers;
 }
 

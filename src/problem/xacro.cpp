@@ -44,7 +44,7 @@ void require_arguments(const SerialArmSpec& arm, const yaml::Value& urdf) {
 /// The line that says what went wrong, which the tool writes last.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of(" \r\n");
-  if (end == std::string::npos) return "it says nothing";
+  if (end == std::string::npos) return "without a message";
   const std::size_t begin = text.rfind('\n', end);
   return one_line(
       text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin)));

@@ -65,8 +65,9 @@ std::string axes_text(const Calibration& c) {
     row.insert(row.end(), {shown(a.after.deviation), shown_to(a.after.mean, a.after.rms, a.after.unit)});
     table.row(std::move(row));
   }
-  std::string text = fmt::format("\nErrors by axis, {} (before) and calibrated (after)\n",
-                                 c.placed ? "with base, tool, targets and nuisance alone" : "nominal");
+  std::string text =
+      fmt::format("\nErrors by axis, {} (before) and calibrated (after)\n",
+                  c.placed ? "uncalibrated, with base, tool, targets and nuisance parameters fitted" : "nominal");
   return text + table.text();
 }
 
@@ -80,7 +81,7 @@ std::string requirements_text(const Calibration& c) {
                r.met()               ? "met"
                : r.hidden_by_noise() ? "hidden by the instrument's noise"
                                      : "NOT MET"});
-  return "\nRequired of the tip, whose pose follows from all targets of a pose\n" + table.text() +
+  return "\nRequirements on the tip, whose pose follows from all targets\n" + table.text() +
          "  by noise alone: in 95 of 100 runs no error is larger\n";
 }
 
@@ -105,7 +106,7 @@ std::string predicted_poses_text(const Calibration& c) {
                   error_or_blank(a.predicted.with_noise.rotation, "rad"), error_or_blank(a.observed.rotation, "rad")});
     table.row(std::move(row));
   }
-  std::string text = "\nPoses that were not fitted: error predicted by the covariance of the estimate, and observed\n";
+  std::string text = "\nValidation poses: errors predicted by the covariance of the estimate, and observed\n";
   text += table.text();
   if (poses.size() > most_shown) text += fmt::format("  {} more: --json\n", poses.size() - most_shown);
   return text;
@@ -114,11 +115,11 @@ std::string predicted_poses_text(const Calibration& c) {
 std::string steps_text(const Calibration& c) {
   if (!c.in_steps) return "";
   std::string text = fmt::format("\nIdentified in steps ({} rounds{})\n", c.in_steps->rounds,
-                                 c.in_steps->settled ? "" : ": NOT SETTLED, the steps pull against each other");
+                                 c.in_steps->settled ? "" : ": NOT CONVERGED, the steps counteract each other");
   for (const IdentificationStep& step : c.in_steps->steps)
     text += fmt::format("  {}: {} parameters; residuals {:.3g} times the stated noise after the first round\n",
                         step.name, step.columns, step.scale);
-  Table table({"parameter", "jointly", "in steps", "apart by σ"},
+  Table table({"parameter", "jointly", "in steps", "difference / σ"},
               {Align::left, Align::right, Align::right, Align::right});
   for (const CalibratedParameter& p : c.parameters) {
     if (!p.in_steps) continue;
@@ -143,7 +144,7 @@ std::string compensator_text(const CompensatorConstants& k) {
              fmt::format("{:.2g} mm", 1e3 * k.free_length_sigma), "", ""});
   std::string text = "\nGravity compensator from the listed compliances, weighted by their covariance\n" + table.text();
   if (k.freedom > 0)
-    text += fmt::format("Chi-square of what the compliances leave: {:.4g} for {} degrees of freedom{}.\n", k.chi_square,
+    text += fmt::format("Chi-square of the compliances' residuals: {:.4g} for {} degrees of freedom{}.\n", k.chi_square,
                         k.freedom,
                         chi_square_exceeded(k.chi_square, k.freedom) < seldom
                             ? ": no spring fits them within their σ, and the σ above are too small"

@@ -26,12 +26,12 @@ std::string shown_share(double value) { return std::isfinite(value) ? fmt::forma
 std::string models_text(const std::vector<Calibration>& models) {
   const bool validated = models.front().held_back > 0;
   std::string text = fmt::format("{} models fitted to the same {} poses", models.size(), models.front().poses);
-  if (validated) text += fmt::format(" and judged at {} that were not fitted", models.front().held_back);
+  if (validated) text += fmt::format(" and validated at {} others", models.front().held_back);
   const ModelChoice choice = choose_model(models);
-  Table fits({"model", "parameters", "residuals / noise", "left out / noise", "with base and tool alone", "AICc",
-              "F against", "p", ""},
-             {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left,
-              Align::right, Align::left});
+  Table fits(
+      {"model", "parameters", "residuals / noise", "new poses / noise", "uncalibrated", "AICc", "F against", "p", ""},
+      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left, Align::right,
+       Align::left});
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Calibration& c = models[i];
     const JudgedModel& m = choice.models[i];
@@ -60,7 +60,7 @@ std::string models_text(const std::vector<Calibration>& models) {
       row.insert(row.begin(), {a.after.axis, c.variant});
       errors.row(std::move(row));
     }
-  return text + fmt::format("\nErrors of the poses {}, before and after\n", validated ? "not fitted" : "fitted") +
+  return text + fmt::format("\nErrors of the {} poses, before and after\n", validated ? "validation" : "fitted") +
          errors.text();
 }
 

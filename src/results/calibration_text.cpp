@@ -33,8 +33,8 @@ std::string headline(const Calibration& c) {
       std::count_if(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.estimated; });
   text += fmt::format("; {} readings for {} parameters\n{}{}, {} evaluations{}\n", c.fit.readings, estimated,
                       weighting_name(c.weighting),
-                      c.prior != Prior::none ? ", tolerances of what was manufactured as prior knowledge" : "",
-                      c.fit.evaluations, c.fit.converged ? "" : ": NOT CONVERGED");
+                      c.prior != Prior::none ? ", manufacturing tolerances as prior knowledge" : "", c.fit.evaluations,
+                      c.fit.converged ? "" : ": NOT CONVERGED");
   return text;
 }
 
@@ -59,7 +59,7 @@ std::string orientations_text(const Calibration& c) {
 /// Remark on one parameter besides its numbers.
 std::string remark_of(const CalibratedParameter& p) {
   if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
-  std::string text = p.weak ? "the data add less than its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
+  std::string text = p.weak ? "determined mostly by its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
   if (!p.profiled) return text;
   return text + fmt::format("{}profile; linear {} to {}", text.empty() ? "" : "; ",
                             shown_to(p.value - p.half_width, p.sigma, p.label.unit),
@@ -85,27 +85,24 @@ std::string parameters_text(const Calibration& c) {
   std::string text = table.text() + orientations_text(c);
   if (std::any_of(c.parameters.begin(), c.parameters.end(),
                   [](const CalibratedParameter& p) { return !p.given.empty(); }))
-    text += "given: right only where what it names is nominal\n";
+    text += "given: valid only if the named parameters are nominal\n";
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return assumed(p); }))
     text +=
-        "assumed: nobody wrote this tolerance; its kind is assumed, its size is what the readings show of parameters "
-        "of "
-        "that kind (--no-prior: it does not count)\n";
+        "assumed: the problem states no tolerance; its size is estimated from all parameters of that kind (--no-prior "
+        "leaves it out)\n";
   if (std::any_of(c.parameters.begin(), c.parameters.end(), [](const CalibratedParameter& p) { return p.profiled; }))
-    text +=
-        "profile: the interval ends where the sum of squares, all other parameters estimated anew, has risen by what "
-        "chance allows\n";
+    text += "profile: interval by profile likelihood; at its ends all other parameters are estimated anew\n";
   const auto left_out = std::count_if(c.parameters.begin(), c.parameters.end(),
                                       [](const CalibratedParameter& p) { return !p.estimated; });
   if (c.automatic && left_out > 0)
-    return text + fmt::format(
-                      "\n{} more parameters of the robot are combinations of these for these data and stay at nominal "
-                      "(--json lists them)\n",
-                      left_out);
+    return text +
+           fmt::format(
+               "\n{} more parameters of the robot are combinations of these and stay nominal (--json lists them)\n",
+               left_out);
   bool first = true;
   for (const CalibratedParameter& p : c.parameters) {
     if (p.estimated) continue;
-    if (first) text += "\nNot estimated, left at nominal: these data cannot identify them separately\n";
+    if (first) text += "\nNot estimated, kept nominal: these data cannot identify them separately\n";
     first = false;
     text += "  " + p.why_not + "\n";
   }
@@ -123,19 +120,20 @@ std::string residuals_text(const Calibration& c) {
   for (const ResidualSet& set : c.residuals)
     for (const ResidualSummary& k : set.kinds) {
       const std::string unit = k.kind == "distance" ? "m" : k.kind;
-      table.row({kind_name(k.kind), set.poses, set.parameters, shown_value(k.rms, unit), shown_value(k.largest, unit),
-                 std::to_string(k.pose), shown_to(k.mean, k.rms, unit)});
+      table.row({kind_name(k.kind), set.poses, set.parameters == "placed" ? "uncalibrated" : set.parameters,
+                 shown_value(k.rms, unit), shown_value(k.largest, unit), std::to_string(k.pose),
+                 shown_to(k.mean, k.rms, unit)});
     }
-  std::string text = "\nResiduals, measured less predicted\n" + table.text();
+  std::string text = "\nResiduals (measured minus predicted)\n" + table.text();
   if (std::any_of(c.residuals.begin(), c.residuals.end(),
                   [](const ResidualSet& s) { return s.parameters == "placed"; }))
-    text += "  placed: only what says where things stand is estimated (base, tool, targets, nuisance)\n";
+    text += "  uncalibrated: only base, tool, targets and nuisance parameters are fitted\n";
   return text;
 }
 
 std::string histogram_text(const std::vector<int>& counts) {
   const int most = std::max(1, *std::max_element(counts.begin(), counts.end()));
-  std::string text = "\nResiduals in units of their own size\n";
+  std::string text = "\nStandardised residuals\n";
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const double from = -4.5 + 0.5 * double(i);
     const std::string label = i == 0                   ? fmt::format("   below {:+.1f}", from + 0.5)
@@ -157,27 +155,25 @@ std::string noise_text(const Calibration& c) {
         "Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
         c.tests.chi_square.statistic, c.fit.freedom, chance_text(c.tests.chi_square.probability), c.fit.scale);
     if (c.fit.noise_factor > 1)
-      text += fmt::format(
-          ".\n  The model or the stated noise is refused; σ and intervals above count {:.3g} times the noise, which is "
-          "what the residuals show.\n",
-          c.fit.noise_factor);
+      text += fmt::format(".\n  The chi-square test rejects model or noise; σ and intervals are scaled by {:.3g}.\n",
+                          c.fit.noise_factor);
     else if (c.tests.chi_square.probability < seldom)
-      text += ".\n  The noise is smaller than stated; σ and intervals above still count what was stated.\n";
-    else text += ": as they should be.\n";
+      text += ".\n  The noise is smaller than stated; σ and intervals still use the stated noise.\n";
+    else text += ", as expected.\n";
   } else if (c.fit.scale_known) {
-    text += "No degrees of freedom are left: σ rest on the stated noise, and nothing tests it.\n";
+    text += "No degrees of freedom are left: σ use the stated noise, which cannot be tested.\n";
   } else {
     text += fmt::format("Noise estimated from the residuals: {:.3g} times the stated one ({} degrees of freedom).\n",
                         c.fit.scale, c.fit.freedom);
   }
   if (c.lack_of_fit.possible)
     text += fmt::format(
-        "Lack of fit: F = {:.3g} (p {}) of residuals against the scatter of readings within a pose and what is stated "
-        "to stay at one{}.\n",
+        "Lack of fit: F = {:.3g} (p {}), residuals against the scatter of repeated readings and the stated "
+        "repeatability{}.\n",
         c.lack_of_fit.statistic, chance_text(c.lack_of_fit.probability),
         c.lack_of_fit.probability < seldom
-            ? ": more stays at a pose than is stated (repeatability of the robot, a missing effect)"
-            : ": they explain the residuals");
+            ? ": errors common to a pose exceed the stated ones (repeatability, or a missing effect)"
+            : ": both explain the residuals");
   return text;
 }
 
@@ -186,7 +182,7 @@ std::string effects_text(const Calibration& c) {
   constexpr std::size_t most = 5;
   if (c.effects.empty()) return {};
   using A = Table::Align;
-  Table table({"effect left out", "explains", "degrees of freedom", "F", "p", "p of the best of all"},
+  Table table({"unfitted effect", "explains", "degrees of freedom", "F", "p", "p, adjusted"},
               {A::left, A::right, A::right, A::right, A::right, A::right});
   for (std::size_t i = 0; i < std::min(most, c.effects.size()); ++i) {
     const ScoreTest& t = c.effects[i];
@@ -196,19 +192,18 @@ std::string effects_text(const Calibration& c) {
   const ScoreTest& best = c.effects.front();
   return "\n" + table.text() +
          (best.corrected < seldom
-              ? fmt::format(
-                    "{} explains {:.1f} % of the squared residuals: estimate it too, and see whether poses that "
-                    "are left out are predicted better.\n",
-                    best.name, 100 * best.share)
-              : fmt::format("None of {} effects that are not fitted explains more than chance.\n", c.effects.size()));
+              ? fmt::format("{} explains {:.1f} % of the squared residuals: estimate it too, and compare the errors at "
+                            "new poses.\n",
+                            best.name, 100 * best.share)
+              : fmt::format("None of {} unfitted effects explains a significant part of the residuals.\n",
+                            c.effects.size()));
 }
 
 std::string left_out_text(const Calibration& c) {
   if (c.left_out.groups == 0) return "";
-  if (!std::isfinite(c.left_out.estimated)) return "Poses left out cannot be predicted: " + c.left_out.why_not + "\n";
+  if (!std::isfinite(c.left_out.estimated)) return "No cross-validation: " + c.left_out.why_not + "\n";
   return fmt::format(
-      "Poses left out ({} times) are predicted to {:.3g} times the stated noise, with base and tool alone to "
-      "{:.3g}.\n",
+      "Errors at new poses (cross-validation, {} groups): {:.3g} times the stated noise; uncalibrated {:.3g} times.\n",
       c.left_out.groups, c.left_out.estimated, c.left_out.placed);
 }
 

@@ -19,7 +19,7 @@ constexpr double no_bias = 1e-9;
 
 std::string headline(const Comparison& c) {
   std::string text =
-      fmt::format("{} variant{}, {} plan{}; {} candidates that every variant can take\n", c.variants.size(),
+      fmt::format("{} variant{}, {} plan{}; {} candidates feasible for every variant\n", c.variants.size(),
                   c.variants.size() == 1 ? "" : "s", c.plans.size(), c.plans.size() == 1 ? "" : "s", c.candidates);
   if (!c.method.empty())
     text += fmt::format("Plans searched for each variant alone: criterion {}, method {}.\n", c.criterion, c.method);
@@ -31,7 +31,7 @@ std::string ended_early(const Comparison& c) {
   if (!c.interrupted) return {};
   std::string text = fmt::format("Ended early: {} of {} plans", c.plans.size(), c.plans.size() + c.not_planned.size());
   if (!c.not_planned.empty()) text += fmt::format(", none for {}", fmt::join(c.not_planned, ", "));
-  return text + "; biases and whether more parameters pay are left out.\n";
+  return text + "; biases and the value of more parameters are left out.\n";
 }
 
 std::string variants_text(const Comparison& c) {
@@ -69,7 +69,7 @@ std::string efficiency_text(const Comparison& c) {
     }
     table.row(cells);
   }
-  return "D-efficiency, at least: of the best plan of as many of these candidates for the variant\n" + table.text() +
+  return "D-efficiency, lower bound: against the variant's best plan of as many of these candidates\n" + table.text() +
          notes;
 }
 
@@ -112,8 +112,7 @@ std::string reliance_text(const Comparison& c) {
   }
   if (any == nullptr) return "";
   return fmt::format(
-             "\nPosition error at {} {} if the variant is complete, and with a smooth effect that it lacks of 1, 2 and "
-             "4 "
+             "\nPosition error at {} {} for a complete variant, and with a smooth unmodelled effect of 1, 2 and 4 "
              "times the noise of a pose\n",
              any->places, any->at_test_poses ? "test poses" : "candidates") +
          table.text();
@@ -138,16 +137,16 @@ std::string alias_lines(const Comparison& c) {
     table.row({a.fitted, a.truth, a.plan, worst->label.name, shown_value(worst->shift, worst->label.unit),
                fmt::format("{:.3g}", worst->shift / worst->sigma), a.rho0 ? shown_value(a.rho0_shift, "m") : ""});
   }
-  return any ? "\nBias to first order, where the truth has other nominal values than what is fitted (--truth V: in "
+  return any ? "\nBias to first order, if the true nominal values differ from the fitted variant's (--truth V: in "
                "full)\n" +
                    table.text()
              : "";
 }
 
 std::string alias_in_full(const VariantAlias& a) {
-  std::string text = fmt::format("\n{} fitted with {} while {} is the case: ", a.fitted, a.plan, a.truth);
+  std::string text = fmt::format("\n{} fitted with {} while {} is true: ", a.fitted, a.plan, a.truth);
   if (!a.why_not.empty()) return text + a.why_not + "\n";
-  if (a.sources.empty()) return text + "it holds no effect that is not fitted; no bias\n";
+  if (a.sources.empty()) return text + "all its effects are fitted; no bias\n";
   const auto spreads =
       std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.spread > 0; });
   text += fmt::format(
@@ -166,7 +165,7 @@ std::string alias_in_full(const VariantAlias& a) {
   }
   text += table.text();
   if (std::any_of(a.parameters.begin(), a.parameters.end(), [](const AliasedParameter& p) { return p.fitted; }))
-    text += "bias by nominal: to first order; fitted: by the whole nonlinear fit to readings without noise\n";
+    text += "bias by nominal: to first order; fitted: by a nonlinear fit to readings without noise\n";
   if (a.rho0)
     text += fmt::format("Error at the test poses: {} by noise, {} by the nominal values, {} by the tolerances\n",
                         shown_value(*a.rho0, "m"), shown_value(a.rho0_shift, "m"), shown_value(a.rho0_spread, "m"));
@@ -188,13 +187,13 @@ std::string worth_text(const ExtraWorth& w) {
   const std::string what = places ? "error at the test poses" : "error of the shared parameters in tolerances";
   std::string text = w.with + " over " + w.without + ": ";
   if (!w.worth()) {
-    text += "cannot be said: " + w.why_not;
+    text += "unknown: " + w.why_not;
     if (w.error_with && w.noise_without)
       text += fmt::format("; {} by noise alone {} against {}", what, shown(*w.error_with), shown(*w.noise_without));
     return text;
   }
   text += *w.worth() ? "pays" : "does not pay, even";
-  return text + fmt::format(" if {} is the case: {} {} with {}, {} without ({} noise, {} bias)", w.with, what,
+  return text + fmt::format(" if {} is true: {} {} with {}, {} without ({} noise, {} bias)", w.with, what,
                             shown(*w.error_with), names_of(w.extra), shown(*w.error_without()), shown(*w.noise_without),
                             *w.bias_without < no_bias * *w.noise_without ? "no" : shown(*w.bias_without));
 }
@@ -209,8 +208,8 @@ std::string comparison_text(const Comparison& c, bool aliases_in_full) {
   text += "\nDo more parameters pay?\n";
   for (const ExtraWorth& w : c.worths) text += "  " + worth_text(w) + "\n";
   return text +
-         "To first order, with tolerances and nominal values as the problem file has them. Which variant is the case\n"
-         "only measurements can show that; effects that neither has are in no figure.\n";
+         "To first order, with tolerances and nominal values of the problem file. Only measurements can show\nwhich "
+         "variant is true; effects missing in both variants are not included.\n";
 }
 
 }  // namespace posewright

@@ -90,7 +90,7 @@ std::string words_of(Treatment treatment) {
 /// Every motion and point of a program, with the reason where it is not compensated.
 std::string account_text(const ProgramAccount& program) {
   std::string text =
-      fmt::format("\n{} ({}): {} compensated, {} left on purpose, {} not compensated, {} not understood\n",
+      fmt::format("\n{} ({}): {} compensated, {} kept on purpose, {} not compensated, {} not understood\n",
                   program.file, program.format, program.count(Treatment::compensated), program.count(Treatment::left),
                   program.count(Treatment::not_compensated), program.count(Treatment::not_understood));
   Table table({"line", "motion or point", "", ""},

@@ -48,7 +48,7 @@ std::string accuracy_of(const ListChange& change) {
 std::string drop_text(const ListChange& change) {
   std::string ids;
   for (const int id : change.poses) ids += (ids.empty() ? "" : ", ") + std::to_string(id);
-  return fmt::format("Drop first: {} ({} is left{}).\n", ids, percent(change.efficiency), accuracy_of(change));
+  return fmt::format("Drop first: {} ({} remains{}).\n", ids, percent(change.efficiency), accuracy_of(change));
 }
 
 std::string add_text(const ListChange& change) {

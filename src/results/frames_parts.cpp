@@ -27,7 +27,7 @@ std::string frames_text(const Calibration& c) {
     for (const double part : {q.x(), q.y(), q.z(), q.w()}) cells.push_back(fmt::format("{:.8f}", part));
     table.row(cells);
   }
-  return "\nWhere frames stand by the estimate, and how they are turned\n" + table.text();
+  return "\nEstimated position and orientation of frames\n" + table.text();
 }
 
 nlohmann::ordered_json frames_json(const Calibration& c) {

@@ -22,7 +22,7 @@ std::string length(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres
 
 std::string where(const NextPoses& r) {
   return r.places_stated ? fmt::format("{} test pose{}", r.places, r.places == 1 ? "" : "s")
-                         : fmt::format("{} places through the workspace", r.places);
+                         : fmt::format("{} poses throughout the workspace", r.places);
 }
 
 std::string shown_coordinate(const NamedValue& v) {
@@ -34,7 +34,7 @@ std::string shown_coordinate(const NamedValue& v) {
 std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : unit == "m" ? "mm" : unit; }
 
 std::string now_text(const NextPoint& now, const NextPoses& r) {
-  if (!now.expected) return "there is no place at which to predict an error";
+  if (!now.expected) return "no error can be predicted without a tip or test poses";
   std::string text = fmt::format("the predicted error at the {} is {}", where(r), length(*now.expected));
   if (now.upper) text += fmt::format(", below {} with 95 % confidence", length(*now.upper));
   return text;
@@ -42,17 +42,17 @@ std::string now_text(const NextPoint& now, const NextPoses& r) {
 
 std::string not_determined_text(const NextPoses& r) {
   if (r.measured == 0)
-    return fmt::format("Go on: nothing is measured yet. {}",
-                       r.smallest ? fmt::format("At least {} tell all {} parameters; until then poses are chosen at "
-                                                "nominal values, tolerances as prior knowledge.",
+    return fmt::format("Go on: no pose is measured yet. {}",
+                       r.smallest ? fmt::format("At least {} determine all {} parameters. Until then, poses are chosen "
+                                                "at nominal values, with tolerances as prior knowledge.",
                                                 poses_text(*r.smallest), r.parameters)
-                                  : "Poses are chosen at nominal values, tolerances as prior knowledge.");
+                                  : "Poses are chosen at nominal values, with tolerances as prior knowledge.");
   if (r.told < r.parameters)
     return fmt::format(
-        "Go on: {} too few for a fit, {} of {} parameters are told. Poses are chosen at nominal values, "
+        "Go on: {} too few for a fit, {} of {} parameters are determined. Poses are chosen at nominal values, with "
         "tolerances as prior knowledge.",
         r.measured == 1 ? "1 pose is" : poses_text(r.measured) + " are", r.told, r.parameters);
-  return "Go on: there is no estimate from these poses. Poses are chosen at nominal values.";
+  return "Go on: these poses give no estimate. Poses are chosen at nominal values.";
 }
 
 std::string gain_text(const NextPoses& r) {
@@ -83,7 +83,7 @@ std::string not_met_text(const NextPoses& r) {
     if (worst == nullptr || times(one) > times(*worst)) worst = &one;
   }
   if (worst == nullptr) return {};
-  return fmt::format("; {} of {} not met with 95 % confidence, farthest off {}", open, required_count(r), worst->what);
+  return fmt::format("; {} of {} not met with 95 % confidence, worst: {}", open, required_count(r), worst->what);
 }
 
 std::string requirements_text(const NextPoses& r) {
@@ -170,8 +170,7 @@ std::string next_reason(const NextPoses& r) {
   const std::string required = r.required ? fmt::format("required {}", length(*r.required)) : "";
   if (r.verdict == NextVerdict::reached && r.requirements.size() == 1 && !required.empty())
     return fmt::format("Stop: {}; {}.", now_text(now, r), required);
-  if (r.verdict == NextVerdict::reached)
-    return fmt::format("Stop: all that is required ({}) is met with 95 % confidence.", required_count(r));
+  if (r.verdict == NextVerdict::reached) return fmt::format("Stop: {} met with 95 % confidence.", required_count(r));
   const std::string three =
       r.with_three && r.with_three->expected
           ? fmt::format("{} more would bring it to {}", poses_text(r.with_three->poses - r.measured),
@@ -182,8 +181,8 @@ std::string next_reason(const NextPoses& r) {
                        "T" + now_text(now, r).substr(1), required.empty() ? "" : "; " + required, not_met_text(r),
                        required.empty() || (now.expected && *now.expected <= *r.required)
                            ? ""
-                           : ", which more poses like these do not reach: a better instrument, more readings a pose, "
-                             "or a model with more parameters may");
+                           : ". More poses like these do not reach it; a better instrument, more readings a pose or a "
+                             "larger model may");
   return fmt::format("Go on: {}{}{}.{}", now_text(now, r), required.empty() ? "" : "; " + required, not_met_text(r),
                      gain_text(r));
 }
@@ -191,7 +190,7 @@ std::string next_reason(const NextPoses& r) {
 std::string next_text(const NextPoses& r) {
   std::string text = next_reason(r) + "\n";
   if (r.verdict == NextVerdict::go_on && r.requirements.empty())
-    text += "Nothing is required (design: require, or --required): only a flat curve says stop.\n";
+    text += "No requirement is set (design: require, or --required): only a flat curve ends the loop.\n";
   if (r.requirements.size() > 1 || (r.requirements.size() == 1 && !r.required)) text += "\n" + requirements_text(r);
   text += fmt::format("\n{} measured ({} readings), variant {}, {} parameters", poses_text(r.measured), r.readings,
                       r.variant, r.parameters);
@@ -199,10 +198,11 @@ std::string next_text(const NextPoses& r) {
     text += fmt::format("; residuals {:.2f} times the stated noise, {:.0f} degrees of freedom", r.noise, r.freedom);
   text += ".\n";
   if (r.effect)
-    text += fmt::format("The residuals hold a smooth effect of {} that no parameter describes; it is allowed for.\n",
-                        length(r.effect->size));
+    text += fmt::format(
+        "The residuals contain a smooth effect of {} that no parameter describes; the figures include it.\n",
+        length(r.effect->size));
   const bool stop = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
-  text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "Whoever goes on all the same" : "Next", r.criterion,
+  text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "To continue anyway" : "Next", r.criterion,
                       r.candidates, table_of(r.poses));
   return text;
 }

@@ -61,9 +61,9 @@ std::string near_text(const Observation& o) {
     if (d.terms.size() > most_terms) shown.back().terms.resize(most_terms);
   }
   if (shown.empty()) return {};
-  return "Near dependencies:\n" + equations(shown, o.kept) +
+  return "Nearly inseparable parameters:\n" + equations(shown, o.kept) +
          (more > 0 ? fmt::format("  and {} more, weaker ones (--json has all)\n", more) : "") +
-         "  (a parameter on the left mostly looks like those on its right, the largest terms of which are shown)\n";
+         "  (the effect of the parameter on the left is nearly this combination of others; largest terms only)\n";
 }
 
 /// Parameters on which a kept parameter's value would depend.
@@ -106,7 +106,7 @@ std::string practical_text(const Observation& o) {
                !given_of(o, j).empty()        ? fmt::format("given {}", fmt::join(given_of(o, j), ", "))
                : label.role == Role::nuisance ? "nuisance"
                : worth                        ? "yes"
-                                              : "no: tolerance says more",
+                                              : "no: tolerance is smaller",
                most_like(o, int(j))});
   }
   text += table.text();
@@ -127,9 +127,9 @@ std::string verdict_text(const Observation& o) {
   std::string text = fmt::format("Variant {}: {} of {} parameters can be identified", o.variant, kept(Role::interest),
                                  all(Role::interest));
   if (all(Role::nuisance) > 0)
-    text += fmt::format(", beside {} of {} nuisance parameters", kept(Role::nuisance), all(Role::nuisance));
+    text += fmt::format(", and {} of {} nuisance parameters", kept(Role::nuisance), all(Role::nuisance));
   return text + (o.smallest_poses ? fmt::format("; {} poses at least.\n", *o.smallest_poses)
-                                  : "; from how many poses, the pool cannot show: draw more candidates.\n");
+                                  : "; too few candidates to determine the smallest number of poses: draw more.\n");
 }
 
 }  // namespace
@@ -139,8 +139,8 @@ std::string observation_text(const Observation& o, bool with_singular_values) {
   std::string text = verdict_text(o) + fmt::format("Rank {} of {} in all, from {} configurations × {} rows.\n",
                                                    found.rank, o.parameters.size(), o.configurations, o.rows);
   if (o.exact_rank != found.rank)
-    text += fmt::format("  ({} by exact arithmetic; {} more are separated only by less than 1e-4 of their effect)\n",
-                        o.exact_rank, o.exact_rank - found.rank);
+    text += fmt::format("  ({} exact; {} more differ by less than 1e-4 of their effect)\n", o.exact_rank,
+                        o.exact_rank - found.rank);
   if (with_singular_values)
     text += "Singular values of G, columns in units of tolerance:\n" + spectrum_text(found.singular_values);
   text += fmt::format("Pool: O1 {:.4g}  O2 {:.4g}  O3 {:.4g}  O4 {:.4g}  O5 {:.4g}\n", o.indices.o1, o.indices.o2,

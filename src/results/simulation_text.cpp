@@ -15,32 +15,32 @@ using Align = Table::Align;
 std::string truth_noise_text(const TruthNoise& noise) {
   if (!noise.differs()) return "";
   std::vector<std::string> parts;
-  if (noise.repeatability) parts.push_back("its tip stands off by " + shown_value(*noise.repeatability, "m"));
-  if (noise.independent) parts.push_back("every target on its own by " + shown_value(*noise.independent, "m"));
+  if (noise.repeatability) parts.push_back("tip " + shown_value(*noise.repeatability, "m"));
+  if (noise.independent) parts.push_back("single targets " + shown_value(*noise.independent, "m"));
   if (noise.joints)
-    parts.push_back("its joint readings are off by " +
+    parts.push_back("joint readings " +
                     shown_value(noise.joints->value, noise.joints->quantity == Quantity::length ? "m" : "rad"));
-  return fmt::format("Noise of the measured robot (1σ), not the one stated: {}\n", fmt::join(parts, ", "));
+  return fmt::format("Noise of the simulated robot (1σ), other than stated: {}\n", fmt::join(parts, ", "));
 }
 
 std::string headline(const Simulation& s, const SimulateOptions& options) {
   const ExperimentOptions& e = options.experiment;
   std::string text = fmt::format("{} virtual calibrations of {} with the {} poses of {}\n", s.summary.fitted, s.variant,
                                  s.poses, s.plan);
-  if (s.interrupted) text += fmt::format("Stopped early: {} draws were asked for.\n", s.summary.asked);
+  if (s.interrupted) text += fmt::format("Stopped early, before all {} draws.\n", s.summary.asked);
   text += "True parameters: ";
   if (e.exact) text += "the nominal ones of " + s.truth;
   else if (options.truth_nominal)
-    text += "nominal as in " + s.truth + ", one tolerance (1σ) off where " + s.variant + " estimates";
-  else text += "of " + s.truth + ", one tolerance (1σ) off";
+    text += "nominal as in " + s.truth + ", with deviations of one tolerance (1σ) where " + s.variant + " estimates";
+  else text += "of " + s.truth + ", with deviations of one tolerance (1σ)";
   text += fmt::format("; weights: {}; {} readings a draw\n", weighting_word(e.fit.weighting), s.readings);
   text += truth_noise_text(options.truth_noise);
-  if (s.hidden > 0) text += fmt::format("{} readings more are of targets that cannot be seen.\n", s.hidden);
+  if (s.hidden > 0) text += fmt::format("{} more readings belong to hidden targets.\n", s.hidden);
   if (e.missing > 0)
-    text += fmt::format("{:.3g} % of the targets are missing, at random; the prediction counts on that.\n",
-                        100 * e.missing);
+    text +=
+        fmt::format("{:.3g} % of the targets are missing, at random; the prediction includes that.\n", 100 * e.missing);
   if (e.outliers > 0)
-    text += fmt::format("{:.3g} % of the targets are {:.3g} σ off.\n", 100 * e.outliers, e.outlier_size);
+    text += fmt::format("{:.3g} % of the targets have errors of {:.3g} σ.\n", 100 * e.outliers, e.outlier_size);
   return text;
 }
 

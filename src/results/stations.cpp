@@ -36,7 +36,7 @@ bool looked_at(const StationRank& rank) { return !rank.stopped || rank.why_not.e
 std::string ended_early(const std::vector<StationRank>& ranks) {
   const auto count = [&](auto&& which) { return std::count_if(ranks.begin(), ranks.end(), which); };
   if (count([](const StationRank& r) { return r.stopped; }) == 0) return {};
-  return fmt::format("Ended early: {} of {} looked at, {} planned in full.\n", count(looked_at), ranks.size(),
+  return fmt::format("Ended early: {} of {} scored, {} planned in full.\n", count(looked_at), ranks.size(),
                      count([](const StationRank& r) { return r.in_full; }));
 }
 

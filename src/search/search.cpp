@@ -280,7 +280,7 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
     searched.why_not =
         !proof.ended.empty() ? "the proof was " + proof.ended
         : !proof.largest_forbidden_by.empty()
-            ? "the proof counts poses that are forbidden by what it does not know: " + proof.largest_forbidden_by
+            ? "the proof includes poses that are forbidden by conditions outside it: " + proof.largest_forbidden_by
             : "the bound of the noise is loose";
     searched.boxes = proof.boxes;
     searched.limits = proof.limits;

@@ -285,7 +285,8 @@ Design best_design(SpreadCandidates& candidates, const SpreadRequest& request, c
     design.take(best.members, chosen);
   }
   if (best.members.empty())
-    throw CannotDo("no set of " + std::to_string(request.poses) + " candidates was found that tells all parameters");
+    throw CannotDo("no set of " + std::to_string(request.poses) +
+                   " candidates was found that identifies all parameters");
   return best;
 }
 

@@ -251,7 +251,8 @@ TestConfigurations test_configurations(const Problem& seen, const Identification
       return reach(points_from(spec.file), seen, model, workspace, load, seed);
     if (spec.load_case)
       throw InputError(seen.at(spec.load_case->line),
-                       "design.test_poses.load_case stands beside a file of configurations", "its column load_case");
+                       "design.test_poses.load_case cannot be combined with a file of configurations",
+                       "use the file's column load_case");
     PoseList list = read_poses(spec.file, workspace.coordinates());
     return {std::move(list.configurations), std::move(list.weights)};
   }

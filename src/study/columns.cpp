@@ -65,8 +65,9 @@ ResolvedColumns resolve_columns(const IdentificationModel& model, const Configur
   options.tiers = all.tiers;
   const Identifiability found = identifiability(sample, all.parameters, options);
   if (found.rank == 0)
-    throw CannotDo("variant '" + variant.name + "': the instrument reads nothing that a parameter moves, at none of " +
-                   std::to_string(sample.count()) + " configurations; where does it stand, and what is in its sight?");
+    throw CannotDo("variant '" + variant.name + "': no parameter changes a reading of the instrument at any of " +
+                   std::to_string(sample.count()) +
+                   " configurations; check position and line of sight of the instrument");
   for (const Dependency& d : found.dependencies) {
     resolved.dropped.push_back(all.parameters[std::size_t(d.dropped)]);
     resolved.reasons.push_back(describe(d, all.parameters));

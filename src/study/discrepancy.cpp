@@ -29,9 +29,9 @@ Effects checked_effects(const Problem& problem, const Study& study, const Settin
     throw InputError(place, "the truth '" + truth.name + "' is the variant that is fitted", "another variant");
   const Variant other = place_variant(problem, truth, study.cell);
   if (!one_catalogue(*fitted.model, *other.model))
-    throw InputError(
-        place, "variants '" + fitted.spec->name + "' and '" + truth.name + "' do not share one catalogue of parameters",
-        "a truth in the same convention");
+    throw InputError(place,
+                     "variants '" + fitted.spec->name + "' and '" + truth.name + "' use different kinds of parameters",
+                     "a truth in the same convention");
   // Where the truth's own columns depend on one another matters to whoever fits it; nobody does here.
   const VariantColumns columns =
       resolve_columns(*fitted.model, study.configurations, problem, truth, true, settings.planner.threads).columns;
@@ -129,10 +129,10 @@ void require_a_residual(const Study& study, const Discrepancy& found, const Sett
   if (!find_criterion(settings.criterion)->needs_residual || settings.poses == 0 || study.first().known_before ||
       settings.poses * rows > own)
     return;
-  throw CannotDo(fmt::format(
-      "{} poses give {} equations for {} parameters: no reading is left to distinguish '{}' from '{}'; at least {} "
-      "poses are needed",
-      settings.poses, settings.poses * rows, own, study.first().spec->name, found.truth, own / rows + 1));
+  throw CannotDo(
+      fmt::format("{} poses give {} equations for {} parameters: no degree of freedom is left to distinguish '{}' from "
+                  "'{}'; at least {} poses are needed",
+                  settings.poses, settings.poses * rows, own, study.first().spec->name, found.truth, own / rows + 1));
 }
 
 }  // namespace
@@ -161,8 +161,8 @@ SearchPart part_with_effects(const Study& study, const Configurations& configura
   const Variant& fitted = study.first();
   const Discrepancy& found = *study.discrepancy;
   if (found.group.columns == 0)
-    throw CannotDo("'" + fitted.spec->name + "' imitates all that '" + found.truth +
-                   "' does, at every candidate: no poses distinguish them, and none makes the bias smaller");
+    throw CannotDo("'" + fitted.spec->name + "' reproduces every effect of '" + found.truth +
+                   "' at every candidate: no poses distinguish them, and none reduces the bias");
   const BlockArray raw = build_blocks(*fitted.model, found.effects.columns.selected, configurations, threads);
   SearchPart part;
   part.blocks = BlockArray(raw.count(), raw.rows(), int(found.mix.cols()));

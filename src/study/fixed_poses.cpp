@@ -87,10 +87,10 @@ std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& o
   if (settings.poses > 0 && int(count) >= settings.poses)
     throw InputError(place_of(fixed, std::size_t(settings.poses) - 1),
                      fmt::format("{} poses are fixed of a plan of {}", count, settings.poses),
-                     "fewer: something is to be chosen (evaluate judges a whole list)");
+                     "fix fewer poses (evaluate scores a complete list)");
   if (settings.reserve)
-    throw InputError({list.name, 0}, "reserve stands beside fixed poses",
-                     "one of both: what is fixed may be lost, too");
+    throw InputError({list.name, 0}, "reserve and fixed poses cannot be combined",
+                     "leave one of them out: a fixed pose may be lost, too");
   settings.fixed = std::move(fixed);
   return list.notes;
 }

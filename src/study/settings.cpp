@@ -45,11 +45,11 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
                 options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
   const bool smallest = options.poses ? false : options.smallest || design.smallest;
   if (!options.poses && !design.poses && !smallest)
-    throw InputError(problem.at(design.line), "does not say how many poses to plan", "set design: poses or --poses");
+    throw InputError(problem.at(design.line), "has no number of poses", "set design: poses or --poses");
   if (!smallest) s.poses = options.poses ? *options.poses : design.poses->value;
   const bool of_poses = design.require.accuracy || design.require.of_axes();
   if (smallest && !of_poses && design.require.sigma.empty())
-    throw InputError(problem.at(design.line), "poses: auto does not know what must be reached",
+    throw InputError(problem.at(design.line), "poses: auto needs a requirement",
                      "set design: require: accuracy, position, rotation or sigma");
   if (smallest && of_poses && !design.test_poses)
     throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
@@ -91,11 +91,11 @@ void take_robust(const Problem& problem, const PlanOptions& options, Settings& s
     refuse("is for one variant, not for the several of criterion '" + settings.criterion + "'",
            "criterion: o1 or ds, and variant: one of them");
   if (settings.criterion != "o1" && settings.criterion != "ds")
-    refuse("is there for the determinant, not for criterion '" + settings.criterion + "'", "criterion: o1 or ds");
+    refuse("is for the determinant, not for criterion '" + settings.criterion + "'", "criterion: o1 or ds");
   if (settings.poses == 0) refuse("needs a number of poses", "set poses to a number, not auto");
-  if (settings.reserve) refuse("stands beside reserve", "one of both");
+  if (settings.reserve) refuse("cannot be combined with reserve", "leave one of them out");
   if (find_variant(problem, settings.variants.front().name.value).unmodelled)
-    refuse("is not there for a variant that lacks an effect (unmodelled)", "a variant without unmodelled");
+    refuse("does not support a variant with an unmodelled effect", "a variant without unmodelled");
   settings.robust = robust;
 }
 

@@ -213,7 +213,7 @@ void keep_away_from_measured(Study& study, Repeats repeats) {
   if (const long lost = long(all.count() - study.configurations.count()); lost > 0)
     study.configurations.rejected.emplace_back(
         study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
-  if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a pose that is there already");
+  if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a fixed or measured pose");
   if (!study.has_minimum_distance) return;
   study.minimum_distance = with_points(study.spacing, study.configurations);
 }

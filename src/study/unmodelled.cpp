@@ -89,13 +89,12 @@ void require_told_apart(const Problem& problem, const Variant& variant, const Co
   const Eigen::MatrixXd F = blocks.all().leftCols(features.columns());
   const Eigen::MatrixXd left = left_beside(blocks.all().rightCols(blocks.columns() - features.columns()), F);
   if (left.squaredNorm() > told_apart * F.squaredNorm()) return;
-  throw InputError(
-      problem.at(variant.spec->unmodelled->line),
-      fmt::format("an unmodelled effect with a length of {:.3g} deg is as good as taken up by the parameters that "
-                  "variant '{}' estimates: {:.2g} % of it is left over the workspace",
-                  variant.effect->size().length * 180 / std::numbers::pi, variant.spec->name,
-                  100 * left.squaredNorm() / F.squaredNorm()),
-      "a shorter length, or no `unmodelled`");
+  throw InputError(problem.at(variant.spec->unmodelled->line),
+                   fmt::format("an unmodelled effect with a length of {:.3g} deg is almost absorbed by the parameters "
+                               "of variant '{}': {:.2g} % of it remains over the workspace",
+                               variant.effect->size().length * 180 / std::numbers::pi, variant.spec->name,
+                               100 * left.squaredNorm() / F.squaredNorm()),
+                   "a shorter length, or no `unmodelled`");
 }
 
 /// log det of the estimated parameters by these features, nuisance ones included.

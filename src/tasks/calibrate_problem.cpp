@@ -200,7 +200,7 @@ class CalibrationRun {
     try {
       result_.platform = platform_deformation(places, images, points.noise);
     } catch (const CannotDo& error) {
-      result_.notes.push_back(std::string("how the platform deforms is not judged: ") + error.what());
+      result_.notes.push_back(std::string("the platform's deformation is not analysed: ") + error.what());
     }
   }
 
@@ -216,10 +216,10 @@ class CalibrationRun {
     if (gross.size() > most_named) list += fmt::format(" and {} more", gross.size() - most_named);
     std::string noted;
     for (const std::string& note : result_.notes) noted += "; " + note;
-    throw CannotDo(fmt::format(
-        "gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: was a target "
-        "lost, or the wrong row written? Leave it out, or use --weights robust{}",
-        gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
+    throw CannotDo(
+        fmt::format("gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: "
+                    "check for a lost target or a wrong row. Leave it out, or use --weights robust{}",
+                    gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
   }
 
   /// Parameters would bend the robot to a convention that the file does not keep.
@@ -231,7 +231,7 @@ class CalibrationRun {
     for (const Convention& convention : search.found)
       list += fmt::format("{}{} if {}: {}", list.empty() ? "" : "; or ", shown_value(convention.left, "m"),
                           convention.condition, convention.remedy);
-    throw CannotDo(fmt::format("base and tool alone leave {}, no robot's errors do that, and {}",
+    throw CannotDo(fmt::format("base and tool alone leave {}, too much for errors of a robot, and {}",
                                shown_value(search.left, "m"), list));
   }
 
@@ -320,7 +320,7 @@ class CalibrationRun {
     const SmoothEffect& found = result_.smooth;
     if (spec == nullptr) return;
     if (!spec->size && !found.why_not.empty()) {
-      result_.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals count none: " +
+      result_.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals leave it out: " +
                               found.why_not);
       return;
     }
@@ -339,10 +339,10 @@ class CalibrationRun {
   void interpolate(const FitOptions& options) {
     if (options.effect == nullptr) {
       result_.interpolation = Interpolation{};
-      result_.interpolation->why_not = options_.weighting != Weighting::weighted ? "weights are not those of the noise"
-                                       : spec_.unmodelled
-                                           ? "the residuals hold no smooth effect"
-                                           : "variant '" + spec_.name + "' counts no effect: state `unmodelled: auto`";
+      result_.interpolation->why_not =
+          options_.weighting != Weighting::weighted ? "weights are not those of the noise"
+          : spec_.unmodelled                        ? "the residuals contain no smooth effect"
+                             : "variant '" + spec_.name + "' has no unmodelled effect: set `unmodelled: auto`";
       return;
     }
     result_.interpolation =
@@ -354,11 +354,11 @@ class CalibrationRun {
     if (validation_.empty() || !result_.fit.converged) return;
     const std::optional<FrameShift> shift = frame_shift(*model_, validation_, result_.correction);
     if (!shift || !shift->is_another_frame()) return;
-    result_.notes.push_back(fmt::format(
-        "{}: another frame? With the base {} and {} away, residuals of its poses fall from {:.3g} to {:.3g} times the "
-        "stated noise; as stated, they are errors of the frame and not of the robot",
-        options_.validate.string(), shown_value(shift->moved, "m"), shown_value(shift->turned, "rad"), shift->before,
-        shift->after));
+    result_.notes.push_back(
+        fmt::format("{}: check its frame. With the base moved by {} and {}, its residuals fall from {:.3g} to {:.3g} "
+                    "times the stated noise",
+                    options_.validate.string(), shown_value(shift->moved, "m"), shown_value(shift->turned, "rad"),
+                    shift->before, shift->after));
   }
 
   /// True if residuals are larger than the noise allows; then σ follow the residuals.
@@ -396,7 +396,7 @@ class CalibrationRun {
     }
     for (const int j : result_.fit.contradicted)
       result_.notes.push_back("the readings contradict the stated tolerance of " +
-                              columns_.parameters[std::size_t(j)].name + ": it is kept as it was stated");
+                              columns_.parameters[std::size_t(j)].name + ": the stated value is kept");
     // Bases of other campaigns are the instrument's, and none of the robot's values.
     const auto robot = make_model(problem_, spec_);
     const std::vector<double> own(result_.correction.begin(),
@@ -431,7 +431,7 @@ class CalibrationRun {
           if (p.estimated && p.label.name == columns_.parameters[j].name)
             p.in_steps = p.label.nominal + result_.in_steps->correction[std::size_t(columns_.selected[j])];
     } catch (const CannotDo& error) {
-      result_.notes.push_back(std::string("no identification in steps: ") + error.what());
+      result_.notes.push_back(std::string("identification in steps is not possible: ") + error.what());
     }
   }
 

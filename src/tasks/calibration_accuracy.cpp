@@ -35,7 +35,7 @@ void note_unjudged(const RequirementSpec& require, Calibration& result) {
                                         [&](const JudgedRequirement& r) { return r.error.axis == required_axes[k]; }))
       open += (open.empty() ? "" : ", ") + std::string(required_axes[k]);
   if (!open.empty())
-    result.notes.push_back("required of the tip but not judged: " + open +
+    result.notes.push_back("requirement on the tip not checked: " + open +
                            "; the readings of a pose do not determine it");
 }
 

@@ -20,13 +20,12 @@ std::vector<std::filesystem::path> files_of(const CalibrateOptions& options) {
 void note_repeats(const MeasuredData& data, int planned, const std::string& before, std::vector<std::string>& notes) {
   if (data.repeated.empty()) return;
   if (!data.same_repeats)
-    notes.push_back(fmt::format(
-        "{}poses have different numbers of readings (harmonic mean {:.3g}); each counts as the mean of its own", before,
-        data.repeats));
+    notes.push_back(fmt::format("{}poses have different numbers of readings (harmonic mean {:.3g}); each is averaged",
+                                before, data.repeats));
   // A mean of whole numbers, with the rounding of one.
   else if (std::lround(data.repeats) != planned)
-    notes.push_back(fmt::format("{}{:.0f} readings a pose are averaged, not {} as the problem says", before,
-                                data.repeats, planned));
+    notes.push_back(
+        fmt::format("{}{:.0f} readings a pose are averaged, but the problem states {}", before, data.repeats, planned));
 }
 
 /// Standard deviation of every reading within poses of all files.

@@ -67,10 +67,9 @@ ProfiledColumns profiles_of(const ProfiledFit& fitted, const CalibrateOptions& o
                                       stretch, options.threads, monitor);
   const auto missing = std::count(result.profiles.intervals.begin(), result.profiles.intervals.end(), std::nullopt);
   if (missing == 0) return result;
-  calibration.notes.push_back(
-      fmt::format("{}: intervals of {} of the {} parameters that were to have a profile are linear ones",
-                  monitor.should_stop() ? "stopped early" : "nothing can be estimated beside the estimate", missing,
-                  result.columns.size()));
+  calibration.notes.push_back(fmt::format("{}: {} of the {} requested profile intervals are linear ones",
+                                          monitor.should_stop() ? "stopped early" : "the fit failed near the estimate",
+                                          missing, result.columns.size()));
   return result;
 }
 

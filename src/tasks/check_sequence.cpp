@@ -137,7 +137,7 @@ class SequenceCheck {
           moving_.begin());
       const double way = motion.points.back()[joint] - before[joint];
       if (at == pose->conditions.end() || (at->second == c.labels.front() ? way : -way) < c.overrun * (1 - slack))
-        refuse(fmt::format("the motion from {} to {} does not arrive as its pose states: {}", motion.from, motion.to,
+        refuse(fmt::format("the motion from {} to {} does not arrive from the stated side: {}", motion.from, motion.to,
                            c.name),
                fmt::format("rising or falling, from {:.4g} {} or more", c.overrun, moving_[joint].unit));
     }
@@ -164,7 +164,7 @@ class SequenceCheck {
     }
     if (motion.seconds < least * (1 - slack))
       refuse(fmt::format("{} takes {:.6g} s", where, motion.seconds),
-             fmt::format("{:.4g} s or more, or the robot is faster than it can be", least));
+             fmt::format("{:.4g} s or more; otherwise the robot exceeds its velocity", least));
   }
 
   const Problem& problem_;

@@ -21,7 +21,7 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
   const bool given = !options.plans.empty();
   if (given) plan.poses = 1;  // lists bring their own numbers
   else if (!plan.poses && problem.design.smallest)
-    throw InputError(problem.at(problem.design.line), "poses: auto says not how many poses to compare with",
+    throw InputError(problem.at(problem.design.line), "poses: auto gives no number of poses for the comparison",
                      "--poses N, or plans");
   Settings settings = settings_of(problem, plan);
   if (given) settings.poses = 0;

@@ -45,7 +45,7 @@ std::unique_ptr<TipModel> nominal_tip(Problem problem, VariantSpec variant, bool
 
 std::unique_ptr<TipModel> calibrated_tip(const Problem& problem) {
   auto tip = make_tip(problem, calibrated_variant(problem));
-  if (tip == nullptr) throw CannotDo("this robot carries no tip that could be brought anywhere");
+  if (tip == nullptr) throw CannotDo("this robot has no tip to bring to a pose");
   return tip;
 }
 
@@ -214,27 +214,26 @@ class Compensator {
 
   void add_notes() {
     if (std::ranges::all_of(correction_, [](double c) { return c == 0; }))
-      result_.notes.push_back("nothing of the robot was estimated in variant '" + calibrated_variant(problem_).name +
-                              "': there is nothing to compensate, poses stay as they are listed");
+      result_.notes.push_back("no parameter of the robot was estimated in variant '" +
+                              calibrated_variant(problem_).name + "': no compensation, poses stay as listed");
     const std::string base = shown_displacement(*tip_, correction_, "base."),
                       tool = shown_displacement(*tip_, correction_, "tool.");
     if (!base.empty() && !options_.solver.with_base)
-      result_.notes.push_back("poses are those in the robot's own base: where the base was found to stand (" + base +
-                              " from where the problem file puts it) is left out; --with-base counts it");
+      result_.notes.push_back("poses refer to the robot's own base: its estimated displacement (" + base +
+                              " from the problem file) is left out; --with-base includes it");
     if (!tool.empty() && options_.solver.with_tool)
       result_.notes.push_back("the tool's correction (" + tool +
-                              ") counts; if it is that of what was measured and not of what works, --without-tool");
+                              ") is applied; use --without-tool if another tool works");
     const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot);
     if (arm != nullptr && arm->elastostatic && !options_.elastic_target)
       result_.notes.emplace_back(
-          "what the springs give way under the load of each pose is made up for in full: a controller takes the robot "
-          "to "
-          "be stiff (--elastic-target if the poses were found with the nominal springs)");
+          "the deflection under the load of each pose is compensated in full, as for a controller of a stiff robot "
+          "(--elastic-target if the poses include the nominal deflection)");
     if (problem_.parameters->unmodelled)
-      result_.notes.push_back(fmt::format("the effect that the calibration found and did not name (1σ {}) is left",
+      result_.notes.push_back(fmt::format("the unmodelled effect of the calibration (1σ {}) is not compensated",
                                           shown_value(problem_.parameters->unmodelled->size, "m")));
     if (options_.solver.position_only)
-      result_.notes.emplace_back("positions alone are compensated: the tip's orientation is what it will be");
+      result_.notes.emplace_back("only positions are compensated; the orientation of the tip is free");
   }
 
   const Problem& problem_;

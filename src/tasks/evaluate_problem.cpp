@@ -35,7 +35,7 @@ class ListEvaluation {
     take_robust(problem, options.plan, settings_);
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
-    if (monitor.should_stop()) throw CannotDo("stopped before there were all candidates to compare with");
+    if (monitor.should_stop()) throw CannotDo("stopped before all candidates for the comparison were drawn");
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
     require_fits(list, coordinates);
     notes_ = study_.notes;
@@ -88,9 +88,9 @@ class ListEvaluation {
     plan.interrupted = monitor_.should_stop();
     if (stopped)
       result.notes.emplace_back(
-          "ended early: efficiencies are at least what is said; other criteria, drop and add are left out");
+          "ended early: efficiencies are lower bounds; other criteria, drop and add are left out");
     else if (plan.interrupted)
-      result.notes.emplace_back("ended early: what to drop and add is the best by then, or left out");
+      result.notes.emplace_back("ended early: poses to drop and to add are the best so far, or left out");
     return result;
   }
 
@@ -260,7 +260,7 @@ class ListEvaluation {
 PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& list, const EvaluateOptions& options,
                                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  require_at_most(list, most_judged, "evaluate judges");
+  require_at_most(list, most_judged, "evaluate scores");
   PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate(problem);
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -22,7 +22,7 @@ namespace {
 std::string loss_note(const PoseSequence& route) {
   std::string text = fmt::format("{} of {} poses of the plan {} left out of this route", route.left_out,
                                  route.left_out + route.poses.size(), route.left_out == 1 ? "is" : "are");
-  if (route.worth) text += fmt::format(": {:.1f} % of its information is left", 100 * *route.worth);
+  if (route.worth) text += fmt::format(": {:.1f} % of its information remains", 100 * *route.worth);
   return text;
 }
 
@@ -41,7 +41,7 @@ Exported export_sequence(const PoseFormat& format, PoseSequence sequence, const 
   if (sequence.left_out > 0) exported.notes.insert(exported.notes.begin(), loss_note(sequence));
   if (format.controller) exported.notes.emplace_back(no_controller_note);
   if (format.moves_robot() && problem == nullptr)
-    exported.notes.emplace_back("nothing is checked against the robot's limits and velocities");
+    exported.notes.emplace_back("limits and velocities of the robot are not checked");
   return exported;
 }
 

@@ -11,7 +11,7 @@
 namespace posewright {
 namespace {
 
-constexpr const char* unknown = "without σ and interval here and in what is written";
+constexpr const char* unknown = "without σ and interval here and in written files";
 
 void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
 
@@ -35,8 +35,8 @@ std::string GivenParameters::take(const ScoreTest& effect, const std::vector<Par
   }
   if (named.empty()) return {};
   return fmt::format(
-      "{}: right only without the effect {}, which is {:.3g} % of the squared residuals and would move them beyond "
-      "their intervals; {}: estimate the effect, too",
+      "{}: biased beyond their intervals by the effect {}, with {:.3g} % of the squared residuals; {}: estimate the "
+      "effect, too",
       named, effect.name, 100 * effect.share, unknown);
 }
 
@@ -50,7 +50,7 @@ std::string GivenParameters::note(const std::vector<CalibratedParameter>& left_o
       append(open, p.label.name);
       ++count;
     }
-  return fmt::format("{}: right only where {} {} nominal, which these poses cannot tell; {}", named, open,
+  return fmt::format("{}: valid only if {} {} nominal, which these poses cannot determine; {}", named, open,
                      count > 1 ? "are" : "is", unknown);
 }
 

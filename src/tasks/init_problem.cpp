@@ -65,7 +65,7 @@ void try_out(const std::string& text, const fs::path& file, const InitFacts& fac
   options.candidates = tried_configurations;
   options.poses = facts.poses.value_or(default_poses(facts));
   const std::vector<Observation> found = observe_problem(problem, options, monitor);
-  if (!found.front().practical) throw CannotDo("what is planned for cannot be identified");
+  if (!found.front().practical) throw CannotDo("the planned parameters cannot be identified");
 }
 
 /// A place that is inside none of the robot's bodies, be they in millimetres.
@@ -244,7 +244,7 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
     if (!obstacle || (obstacle->is_floor() && facts.floor)) throw CannotDo(why);
     place.left_out.push_back(*obstacle);
   }
-  if (!no_home.empty()) result.notes.push_back("which poses can be reached is not checked: " + no_home);
+  if (!no_home.empty()) result.notes.push_back("reachability of poses is not checked: " + no_home);
   if (facts.files_beside) result.expanded = expanded_robot(facts, file);
   result.text = init_text(facts, robot, place, result.expanded.file.filename());
   for (const InitObstacle& obstacle : place.left_out)

@@ -52,7 +52,7 @@ KnownCamera find_camera(const std::string& text) {
     if (camera.name == text) return camera;
     names.push_back(camera.name);
   }
-  KnownCamera own{text, 0, 0, 0, "as the command line says"};
+  KnownCamera own{text, 0, 0, 0, "from the command line"};
   int end = 0;
   if (std::sscanf(text.c_str(), "%dx%d@%lf%n", &own.width, &own.height, &own.focal, &end) == 3 &&
       std::size_t(end) == text.size() && own.width > 0 && own.height > 0 && own.focal > 0 && own.width < most_pixels &&

@@ -78,19 +78,18 @@ ModelChoice choose_model(const std::vector<Calibration>& models) {
     if (usable(c) && (best == nullptr || c.left_out.estimated < best->left_out.estimated)) best = &c;
   }
   if (best == nullptr) {
-    choice.why = "none predicts poses left out better than base and tool alone";
+    choice.why = "none predicts new poses better than the uncalibrated robot";
     return choice;
   }
   const Calibration* chosen = best;
   for (const Calibration& c : models)
     if (usable(c) && c.columns.size() < chosen->columns.size() && loss_of(c, *best) < standard_errors) chosen = &c;
   choice.recommended = chosen->variant;
-  choice.why = chosen == best
-                   ? "predicts poses left out best"
-                   : fmt::format(
-                         "has fewest parameters of those that predict poses left out as well as {} does, but for "
-                         "{:.1f} standard errors",
-                         best->variant, std::max(0.0, loss_of(*chosen, *best)));
+  choice.why = chosen == best ? "predicts new poses best"
+                              : fmt::format(
+                                    "has the fewest parameters among the models that predict new poses as well as {} "
+                                    "within {:.1f} standard errors",
+                                    best->variant, std::max(0.0, loss_of(*chosen, *best)));
   return choice;
 }
 

@@ -67,7 +67,7 @@ void KnownSoFar::settle() {
   require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
   const CriterionEntry& entry = *find_criterion(settings_.criterion);
   if (entry.several_variants || entry.needs_truth)
-    throw CannotDo("next estimates one variant and asks no other: criterion '" + settings_.criterion +
+    throw CannotDo("next supports only criteria of a single variant: criterion '" + settings_.criterion +
                    "' needs several (--criterion names another)");
 }
 

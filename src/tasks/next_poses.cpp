@@ -77,8 +77,7 @@ class NextRun {
         result_.measured >= enough_to_predict * *result_.smallest)
       result_.criterion = "test_pose";
     if (find_criterion(result_.criterion)->needs_test_poses && !places)
-      throw CannotDo("criterion '" + result_.criterion +
-                     "' needs places where accuracy matters, and this robot has no tip");
+      throw CannotDo("criterion '" + result_.criterion + "' needs test poses, and this robot has no tip");
   }
 
   /// Candidates beside what is known.

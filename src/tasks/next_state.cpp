@@ -106,7 +106,7 @@ void require_continues(const NextState& state, const std::filesystem::path& file
     throw InputError({file.string(), 0},
                      state.problem_file == problem.file.string()
                          ? "was written before " + state.problem_file + " changed"
-                         : "is of another problem, " + state.problem_file,
+                         : "belongs to another problem, " + state.problem_file,
                      "the state of " + problem.file.string() + " as it is now" + restart);
   if (state.parameters_sha256 != parameters_of(problem).sha256)
     throw InputError({file.string(), 0}, "was written with other --parameters", "the same" + restart);
@@ -119,7 +119,7 @@ void require_continues(const NextState& state, const std::filesystem::path& file
   if (sha256_hex(std::string_view(text).substr(0, state.data_bytes)) != state.data_sha256)
     throw InputError(
         {data.string(), 0},
-        fmt::format("is another file than {} saw: its first {} bytes have changed", file.string(), state.data_bytes),
+        fmt::format("differs from the file of {}: its first {} bytes have changed", file.string(), state.data_bytes),
         "a file that grows at its end" + restart);
 }
 

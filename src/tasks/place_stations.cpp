@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_sets = 100;
 // Said of a place that no plan was made from before the search was ended.
-constexpr const char* not_looked_at = "the search was ended before it was looked at";
+constexpr const char* not_looked_at = "the search ended before it was scored";
 // Of the quick plan that decides which places are looked at closely.
 constexpr int quick_candidates = 400, quick_restarts = 1;
 
@@ -162,7 +162,7 @@ class Ranking {
     sort(ranks);
     compare(ranks);
     if (!ranks.front().why_not.empty())
-      throw CannotDo("none of the places gives a plan; the first one: " + ranks.front().why_not);
+      throw CannotDo("no place allows a plan; the first one: " + ranks.front().why_not);
     return ranks;
   }
 
@@ -237,7 +237,7 @@ class Ranking {
         [&](std::size_t s, int) { return bytes_of(judge(unconnected_, stations_at(s), quick)); },
         [&](std::size_t s, std::string_view bytes) { ranks[s] = rank_in(bytes, stations_at(s)); }, monitor_);
     const bool none = std::all_of(ranks.begin(), ranks.end(), [](const StationRank& r) { return r.stopped; });
-    if (stopped && (none || sets.front().size() < wanted_)) throw CannotDo("stopped before there was a place to show");
+    if (stopped && (none || sets.front().size() < wanted_)) throw CannotDo("stopped before the first place was scored");
     return ranks;
   }
 
@@ -272,7 +272,7 @@ class Ranking {
       rank.why_not = error.what();
     } catch (const StationInside&) {
       // A bad place; what is wrong with the rest of the problem is wrong everywhere.
-      rank.why_not = "stands inside a body";
+      rank.why_not = "is inside a body";
     }
     if (quiet.should_stop()) {
       rank.stopped = true;

@@ -170,14 +170,14 @@ class PlanSearch {
 
   [[noreturn]] void fail(const std::vector<CurvePoint>& curve, bool interrupted) const {
     const CurvePoint& last = curve.back();
-    std::string text = fmt::format("what design: require asks for is not reached with {} poses", last.poses);
+    std::string text = fmt::format("design: require is not met with {} poses", last.poses);
     if (last.rho0 && problem_.design.require.accuracy)
       text += fmt::format("; accuracy {:.4g} mm, required {:.4g} mm", 1e3 * *last.rho0,
                           1e3 * *problem_.design.require.accuracy);
     if (last.worst_axis)
       text += fmt::format("; 95 % of the error along or about an axis {:.3g} times the required one", *last.worst_axis);
     if (last.worst_sigma) text += fmt::format("; largest σ {:.3g} times the required one", *last.worst_sigma);
-    if (interrupted) text += "; the search was ended before more poses were tried";
+    if (interrupted) text += "; the search ended before more poses were tried";
     throw CannotDo(text);
   }
 

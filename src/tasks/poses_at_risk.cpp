@@ -47,9 +47,8 @@ std::string poses_at_risk(const Variant& variant, const Configurations& poses, i
     which += fmt::format("{}pose {} by {:.0f} %", i == 0 ? "" : ", ", found[i].id, 100 * found[i].share);
   if (found.size() > most_named) which += fmt::format(", {} more by fewer", found.size() - most_named);
   return fmt::format(
-      "Of {} robots drawn from the tolerances some cannot be read at these poses ({}): {}. `workspace: readable_for: "
-      "20` "
-      "keeps away from where that happens; tolerances that say better where things stand do, too.",
+      "Some of {} robots drawn from the tolerances cannot be read at these poses ({}): {}. `workspace: readable_for: "
+      "20` avoids such poses; smaller tolerances of base and tool help, too.",
       robots, variant.model->unmeasurable_reason(), which);
 }
 

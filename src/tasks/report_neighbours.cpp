@@ -115,7 +115,7 @@ class Neighbourhood {
     const double terms = double(poses) * double(of_a_block) *
                          double(variant.model->block_rows(variant.columns.selected)) *
                          double(variant.columns.selected.size());
-    if (terms > most_terms) return fmt::format("the page would hold {:.1f} million numbers more", terms * 1e-6);
+    if (terms > most_terms) return fmt::format("the page would have {:.1f} million more numbers", terms * 1e-6);
     return {};
   }
 

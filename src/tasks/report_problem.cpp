@@ -65,7 +65,7 @@ class ReportBuilder {
     study_ = make_study(problem, settings_, monitor_);
     choose_form(problem, study_, settings_);
     // A shortened set of candidates would be shown as if it were whole.
-    if (monitor.should_stop()) throw CannotDo("the report was stopped before it had anything to show");
+    if (monitor.should_stop()) throw CannotDo("the report was stopped before its first part was finished");
     all_.dimension = new_.dimension = study_.configurations.dimension;
     for (std::size_t i = 0; i < list_.configurations.size(); ++i) {
       append(all_, list_.configurations[i]);
@@ -100,8 +100,8 @@ class ReportBuilder {
     const double found = judgement.evaluations.front().log_det;
     if (plan_.problem_sha256 != problem_.sha256)
       report_.notes.push_back(
-          "The problem file has changed since the plan was made: the plan's own figures are those of the old file, "
-          "everything that this page recomputes those of the new one.");
+          "The problem file has changed since the plan was made: figures of the plan are for the old file, recomputed "
+          "ones for the new file.");
     else if (std::string note = parameters_note("The plan", plan_.parameters_file, problem_); !note.empty())
       report_.notes.push_back(note + ".");
     else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
@@ -109,15 +109,15 @@ class ReportBuilder {
           "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",
           stated, found));
     if (study_.variants.size() > 1)
-      report_.notes.push_back("The plan serves several variants; what this page recomputes is of '" +
+      report_.notes.push_back("The plan serves several variants; recomputed figures are for '" +
                               study_.first().spec->name + "'.");
   }
 
   void note_effect(const Judgement& judgement) {
     if (judgement.unmodelled)
       report_.notes.push_back(
-          "The plan allows for an unmodelled effect. Its own figures count it; what this page recomputes for a part of "
-          "the poses leaves it out.");
+          "The plan includes an unmodelled effect. Figures of the plan include it; figures recomputed for a part of "
+          "the poses do not.");
   }
 
   void fill_information(const Judgement& judgement) {
@@ -225,7 +225,7 @@ class ReportBuilder {
     if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
     Bound bound = bound_only(parts_of_candidates(), request(settings_.poses, shown_tolerance), monitor_);
     if (monitor_.should_stop()) {
-      report_.notes.emplace_back("Stopped early: what each candidate could add is left out.");
+      report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
       return;
     }
     if (bound.sensitivity.empty() || !(bound.price > 0)) return;

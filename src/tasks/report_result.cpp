@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* plan_schema = "posewright/plan/1";
-constexpr const char* allowed = "plan.json, or what calibrate, compare, next, simulate or stations prints with --json";
+constexpr const char* allowed = "plan.json, or the --json output of calibrate, compare, next, simulate or stations";
 
 /// A result with a page: its schema, the command that writes it, and what its page cannot do without.
 struct Kind {
@@ -47,8 +47,8 @@ const std::vector<Kind>& kinds() {
 /// Advice for results without a page.
 constexpr std::array<std::pair<std::string_view, const char*>, 3> others = {
     {{"posewright/route/1", "a route is shown with its plan: posewright report PLAN --route FILE"},
-     {"posewright/report/1", "these are the numbers of a page already"},
-     {"posewright/compensation/1", "it has no page; its poses and programs are what it is for"}}};
+     {"posewright/report/1", "these are already the numbers of a page"},
+     {"posewright/compensation/1", "it has no page; use its poses and programs"}}};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what, const std::string& instead) {
   throw InputError({file.string(), 0}, what, instead);
@@ -63,11 +63,11 @@ Json read_result(const std::filesystem::path& file, std::string& text) {
     Json json = parse_json(text);
     if (json.is_object() && json.contains("schema") && json["schema"].is_string()) return json;
   } catch (const Json::out_of_range&) {
-    refuse(file, "has a number that is too large for any computer", allowed);
+    refuse(file, "has a number that is too large", allowed);
   } catch (const Json::exception&) {
     refuse(file, "is no JSON", allowed);
   }
-  refuse(file, "is no result of posewright", allowed);
+  refuse(file, "is not a result of posewright", allowed);
 }
 
 const Kind& kind_of(const std::filesystem::path& file, const std::string& schema) {
@@ -95,7 +95,7 @@ ResultReport report_result(const std::filesystem::path& file) {
   for (const char* key : kind.keys)
     if (!json.contains(key))
       refuse(file, std::string("has no ") + key,
-             "what posewright " + std::string(kind.command) + " --json of this version prints");
+             "the output of posewright " + std::string(kind.command) + " --json of this version");
   const Json& problem = json["problem"];
   if (!problem.is_object() || !problem.contains("file") || !problem["file"].is_string())
     refuse(file, "names no problem file", "problem: {file: …}");

@@ -140,7 +140,7 @@ class Router {
     const auto arrives = [](const auto& condition) { return is_approach(condition.first); };
     const Conditions& conditions = stops_.back().pose.conditions;
     if (!options_.from_home && std::any_of(conditions.begin(), conditions.end(), arrives))
-      throw CannotDo("joints with backlash arrive from a stated side, also at the first pose: begin --from-home");
+      throw CannotDo("joints with backlash arrive from a stated side, even at the first pose: begin --from-home");
   }
 
   /// On all threads, until a stop.
@@ -177,7 +177,7 @@ class Router {
     for (const auto& [name, side] : stops_[stop].pose.conditions)
       if (is_approach(name)) sides += (sides.empty() ? "" : ", ") + name + " " + side;
     const std::string why = space_.violation(lead);
-    return "no room to arrive as stated (" + sides + "): " + (why.empty() ? "collision on the way" : why);
+    return "no room to arrive from the stated side (" + sides + "): " + (why.empty() ? "collision on the way" : why);
   }
 
   /// Leaves out poses that collide where they are, or where they are arrived from.
@@ -330,7 +330,7 @@ class Router {
     }
     for_each("clearance", made.size(), [&](std::size_t k) { route_.motions[k].nearest = nearest_on(*made[k]); });
     if (monitor_.should_stop())
-      route_.notes.emplace_back("ended early: what is nearest on the way is left out of some or all motions");
+      route_.notes.emplace_back("ended early: the clearance of some or all motions is left out");
     const int every = problem_.workspace.line_of_sight ? problem_.workspace.line_of_sight->every : 0;
     for (const int i : order) {
       if (stops_[std::size_t(i)].id == 0) continue;

@@ -45,7 +45,7 @@ std::vector<int> given_blocks(const BlockFile& file, const SelectOptions& option
   if (int(options.fixed.size()) >= options.poses)
     throw InputError({},
                      std::to_string(options.fixed.size()) + " of " + std::to_string(options.poses) + " poses are fixed",
-                     "fewer than --poses: something is to be chosen");
+                     "fix fewer than --poses");
   return all;
 }
 
@@ -164,7 +164,7 @@ void require_spread(const SelectOptions& options) {
   if (!options.fixed.empty()) refuse("--fixed", "all blocks are chosen; leave it out");
   if (!options.measured.empty()) refuse("--augment", "all blocks are chosen; leave it out");
   if (options.reserve) refuse("--reserve", "leave it out");
-  if (options.restarts) refuse("--restarts", "it starts from the optimal weights and from nothing; leave it out");
+  if (options.restarts) refuse("--restarts", "it starts from the optimal weights and from an empty set; leave it out");
 }
 
 /// read_block_share(); what a process finds wrong is thrown on all, the first candidate's error first.
@@ -193,9 +193,10 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
   Plan plan = begun_plan(options, file.sha256);
   const std::vector<int> given = given_blocks(file, options);
   if (options.reserve && !options.fixed.empty())
-    throw InputError({}, "--reserve stands beside --fixed", "one of both: what is fixed may be lost, too");
+    throw InputError({}, "--reserve and --fixed cannot be combined",
+                     "leave one of them out: a fixed block may be lost, too");
   if (options.gap > 0 && options.method != "branch_and_bound")
-    throw InputError({}, "a gap stands beside method " + options.method, "it is for branch_and_bound");
+    throw InputError({}, "a gap does not go with method " + options.method, "it is for branch_and_bound");
   require_enough(file.blocks, options);
   const std::vector<Parameter> parameters = labels(file.columns, options.nuisance);
 
@@ -245,7 +246,7 @@ Plan select_spread(const std::filesystem::path& file, const SelectOptions& optio
   require_enough(share.blocks, options);
   if (double(options.poses) >= double(share.total) * options.repeats.most)
     throw CannotDo(std::to_string(options.poses) + " of " + std::to_string(share.total) +
-                   " candidates leave nothing to choose");
+                   " candidates leave no choice");
   if (share.total > std::size_t(std::numeric_limits<int>::max()))
     throw CannotDo(std::to_string(share.total) + " candidates are more than can be numbered");
   Plan plan = begun_plan(options, share.sha256);

@@ -50,7 +50,7 @@ class SimulationRun {
       throw InputError({}, "profiles are not for robust weights", "weights ols or wls");
     if (options_.experiment.profile && !experiment_.one_catalogue)
       throw CannotDo("variants '" + spec_.name + "' and '" + truth_spec_.name +
-                     "' do not share one catalogue of parameters: the truth is on no profile");
+                     "' use different kinds of parameters: the truth is on no profile");
     take_poses(plan);
     take_truth();
     predict();
@@ -110,7 +110,7 @@ class SimulationRun {
 
   void note_infeasible(const MeasuredPose& pose) {
     if (const int reason = fitted_.workspace->violation(pose.q); reason >= 0)
-      result_.notes.push_back(fmt::format("pose {} is outside the workspace ({}); it is measured all the same", pose.id,
+      result_.notes.push_back(fmt::format("pose {} is outside the workspace ({}); it is measured anyway", pose.id,
                                           fitted_.workspace->reasons()[std::size_t(reason)]));
   }
 
@@ -124,7 +124,7 @@ class SimulationRun {
           char(!truth_.model->unmeasurable_reason().empty() && truth_.model->measurable(q)));
     if (options_.truth_nominal && !experiment_.one_catalogue)
       throw CannotDo("variants '" + spec_.name + "' and '" + truth_spec_.name +
-                     "' do not share one catalogue of parameters: their nominal values cannot be exchanged");
+                     "' use different kinds of parameters: their nominal values cannot be exchanged");
     experiment_.truth.drawn = options_.truth_nominal ? fitted_.columns : truth_.columns;
   }
 

@@ -48,8 +48,8 @@ class Verdict {
 
   std::vector<std::string> words() {
     if (s_.summary.parameters.empty()) {
-      say("the variants do not share one catalogue of parameters: their errors are not known, only readings and "
-          "places");
+      say("the variants use different kinds of parameters: only readings and positions are compared, not parameter "
+          "errors");
     } else {
       describe_sigma();
       describe_coverage();
@@ -60,8 +60,8 @@ class Verdict {
     describe_chi_square();
     if (!s_.summary.parameters.empty())
       say(
-          fmt::format("(σ, coverage and bias of {} parameters are {} tests: together they refuse a right model with at "
-                      "most {:.0f} % chance, Holm 1979)",
+          fmt::format("(σ, coverage and bias of {} parameters are {} tests: together they reject a correct model with "
+                      "at most {:.0f} % probability, Holm 1979)",
                       s_.parameters.size(), 3 * s_.parameters.size(), 100 * refused_by_chance));
     if (!wrong_sigma_.empty() || !wrong_coverage_.empty() || !biased_.empty()) causes();
     return std::move(words_);
@@ -125,7 +125,7 @@ class Verdict {
       say(fmt::format("σ within {:.1f} % of the predicted for all {} parameters ({})", 100 * std::max(-least, most),
                       s_.parameters.size(), error));
     else
-      say(fmt::format("σ of {} of {} parameters is not the predicted one: {:+.1f} to {:+.1f} % ({}), most of all {}",
+      say(fmt::format("σ of {} of {} parameters differs from the prediction: {:+.1f} to {:+.1f} % ({}), most for {}",
                       wrong_sigma_.size(), s_.parameters.size(), 100 * least, 100 * most, error,
                       listed(wrong_sigma_, excess)));
   }
@@ -134,7 +134,7 @@ class Verdict {
     const auto [least, most] = range([](const SimulatedParameter& p) { return p.errors->coverage; });
     std::string text = fmt::format("95 % intervals cover {:.1f} to {:.1f} % (Monte Carlo error {:.1f} %)", 100 * least,
                                    100 * most, 100 * s_.summary.coverage_error);
-    if (!wrong_coverage_.empty()) text += ", not as they should for " + listed(wrong_coverage_, uncovered);
+    if (!wrong_coverage_.empty()) text += ", unexpected for " + listed(wrong_coverage_, uncovered);
     say(std::move(text));
   }
 
@@ -148,9 +148,9 @@ class Verdict {
   void describe_ends() {
     const ExperimentSummary& summary = s_.summary;
     if (summary.not_converged > 0)
-      say(fmt::format("{} of {} draws did not converge and are in no figure", summary.not_converged, summary.asked));
+      say(fmt::format("{} of {} draws did not converge and are left out", summary.not_converged, summary.asked));
     if (summary.failed > 0)
-      say(fmt::format("{} of {} draws could not be calibrated and are in no figure; the first: {}", summary.failed,
+      say(fmt::format("{} of {} draws could not be calibrated and are left out; the first: {}", summary.failed,
                       summary.asked, summary.first_failure));
   }
 
@@ -159,8 +159,8 @@ class Verdict {
     std::string which;
     for (std::size_t i = 0; i < std::min(s_.lost.size(), names_shown); ++i)
       which += fmt::format("{}pose {} in {:.0f} %", i == 0 ? "" : ", ", s_.lost[i].id, 100 * s_.lost[i].share);
-    if (s_.lost.size() > names_shown) which += fmt::format(", {} more less often", s_.lost.size() - names_shown);
-    say(fmt::format("{:.2g} of {} poses give no reading in the mean of the draws{}: {}; the prediction counts them all",
+    if (s_.lost.size() > names_shown) which += fmt::format(", {} more at smaller rates", s_.lost.size() - names_shown);
+    say(fmt::format("on average {:.2g} of {} poses give no reading{}: {}; the prediction includes them all",
                     s_.summary.lost_poses, s_.poses, s_.lost_because.empty() ? "" : " (" + s_.lost_because + ")",
                     which));
   }
@@ -180,19 +180,19 @@ class Verdict {
     const std::size_t before = words_.size();
     if (s_.curvature.largest > curvature_limit) curved();
     if (s_.truth != s_.variant)
-      say("because: the readings come from " + s_.truth + ", whose effects " + s_.variant + " takes up in its own");
+      say("because: the readings come from " + s_.truth + ", whose effects " + s_.variant + " partly absorbs");
     if (options_.truth_noise.differs()) say("because: the measured robot has other noise than the problem states");
     if (experiment.outliers > 0)
-      say(fmt::format("because: {:.3g} % of the targets carry gross errors, which no prediction counts",
+      say(fmt::format("because: {:.3g} % of the targets have gross errors, which the prediction leaves out",
                       100 * experiment.outliers));
     if (experiment.fit.weighting == Weighting::robust)
       say("because: robust weights cost some of the information, about 5 % in σ² of single readings");
     if (experiment.fit.weighting == Weighting::ordinary)
-      say("because: equal weights are not those of the noise where readings differ in it");
+      say("because: equal weights ignore the different noise of the readings");
     if (experiment.fit.prior != Prior::none && experiment.exact)
-      say("because: tolerances count as knowledge, but no true parameter is off");
+      say("because: tolerances are used as prior knowledge, but all true parameters are nominal");
     if (!experiment.exact) other_places();
-    if (words_.size() == before) say("no cause of this shows in the figures");
+    if (words_.size() == before) say("the figures show no cause");
   }
 
   void curved() {
@@ -200,8 +200,8 @@ class Verdict {
                                   ? ""
                                   : " (mostly " + s_.parameters[std::size_t(s_.curvature.parameter)].label.name + ")";
     say(
-        fmt::format("because: the problem is not linear within its own uncertainty: one σ along its worst axis{} the "
-                    "linear prediction misses {:.2g} of that step, {:.2g} is the limit",
+        fmt::format("because: the problem is nonlinear within one σ: along its worst axis{} the linear prediction "
+                    "misses {:.2g} of that step (limit {:.2g})",
                     along, s_.curvature.largest, curvature_limit));
   }
 
@@ -211,10 +211,10 @@ class Verdict {
       return !differs(p->errors->observed / p->errors->stated);
     });
     if (explained == 0) return;
-    say(fmt::format(
-        "because: true parameters one tolerance off change what the poses determine: for {} of the {} the σ that "
-        "each calibration states for itself is the observed one (--exact leaves the parameters nominal)",
-        explained, wrong_sigma_.size()));
+    say(
+        fmt::format("because: deviations of one tolerance change the information of the poses: for {} of the {} the σ "
+                    "of each calibration matches the observed one (--exact keeps the parameters nominal)",
+                    explained, wrong_sigma_.size()));
   }
 
   const Simulation& s_;

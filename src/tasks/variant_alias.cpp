@@ -45,7 +45,7 @@ VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const 
   alias.fitted = fitted.spec->name;
   alias.truth = truth.spec->name;
   if (!one_catalogue(*fitted.model, *truth.model)) {
-    alias.why_not = "the variants do not share one catalogue of parameters";
+    alias.why_not = "the variants use different kinds of parameters";
     return alias;
   }
   const Effects effects = effects_of(fitted, *truth.model, truth.columns, settings.prior);

@@ -20,8 +20,7 @@ void require_same_coordinates(const IdentificationModel& a, const Identification
   const auto reading = [](const Reading& r, const Reading& s) { return r.name == s.name && r.unit == s.unit; };
   if (!same(a.coordinates(), b.coordinates(), coordinate) || !same(a.actuators(), b.actuators(), coordinate) ||
       !same(a.readings(), b.readings(), reading))
-    throw CannotDo(
-        "the two variants differ in their coordinates, actuators or readings: one cannot stand for the other");
+    throw CannotDo("the two variants differ in their coordinates, actuators or readings and cannot be exchanged");
 }
 
 /// Coordinates of the measurement alone do not move the robot.
@@ -72,7 +71,7 @@ std::vector<std::vector<double>> same_actuators(const IdentificationModel& from,
     if (actuators.empty()) continue;
     if (!from.actuator_values(q, actuators) || !to.configuration_at(actuators, q, result.back()))
       throw CannotDo("configuration " + std::to_string(result.size()) +
-                     ": the true robot does not close with the actuators standing there");
+                     ": the true robot has no pose with these actuator positions");
   }
   return result;
 }

@@ -23,7 +23,8 @@ class ReachableCheck : public SingleCheck {
     if (const std::string why = space_.violation(home); !why.empty())
       throw CannotDo("home is not free: " + why + "; set workspace: motion: home to a configuration that is");
     Roadmap roadmap(space_, milestones, roadmap_seed, RoadmapUse::connection, monitor);
-    if (monitor.should_stop()) throw CannotDo("stopped before it was known what can be reached from home");
+    if (monitor.should_stop())
+      throw CannotDo("stopped before the search for configurations reachable from home was finished");
     milestones_ = roadmap.connected(home);
   }
   bool follows_motions() const override { return true; }

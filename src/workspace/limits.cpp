@@ -48,7 +48,7 @@ void shrink(Coordinate& c, double margin, const SourcePlace& place) {
   c.lower += margin;
   c.upper -= margin;
   if (!(c.lower < c.upper))
-    throw InputError(place, "workspace: nothing is left of the range of '" + before.name + "' inside the margin",
+    throw InputError(place, "workspace: no range is left for '" + before.name + "' inside the margin",
                      "its limits are " + range_text(before));
 }
 
@@ -124,7 +124,7 @@ void keep_controller_ranges(std::vector<Coordinate>& coordinates, const Controll
       c.upper = std::min(c.upper, upper);
       c.periodic = false;
       if (!(c.lower < c.upper))
-        throw InputError(ranges.place(), "nothing is left of the range of '" + c.name + "'",
+        throw InputError(ranges.place(), "no range is left for '" + c.name + "'",
                          "its own limits are " + range_text(ranges.axis(i)));
     }
   }

@@ -23,11 +23,11 @@ constexpr const char* out_of_reach_of_view = "no joint angles for a view of the 
 /// Advice for a reason that rejects most proposed views.
 std::string cure_of(const std::string& reason) {
   if (reason == out_of_reach_of_view)
-    return "; no joint angles lead to where the targets would be seen: move them or the instrument into reach, or "
-           "widen line_of_sight: range and acceptance";
+    return "; no joint angles bring the targets into view: move targets or instrument into reach, or widen "
+           "line_of_sight: range and acceptance";
   if (reason.starts_with("occluded"))
-    return "; a body stands before the instrument: mark its own with station: NAME, or move it";
-  return "; this was drawn where the targets would be seen: " + reason + " is what to change";
+    return "; a body hides the instrument: mark the instrument's own body with station: NAME, or move it";
+  return "; these were drawn in view of the targets: change " + reason;
 }
 
 }  // namespace

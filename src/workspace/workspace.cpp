@@ -161,8 +161,8 @@ class Workspace::Implementation {
     samplers_are_given = !sampler_shares.empty();
     const auto asks_for_views = [](const auto& share) { return share.first == Kind::look_at; };
     if (views == nullptr && std::any_of(sampler_shares.begin(), sampler_shares.end(), asks_for_views))
-      throw InputError(problem.at(problem.workspace.samplers_line), "look_at: nothing says where this instrument looks",
-                       "cameras do, and targets whose normals and acceptance line_of_sight gives");
+      throw InputError(problem.at(problem.workspace.samplers_line), "look_at: this instrument has no viewing direction",
+                       "cameras have one, and targets with normals and acceptance in line_of_sight");
     if (samplers_are_given) return;
     if (cut_by_cell())
       sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};

@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCell{"same_name", "  collision: {obstacles: [{name: a, sphere: 1}, {name: a, sphere: 1}]}\n", "once"},
         BadCell{"flat_box", "  collision: {obstacles: [{box: [1, 0, 1]}]}\n", "> 0"},
         BadCell{"unknown_station", "  collision: {obstacles: [{sphere: 1, station: B}]}\n", "'B' is not a station"},
-        BadCell{"no_sight", "  line_of_sight: {visible: all}\n", "stands nowhere"}),
+        BadCell{"no_sight", "  line_of_sight: {visible: all}\n", "has no position"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(BadCells, AUrdfShapeWithABadNumberIsNamedWithItsLine) {

@@ -125,7 +125,7 @@ TEST(MeshFile, WhatIsWrongIsSaidWithTheFilesName) {
   const auto said = [&](const std::string& name, const std::string& bytes) {
     return refusal(folder.write(name, bytes));
   };
-  EXPECT_THAT(said("a.ply", "ply\n"), HasSubstr("a.ply' is of a kind that is not read: .stl, .obj and .dae are"));
+  EXPECT_THAT(said("a.ply", "ply\n"), HasSubstr("a.ply' has an unknown format: .stl, .obj and .dae are read"));
   EXPECT_THAT(said("a.stl", "this is not a mesh"), HasSubstr("p.yaml:7: mesh '"));
   EXPECT_THAT(said("a.STL", binary_stl(cube(), 4'000'000'000U)), HasSubstr("claims 4000000000 triangles"));
   EXPECT_THAT(said("a.stl", binary_stl(cube(), 13)), HasSubstr("ends before its 13 triangles do"));

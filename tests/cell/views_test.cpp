@@ -157,12 +157,12 @@ TEST(Candidates, OfABoardOutOfReachAreRefusedWithTheCure) {
   const Site far(camera("hand", "position: [0.1, 0, 0.05], rpy: [0, 90 deg, 0]", "position: [9, 0, 0], rpy: [0, 0, 0]"),
                  "line_of_sight: {range: [0.5, 1.2], acceptance: 45 deg, normals: {\"*\": [0, 0, 1]}}");
   EXPECT_THAT(refusal(far), testing::HasSubstr("'no joint angles for a view of the targets' rejects 100 %"));
-  EXPECT_THAT(refusal(far), testing::HasSubstr("move them or the instrument into reach"));
+  EXPECT_THAT(refusal(far), testing::HasSubstr("move targets or instrument into reach"));
   const Site hidden(camera("hand", "position: [0.4, 0, 0.05], rpy: [0, 90 deg, 0]", board_on_floor),
                     "line_of_sight: {range: [0.5, 1.2]}\n"
                     "  collision: {obstacles: [{name: lid, box: [2, 2, 0.01], at: [1.6, 0, 0.2]}]}");
   EXPECT_THAT(refusal(hidden), testing::HasSubstr("'occluded from the camera' rejects"));
-  EXPECT_THAT(refusal(hidden), testing::HasSubstr("a body stands before the instrument"));
+  EXPECT_THAT(refusal(hidden), testing::HasSubstr("a body hides the instrument"));
 }
 
 TEST(Samplers, LookAtIsRefusedWhereNothingSaysWhereToLook) {
@@ -172,7 +172,7 @@ TEST(Samplers, LookAtIsRefusedWhereNothingSaysWhereToLook) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                testing::ContainsRegex(":[0-9]+: look_at: nothing says where this instrument looks; cameras do"));
+                testing::ContainsRegex(":[0-9]+: look_at: this instrument has no viewing direction; cameras do"));
   }
 }
 

@@ -82,7 +82,7 @@ class Answers(unittest.TestCase):
 
     def test_stations_keep_quick_plans_where_no_full_one_is_done(self):
         out, _ = self.ended(["stations", "problem.yaml"], "full plans", signal.SIGINT)
-        self.assertRegex(out, r"Ended early: (\d+) of \1 looked at, [0-2] planned in full\.")
+        self.assertRegex(out, r"Ended early: (\d+) of \1 scored, [0-2] planned in full\.")
 
     def test_a_route_keeps_its_order_and_motions(self):
         out, err = self.ended(["route", "plan.json", "--closed", "-o", "early.json"], "clearance", signal.SIGHUP)

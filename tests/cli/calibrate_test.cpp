@@ -45,8 +45,8 @@ TEST_F(CalibrateCommand, ShowsParametersResidualsAndWhatTheyMean) {
   EXPECT_THAT(shown.out, HasSubstr("geometric: 30 poses fitted, 10 held back; 270 readings for 33 parameters"));
   EXPECT_THAT(shown.out, HasSubstr("px1"));
   EXPECT_THAT(shown.out, HasSubstr("distance of a target  held back  calibrated"));
-  EXPECT_THAT(shown.out, HasSubstr("try --weights robust"));
-  EXPECT_THAT(shown.out, HasSubstr("σ and intervals above count"));
+  EXPECT_THAT(shown.out, HasSubstr("Try --weights robust"));
+  EXPECT_THAT(shown.out, HasSubstr("σ and intervals are scaled by"));
 }
 
 TEST_F(CalibrateCommand, RobustNamesThePosesThatLostWeight) {

@@ -138,7 +138,9 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"observe", telescope, "--variant", "none"}, 2, "has no variant 'none'"},
       {{"observe", telescope, "--restarts", "4"}, 2, "unrecognised option"},
       {{"report"}, 2, "PLAN or RESULT is missing"},
-      {{"report", blocks}, 2, "b.csv: is no JSON; plan.json, or what calibrate, compare, next, simulate or stations"},
+      {{"report", blocks},
+       2,
+       "b.csv: is no JSON; plan.json, or the --json output of calibrate, compare, next, simulate"},
       {{"report", blocks, blocks}, 2, "b.csv: is no JSON"},
       {{"report", blocks, blocks, "--brief"}, 2, "--brief does not go with two plans; it goes with one PLAN"},
       {{"report", "a", "b", "c"}, 2, "unexpected argument 'b'; one PLAN or RESULT is expected"},
@@ -200,7 +202,7 @@ TEST(CommandLine, MorePosesThanATaskTakesAreRefusedAtOnce) {
   folder.write("many.csv", list);
   const ProgramRun judged = run_program(folder.path(), {"evaluate", telescope, "many.csv"});
   EXPECT_EQ(judged.exit_code, 2);
-  EXPECT_THAT(judged.err, HasSubstr("many.csv: has 100000 poses; evaluate judges at most 2000"));
+  EXPECT_THAT(judged.err, HasSubstr("many.csv: has 100000 poses; evaluate scores at most 2000"));
   const ProgramRun routed = run_program(folder.path(), {"route", "many.csv", "--problem", telescope});
   EXPECT_EQ(routed.exit_code, 2);
   EXPECT_THAT(routed.err, HasSubstr("many.csv: has 100000 poses; route orders at most 1000"));

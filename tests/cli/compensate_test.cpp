@@ -96,7 +96,7 @@ TEST_F(CompensateCommand, WritesNothingWhereAPoseCannotBeHadUnlessTheRestIsAsked
   const ProgramRun refused = run({"cal.yaml", "list.csv", "-o", "out.csv", "--urdf", "out.urdf"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.out, HasSubstr("list.csv:5: pose 3: 'j4' would be at -143.3"));
-  EXPECT_THAT(refused.err, HasSubstr("nothing is written; --partial"));
+  EXPECT_THAT(refused.err, HasSubstr("no file is written; --partial"));
   EXPECT_FALSE(is_there("out.csv"));
   EXPECT_FALSE(is_there("out.urdf"));
   const ProgramRun partial = run({"cal.yaml", "list.csv", "-o", "out.csv", "--partial"});
@@ -148,7 +148,7 @@ TEST_F(CompensateCommand, WritesTheRobotItselfFromTheParameters) {
   EXPECT_THAT(run_urdf.out, HasSubstr("Denavit"));
   const ProgramRun no_ur = run({"cal.yaml", "--ur-kinematics", "kinematics.yaml"});
   EXPECT_EQ(no_ur.exit_code, 1);
-  EXPECT_THAT(no_ur.err, HasSubstr("joint 'j1' is none of a Universal Robots arm"));
+  EXPECT_THAT(no_ur.err, HasSubstr("joint 'j1' does not belong to a Universal Robots arm"));
   EXPECT_EQ(run({"cal.yaml"}).exit_code, 2);
 }
 

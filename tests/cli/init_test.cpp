@@ -128,7 +128,7 @@ TEST(Init, LeavesMotionsOutWhereNoVelocityIsKnown) {
   folder.write("arm.urdf", text);
   const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("which poses can be reached is not checked"));
+  EXPECT_THAT(run.err, HasSubstr("reachability of poses is not checked"));
   EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("reachable")));
 }
 

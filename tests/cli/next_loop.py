@@ -118,7 +118,7 @@ with tempfile.TemporaryDirectory() as scratch:
     expect("a file of somebody else is not overwritten", (folder / "mine.csv").read_text() == "my own list\n" and "--force" in refused.stderr)
     data.write_text(header + "".join(rows[1:]))
     refused = run("next", *common, code=2)
-    expect("a replaced file is one line", "is another file" in refused.stderr and refused.stderr.count("\n") == 1, refused.stderr)
+    expect("a replaced file is one line", "differs from the file" in refused.stderr and refused.stderr.count("\n") == 1, refused.stderr)
     data.write_text(header + rows[0])
     expect("a file that was cut is one line", "replaced or cut" in run("next", *common, code=2).stderr)
     data.write_text(whole)

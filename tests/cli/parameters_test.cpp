@@ -50,7 +50,7 @@ TEST(ParametersOption, PlanStatesThemAndRouteAndReportFindThem) {
 
   const ProgramRun evaluation = run_program(folder.path(), {"evaluate", "p.yaml", "plan.json", "--candidates", "200"});
   EXPECT_EQ(evaluation.exit_code, 0);
-  EXPECT_THAT(evaluation.err, HasSubstr("note: plan.json was made at the parameters of cal.yaml; everything here is at "
+  EXPECT_THAT(evaluation.err, HasSubstr("note: plan.json was made at the parameters of cal.yaml; this run uses "
                                         "nominal ones (--parameters cal.yaml)"));
 
   std::filesystem::remove(folder / "cal.yaml");

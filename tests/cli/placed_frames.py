@@ -109,7 +109,7 @@ def check_camera(folder):
     (folder / "camera.yaml").unlink(missing_ok=True)
     run(folder, "calibrate", "problem.yaml", "measured.csv", "-o", "camera.yaml")
     done = subprocess.run([PROGRAM, "compensate", "camera.yaml", "poses.csv"], cwd=folder, capture_output=True, text=True)
-    assert "nothing of the robot was estimated in variant 'hand_eye'" in done.stderr + done.stdout, done.stderr
+    assert "no parameter of the robot was estimated in variant 'hand_eye'" in done.stderr + done.stdout, done.stderr
     check_lost(folder, chain)
 
 

@@ -170,13 +170,17 @@ def check_first_hour(text, run, written):
 
 
 def check_first_lines(text, root, path):
-    """`of COMMAND:` and an indented block: the command as it stands prints these lines, and would not print others."""
-    quoted = re.search(r"of `(posewright [^`]*)`:\n\n((?:    .*\n)+)", text)
-    output = subprocess.run([*quoted[1].split(), "-o", "-", "--poses-csv", "-", "--quiet"], cwd=root, env={**os.environ, "PATH": path},
-                            capture_output=True, text=True, check=True).stdout
+    """A command in the prose, `of COMMAND:` and an indented block: the commands one after the other print these lines, and would
+    not print others."""
+    quoted = re.search(r"^`(posewright init [^`]*)`.* of `(posewright plan [^`]*)`:\n\n((?:    .*\n)+)", text, re.M)
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copytree(root / "examples", pathlib.Path(folder) / "examples")
+        for command in quoted[1], quoted[2]:
+            output = subprocess.run([*command.split(), "--quiet"], cwd=folder, env={**os.environ, "PATH": path}, capture_output=True,
+                                    text=True, check=True).stdout
     complaints = lambda block: figures.missing_lines(block.splitlines(), output)
-    assert not complaints(quoted[2]), "\n".join(complaints(quoted[2]))
-    unseen = figures.unnoticed(quoted[2], complaints)
+    assert not complaints(quoted[3]), "\n".join(complaints(quoted[3]))
+    unseen = figures.unnoticed(quoted[3], complaints)
     assert not unseen, f"may be changed unseen: {unseen}"
 
 

@@ -196,13 +196,13 @@ TEST(CorrectedUrdf, NamesWithItsValueWhatAUrdfCannotSay) {
                                                {"b & c.gear", "1", 0, 0},
                                                {"d.offset", "rad", 0, 0.5}};
   const CorrectedUrdf with_tip = corrected_urdf(arm_of(urdf, "tip"), {}, Convention::frames, values);
-  const std::vector<std::string> common = {"base.x = 0.5 m: where the robot stands is not part of the robot",
-                                           "a.gear = 0.001: a URDF has no gear errors",
-                                           "d.compliance = 2e-06 rad/(N·m): a URDF has no place for it",
-                                           "compensator.preload = 12 N: a URDF has no place for it",
-                                           "P1.x = 0.125 m: a URDF has no place for it",
-                                           "d.offset = 0.5 rad: joint 'beside' beside the chain follows this joint as "
-                                           "before"};
+  const std::vector<std::string> common = {
+      "base.x = 0.5 m: the pose of the base is not part of the robot",
+      "a.gear = 0.001: a URDF has no gear errors",
+      "d.compliance = 2e-06 rad/(N·m): a URDF has no place for it",
+      "compensator.preload = 12 N: a URDF has no place for it",
+      "P1.x = 0.125 m: a URDF has no place for it",
+      "d.offset = 0.5 rad: joint 'beside' outside the chain follows this joint as before"};
   EXPECT_EQ(with_tip.left_out, common);
   EXPECT_NE(with_tip.text.find("<origin xyz=\"0 0 0.5\"/></joint>"), std::string::npos) << with_tip.text;
   std::vector<std::string> more = common;

@@ -70,7 +70,7 @@ TEST(UrdfLimits, OfAFollowerEndWhereItsOwnWouldBePassed) {
       }
       if (most - least < 1e-3) {
         if (most < least) {
-          EXPECT_THAT(error_of(arm), HasSubstr("nothing is left of the range of joint 'j1'"));
+          EXPECT_THAT(error_of(arm), HasSubstr("no range is left for joint 'j1'"));
         }
         continue;
       }
@@ -94,7 +94,7 @@ TEST(UrdfLimits, OfAFollowersVelocityAreKept) {
 TEST(UrdfLimits, OfAFollowerThatStandsStillAreAskedOnce) {
   Arm arm;
   arm.second = following(0, 0.7, -0.5, 0.5);
-  EXPECT_THAT(error_of(arm), HasSubstr("joint 'j2' stands beyond its own limits"));
+  EXPECT_THAT(error_of(arm), HasSubstr("joint 'j2' is beyond its own limits"));
   arm.second = following(0, 0.4, -0.5, 0.5);
   EXPECT_EQ(read(arm).coordinates.front().upper, 2.5);
 }
@@ -137,7 +137,7 @@ TEST(UrdfLimits, SoftOnesBind) {
   arm.first = hard + R"(<safety_controller k_velocity="10"/>)";
   EXPECT_EQ(read(arm).coordinates.front().lower, -2) << "0 and 0 is the format's way to have none";
   arm.first = hard + soft(2.6, 2.7);
-  EXPECT_THAT(error_of(arm), HasSubstr("r.urdf:2: nothing is left of the range of joint 'j1'"));
+  EXPECT_THAT(error_of(arm), HasSubstr("r.urdf:2: no range is left for joint 'j1'"));
   arm.first = R"(type="continuous">)" + soft(-100, 100);
   EXPECT_TRUE(read(arm).coordinates.front().periodic);
   arm.first = R"(type="continuous">)" + soft(-1, 1);

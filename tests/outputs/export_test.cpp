@@ -133,7 +133,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
       {{plan, "--to", "urscript", "--settle", "-1"}, 2, "--settle -1; a number from 0 to 3600"},
       {{plan, "--to", "urscript", "--wait", "nan"}, 2, "--wait nan"},
       {{plan, "--to", "kuka-krl", "-o", "-"}, 2, "kuka-krl has several files"},
-      {{plan, "--to", "csv", "-o", "-", "--json"}, 2, "both want stdout"},
+      {{plan, "--to", "csv", "-o", "-", "--json"}, 2, "both need stdout"},
       {{plan, "--to", "kuka-krl", "-o", "A.src", "--name", "B"}, 2, "--name B is not the name of A.src"},
       {{plan, "--to", "kuka-krl", "-o", "no good.src"}, 2, "'no good' is not a name of a kuka-krl program"},
       {{plan, "--to", "moveit", "-o", "states.txt"}, 2, "reads files that end in .yaml"},

@@ -142,7 +142,7 @@ TEST(PoseLists, MeasurementCsvSaysThatPositionsArePredictedAndHidesHiddenOnes) {
   EXPECT_THAT(header, testing::StartsWith("posewright,x1,y1,z1,x2,y2,z2,joint_a1,"));
   EXPECT_THAT(first, testing::StartsWith("predicted,"));
   EXPECT_THAT(second, HasSubstr(",nan,nan,nan,"));
-  EXPECT_THAT(exported.notes, testing::Contains(HasSubstr("predictions to be replaced")));
+  EXPECT_THAT(exported.notes, testing::Contains(HasSubstr("are predictions; replace them")));
   PoseSequence bare = sequence;
   for (SequencePose& pose : bare.poses) pose.targets.clear();
   EXPECT_THAT(text_in("figaroh-csv", bare), HasSubstr("\nto be measured,nan,nan,nan,"));

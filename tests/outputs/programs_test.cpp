@@ -261,7 +261,7 @@ TEST(RobotPrograms, MoveWithTheToolThatIsNamed) {
   };
   const auto notes = [&] { return testing::PrintToString(rapid.write(random_sequence(6, 3, 1), options).notes); };
   EXPECT_THAT(tools(), testing::ElementsAre("tool0"));
-  EXPECT_THAT(notes(), HasSubstr("tool0, which weighs nothing"));
+  EXPECT_THAT(notes(), HasSubstr("tool0, which has no load"));
   options.tool = "tReflectors";
   EXPECT_THAT(tools(), testing::ElementsAre("tReflectors"));
   EXPECT_THAT(notes(), HasSubstr("tooldata tReflectors must exist"));
@@ -353,7 +353,7 @@ TEST(RobotPrograms, RefuseWhatWouldBeWrong) {
            {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.payload = "2,0,0,50"; }, "--payload '2,0,0,50'"},
            {"urscript", "", [](PoseSequence&, ExportOptions&o) { o.payload = "2 kg"; }, "--payload '2 kg'"},
            {"kuka-krl", "", [](PoseSequence&, ExportOptions&o) { o.wait = 1, o.digital_input = "2"; },
-            "--wait stands beside --digital-input"},
+            "--wait and --digital-input cannot be combined"},
            {"kuka-krl", "",
             [](PoseSequence&s, ExportOptions&) {
               for (auto& p : s.poses) p.measured = true;

@@ -119,7 +119,7 @@ const Bad bad_instruments[] = {
     {"CameraWithRepeatabilityInNobodyKnowsWhat",
      "{type: camera, mount: hand, camera: {focal: [9, 9], centre: [1, 1], size: [9, 9]}, board: {rows: 3, columns: 3, "
      "spacing: 1}, device: {type: isotropic, noise: 0.2}, repeatability: 0.1}",
-     "is a plain number beside a noise in pixels; how far the robot stands off, with its unit: m, mm, um, nm"},
+     "is a plain number beside a noise in pixels; random offset of the robot, with its unit: m, mm, um, nm"},
     {"NoSensors", "{type: joints, sensors: [], device: {type: isotropic, noise: 1 mrad}}", "at least one sensor"},
     {"LoadWord", "{type: position, target: [0, 0, 0], load: heavy, device: {type: isotropic, noise: 1 um}}",
      "is 'heavy'; allowed: absolute, loaded_minus_unloaded"},

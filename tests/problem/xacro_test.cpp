@@ -87,7 +87,7 @@ TEST_F(Xacro, WithoutTheToolTheCommandToRunElsewhereIsTold) {
 }
 
 TEST_F(Xacro, ArgumentsOfAPlainUrdfAreRefused) {
-  EXPECT_THAT(refusal("{urdf: arm.urdf, xacro: {prefix: a_}}"), HasSubstr("beside a URDF"));
+  EXPECT_THAT(refusal("{urdf: arm.urdf, xacro: {prefix: a_}}"), HasSubstr("needs a xacro file"));
   EXPECT_THAT(refusal("{urdf: arm.urdf, group: arm}"), HasSubstr("srdf: FILE"));
   EXPECT_THAT(refusal("{urdf: arm.urdf, srdf: a.srdf, group: arm, tip: t}"), HasSubstr("group, or base and tip"));
 }

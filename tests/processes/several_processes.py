@@ -183,7 +183,7 @@ class SeveralProcesses(unittest.TestCase):
         for option, value in (("criterion", ["a"]), ("method", ["tabu"]), ("nuisance", ["1"]), ("fixed", ["3"]), ("augment", ["3"]),
                               ("reserve", []), ("restarts", ["3"]), ("resume", ["a.log"])):
             cases.append(("good.npy", [f"--{option}", *value], 2, f"--{option}"))
-        cases.append(("good.npy", ["--poses", "300"], 1, "nothing to choose"))
+        cases.append(("good.npy", ["--poses", "300"], 1, "leave no choice"))
         for file, extra, code, expected in cases:
             with self.subTest(file=file, extra=extra):
                 poses = [] if "--poses" in extra else ["--poses", "9"]

@@ -152,7 +152,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(calibration["compensator"]["freedom"], 2)
         # One target tells nothing of a rotation.
         self.assertEqual([(r["axis"], r["poses"]) for r in calibration["requirements"]], [("z", "fitted"), ("z", "held back")])
-        self.assertTrue(any("not judged: rx, ry, rz" in note for note in calibration["notes"]))
+        self.assertTrue(any("not checked: rx, ry, rz" in note for note in calibration["notes"]))
         models = self.run_program(*both, "--variant", "compliances,few")
         self.check("calibrations", models)
         self.assertEqual([m["variant"] for m in models["models"]], ["compliances", "few"])

@@ -13,7 +13,7 @@ EXAMPLES = sorted((sources.ROOT / "examples").glob("*/*.yaml")) + sorted((source
 BEYOND_STRUCTURE = (
     "valid YAML", "second YAML document", "duplicate key", "a key of robot is a list", "control characters",
     "lower < upper", "is an empty range", "empty range", "both ends need the same unit", "already has the name",
-    "(nearly) horizontal", "draws nothing", "half turn", "is one place", "from 1 to 6", "is '2e4'",
+    "(nearly) horizontal", "has no sampler", "half turn", "is one place", "from 1 to 6", "is '2e4'",
     "allowed: geometric, everything")
 QUANTITIES = {
     "length": {"length"}, "angle": {"angle"}, "joint_value": {"length", "angle"}, "force": {"force"},

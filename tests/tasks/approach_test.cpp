@@ -101,7 +101,7 @@ TEST(Approach, EveryMotionOfARouteArrivesFromTheStatedSideByTheOverrun) {
     checked_sequence(problem, parse_sequence(turned.dump(), "route.json"));
     ADD_FAILURE() << "a route that arrives from the wrong side passed";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("does not arrive as its pose states: joint_a3.approach"));
+    EXPECT_THAT(error.what(), HasSubstr("does not arrive from the stated side: joint_a3.approach"));
   }
 }
 
@@ -155,7 +155,7 @@ TEST(Approach, WithoutAColumnTheOrderOfTheListSaysIt) {
     EXPECT_EQ(list.configurations[i][8], sides[i].second) << i;
   }
   ASSERT_EQ(list.notes.size(), 2U);
-  EXPECT_THAT(list.notes.front(), HasSubstr("says from which side joint_a2 arrived"));
+  EXPECT_THAT(list.notes.front(), HasSubstr("gives the side from which joint_a2 arrived"));
   EXPECT_THROW(read_poses_text("joint_a1,joint_a2,joint_a3,joint_a4,joint_a5,joint_a6,temperature\n0,0,0,0,0,0,hot\n",
                                "p.csv", coordinates),
                InputError);

@@ -101,7 +101,7 @@ TEST(MeasuredData, PosesAreNumberedByOrderAndHolesInRepeatsAreNoReadings) {
   for (int k = 0; k < 6; ++k) EXPECT_EQ(back.poses[std::size_t(k)].id, k + 1);
   EXPECT_EQ(back.rows, 24);
   ASSERT_EQ(back.notes.size(), 1U);
-  EXPECT_THAT(back.notes[0], HasSubstr("data.csv:26: nothing was read"));
+  EXPECT_THAT(back.notes[0], HasSubstr("data.csv:26: no target was read"));
   // 0, 1, 0, 1 tenths of a millimetre: variance 1/3; without the first 2/3·1/2.
   EXPECT_NEAR(back.spread[1], 1e-4 / std::sqrt(3.0), 1e-9);
   EXPECT_NEAR(back.spread[0], 1e-4 / std::sqrt(3.0), 1e-9);
@@ -468,11 +468,11 @@ std::vector<std::string> notes_with_base_moved(const std::array<double, 6>& moti
 }
 
 TEST(Calibrate, SaysThatValidationPosesWereReadInAnotherFrame) {
-  EXPECT_THAT(notes_with_base_moved({}), testing::Not(testing::Contains(HasSubstr("another frame"))));
+  EXPECT_THAT(notes_with_base_moved({}), testing::Not(testing::Contains(HasSubstr("check its frame"))));
   EXPECT_THAT(notes_with_base_moved({0.003, 0, 0, 0, 0, 0}),
-              testing::Contains(testing::AllOf(HasSubstr("another frame? With the base 3"), HasSubstr(" mm and "))));
+              testing::Contains(testing::AllOf(HasSubstr("With the base moved by 3"), HasSubstr(" mm and "))));
   EXPECT_THAT(notes_with_base_moved({4.6, -1, 0.2, 0, 0.01, 2.5}),
-              testing::Contains(testing::AllOf(HasSubstr("another frame? With the base 4"), HasSubstr("143"))));
+              testing::Contains(testing::AllOf(HasSubstr("With the base moved by 4"), HasSubstr("143"))));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(CalibrationProfiles, AreOfTheParametersThatTheCurvatureNames) {
   EXPECT_GT(differ, 0);
   const std::string text = calibration_text(found);
   EXPECT_THAT(text, HasSubstr("profile; linear "));
-  EXPECT_THAT(text, HasSubstr("Not linear within its own uncertainty"));
+  EXPECT_THAT(text, HasSubstr("Nonlinear within one σ"));
   EXPECT_THAT(text, HasSubstr(std::to_string(names.size()) + " intervals"));
   const auto json = calibration_json(telescope.file.problem, telescope.file.options(), found);
   for (const auto& p : json["parameters"]) {

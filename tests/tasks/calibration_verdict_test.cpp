@@ -51,7 +51,7 @@ TEST(Verdict, ResidualsThatNoRobotHasAreRefusedAndRightOnesAreNot) {
   data.write();
   const Calibration c = calibrate_problem(data.problem, data.options(), Monitor{});
   EXPECT_EQ(c.verdict, Verdict::do_not_use);
-  EXPECT_THAT(c.refusals, Contains(HasSubstr("no robot's errors do that")));
+  EXPECT_THAT(c.refusals, Contains(HasSubstr("Check units, signs and zeros")));
 }
 
 TEST(Verdict, AZeroThatIsFortyTolerancesOffIsFoundWithinItsInterval) {
@@ -210,7 +210,7 @@ void expect_given(const Calibration& c, const std::vector<std::string>& names, c
       EXPECT_FALSE(value.sigma) << value.value.name;
     }
   }
-  EXPECT_THAT(c.notes, Contains(HasSubstr("only where " + left_out + " is nominal")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("only if " + left_out + " is nominal")));
 }
 
 TEST(Verdict, AWideToleranceThatWasStatedDoesNotExcuseALostTarget) {
@@ -224,7 +224,7 @@ TEST(Verdict, AWideToleranceThatWasStatedDoesNotExcuseALostTarget) {
   options.data = folder.write("lost.csv", measured_data_csv(*model, poses));
   const Calibration c = calibrate_problem(problem, options, Monitor{});
   EXPECT_EQ(c.verdict, Verdict::do_not_use);
-  EXPECT_THAT(c.refusals, Contains(HasSubstr("no robot's errors do that")));
+  EXPECT_THAT(c.refusals, Contains(HasSubstr("Check units, signs and zeros")));
   EXPECT_THAT(c.notes, Contains(HasSubstr("lost.csv:6: a target is read as 0")));
 }
 

@@ -60,7 +60,7 @@ TEST(Campaigns, OfATrackerThatWasMovedShareTheRobot) {
   options.campaigns.clear();
   options.validate = data.folder.path() / "tuesday.csv";
   const Calibration one = calibrate_problem(data.problem, options, Monitor{});
-  EXPECT_THAT(one.notes, testing::Contains(HasSubstr("another frame?")));
+  EXPECT_THAT(one.notes, testing::Contains(HasSubstr(": check its frame.")));
 }
 
 TEST(Campaigns, TellAsMuchAsTheirReadingsTogether) {

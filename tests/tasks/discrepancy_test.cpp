@@ -184,7 +184,7 @@ TEST_F(Discrepancies, ThePlanFileSaysIt) {
   EXPECT_EQ(json["discrimination"]["truth"], "longer");
   EXPECT_EQ(json["discrimination"]["degrees_of_freedom"], 9);
   EXPECT_TRUE(json["discrimination"]["by_tolerance"].is_null());
-  EXPECT_THAT(plan_summary(made), HasSubstr("If longer is the case, fitting plain leaves residuals of noncentrality"));
+  EXPECT_THAT(plan_summary(made), HasSubstr("If longer is true, fitting plain leaves residuals of noncentrality"));
   EXPECT_THAT(plan_summary(made), HasSubstr("a chi-square test of 9 degrees of freedom at 5 % rejects plain with"));
   EXPECT_FALSE(nlohmann::json::parse(plan_json(plan(problem(six), "o1", ""))).contains("discrimination"));
 }
@@ -210,7 +210,7 @@ TEST_F(Discrepancies, WhatCannotBeToldIsSaidWithItsPlace) {
   EXPECT_THAT(said("criterion: bias, "), HasSubstr("set design: truth or --truth"));
   EXPECT_THAT(said("truth: plain, "), HasSubstr("p.yaml:11: the truth 'plain' is the variant that is fitted"));
   EXPECT_THAT(said("truth: same, "), HasSubstr("p.yaml:11: truth 'same' has no effect that 'plain' does not estimate"));
-  EXPECT_THAT(said("truth: denavit, "), HasSubstr("do not share one catalogue of parameters"));
+  EXPECT_THAT(said("truth: denavit, "), HasSubstr("use different kinds of parameters"));
   EXPECT_THAT(said("truth: geared, criterion: compound, "), HasSubstr("needs a single fitted variant"));
   PlanOptions unknown;
   unknown.truth = "nobody";
@@ -225,10 +225,9 @@ TEST_F(Discrepancies, TooFewPosesForATestNameTheShortfall) {
   options.criterion = "discriminate";
   const Problem wider = problem("{variant: four, poses: 6, candidates: 100}",
                                 "  four: {parameters: [q1.offset, q2.offset, tool.x, q2.x]}\n");
-  EXPECT_THAT(
-      message<CannotDo>(wider, options),
-      HasSubstr("2 poses give 4 equations for 4 parameters: no reading is left to distinguish 'four' from 'geared'; at "
-                "least 3 poses are needed"));
+  EXPECT_THAT(message<CannotDo>(wider, options),
+              HasSubstr("2 poses give 4 equations for 4 parameters: no degree of freedom is left to distinguish 'four' "
+                        "from 'geared'; at least 3 poses are needed"));
   options.poses = 1;
   EXPECT_THAT(message<CannotDo>(wider, options), HasSubstr("1 poses determine 2 of 4 parameters"));
 }
@@ -237,7 +236,7 @@ TEST_F(Discrepancies, AnEffectThatIsImitatedIsNoReasonForAPlan) {
   // The base's turn is the first joint's offset.
   const Problem p = problem("{variant: plain, truth: turned, criterion: discriminate, poses: 6, candidates: 100}",
                             "  turned: {parameters: [q1.offset, q2.offset, tool.x], nominal: {base.rz: 0.1 deg}}\n");
-  EXPECT_THAT(message<CannotDo>(p), HasSubstr("'plain' imitates all that 'turned' does"));
+  EXPECT_THAT(message<CannotDo>(p), HasSubstr("'plain' reproduces every effect of 'turned' at every candidate"));
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ TEST_F(FixedPoses, WhatCannotBeFixedIsToldWithFileAndLine) {
   EXPECT_THAT(refusal("q1,q2\n0,1\n1,1\n2,1\n3,1\n-1,1\n"), HasSubstr("fixed.csv:5: 5 poses are fixed of a plan of 4"));
   EXPECT_THAT(refusal("q1,q2,fixed\n0,1,no\n"), HasSubstr("fixed.csv: fixes no pose"));
   EXPECT_THAT(refusal("q1,q2,fixed\n0,1,perhaps\n"), HasSubstr("fixed.csv:2: 'perhaps' in column 'fixed'"));
-  EXPECT_THAT(refusal("q1,q2\n0,1\n", ", reserve: yes"), HasSubstr("reserve stands beside fixed poses"));
+  EXPECT_THAT(refusal("q1,q2\n0,1\n", ", reserve: yes"), HasSubstr("reserve and fixed poses cannot be combined"));
   folder_.write("measured.csv", "q1,q2\n0,1\n");
   EXPECT_THAT(refusal("q1,q2\n0,1\n", ", measured: measured.csv"),
               HasSubstr("fixed.csv:2: pose 1 is measured already"));

@@ -261,9 +261,9 @@ TEST(JointEffects, WhatMakesNoSenseIsRefusedWithItsLine) {
   EXPECT_THAT(refusal("{joint_a2: {coupling: [joint_a2]}}"), HasSubstr("coupled with itself"));
   EXPECT_THAT(refusal("{joint_a2: {coupling: [elbow]}}"), HasSubstr("'elbow' is not a coordinate"));
   EXPECT_THAT(refusal("{joint_a2: {eccentricity: yes}, \"*\": {gear_ratio: 100}}"), HasSubstr("is there twice"));
-  EXPECT_THAT(refusal("{joint_a2: {overrun: 1 deg}}"), HasSubstr("overrun stands without backlash"));
+  EXPECT_THAT(refusal("{joint_a2: {overrun: 1 deg}}"), HasSubstr("overrun needs backlash"));
   EXPECT_THAT(refusal("{joint_a2: {backlash: yes, overrun: 1 mm}}"), HasSubstr("wrong unit"));
-  EXPECT_THAT(refusal("{joint_a2: {temperature: yes}}"), HasSubstr("temperature nobody states"));
+  EXPECT_THAT(refusal("{joint_a2: {temperature: yes}}"), HasSubstr("but no temperature is given"));
   EXPECT_THAT(refusal("{joint_a2: {eccentricity: yes}}\n  temperature: {at: [20]}"), HasSubstr("is used by no joint"));
   EXPECT_THAT(refusal("{joint_a2: {temperature: yes}}\n  temperature: {at: [20, 20]}"), HasSubstr("twice"));
 }

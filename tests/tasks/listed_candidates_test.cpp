@@ -115,7 +115,7 @@ TEST_F(ListedCandidates, BadListsAreToldWithFileAndLine) {
   EXPECT_THAT(refusal("q1\n0\n"), HasSubstr("list.csv:1: has no column 'q2'"));
   EXPECT_THAT(refusal("q1,q2\n0,1\n0,abc\n"), HasSubstr("list.csv:3: 'abc' of 'q2' is not a value"));
   EXPECT_THAT(refusal("q1,q2\n0,1\n", "{poses: 3, candidates: 5, candidates_from: list.csv}"),
-              HasSubstr("stands beside candidates"));
+              HasSubstr("cannot be combined with candidates"));
   EXPECT_THAT(refusal("q1,q2\n0,1\n0.1,1.2\n"), testing::Not(HasSubstr("accepted")));
 }
 

@@ -254,12 +254,12 @@ TEST_F(NextPosesOfAnArm, TooFewPosesAreSaidToBeFewAndNothingMeasuredGivesTheFirs
   EXPECT_EQ(first.verdict, NextVerdict::not_determined);
   EXPECT_EQ(first.measured, 0);
   ASSERT_EQ(first.poses.size(), 3U);
-  EXPECT_THAT(next_reason(first), HasSubstr("nothing is measured yet"));
+  EXPECT_THAT(next_reason(first), HasSubstr("no pose is measured yet"));
   const NextPoses one = next_poses(p, options(readings({poses[0]})), Monitor{});
   EXPECT_FALSE(one.fitted);
   EXPECT_EQ(one.told, 2);
   EXPECT_EQ(*one.smallest, 2);
-  EXPECT_THAT(next_reason(one), HasSubstr("1 pose is too few for a fit, 2 of 4 parameters are told"));
+  EXPECT_THAT(next_reason(one), HasSubstr("1 pose is too few for a fit, 2 of 4 parameters are determined"));
 }
 
 TEST_F(NextPosesOfAnArm, ItStopsWhereTheLimitIsRequiredAndWhereTheCurveIsFlat) {
@@ -313,12 +313,11 @@ TEST_F(NextPosesOfAnArm, EveryRequirementIsJudgedByTheDefinitionAndAllMustBeMet)
     limits[k] = *one.upper;
   }
   EXPECT_EQ(judged(5).verdict, NextVerdict::reached);
-  EXPECT_THAT(next_reason(judged(5)), HasSubstr("all that is required (5 requirements) is met with 95 % confidence"));
+  EXPECT_THAT(next_reason(judged(5)), HasSubstr("5 requirements met with 95 % confidence"));
   for (std::size_t k = 0; k < 5; ++k) {
     const NextPoses open = judged(k);
     EXPECT_EQ(open.verdict, NextVerdict::go_on) << names[k];
-    EXPECT_THAT(next_reason(open),
-                HasSubstr("1 of 5 requirements not met with 95 % confidence, farthest off " + names[k]));
+    EXPECT_THAT(next_reason(open), HasSubstr("1 of 5 requirements not met with 95 % confidence, worst: " + names[k]));
     EXPECT_THAT(next_text(open), HasSubstr("below with 95 %"));
   }
 }
@@ -351,7 +350,7 @@ TEST_F(NextPosesOfAnArm, ARowOfAnotherRobotIsNamedByItsLine) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("measured.csv:18: T1."));
-    EXPECT_THAT(error.what(), HasSubstr("from where the 16 poses before it put this robot"));
+    EXPECT_THAT(error.what(), HasSubstr("from its estimate by the 16 poses before"));
     EXPECT_THAT(error.what(), HasSubstr("a row of another robot"));
   }
 }
@@ -402,13 +401,13 @@ TEST_F(NextStates, DataThatGrowAreGoneOnWithAndReplacedOnesRefused) {
   const NextState state = state_after(p, next, next_poses(p, next, Monitor{}), std::nullopt);
   EXPECT_EQ(refusal(state, p, text), "accepted");
   EXPECT_EQ(refusal(state, p, text + "6,0.1,0.2,1.9,0.4\n"), "accepted");
-  EXPECT_THAT(refusal(state, p, readings(poses, 2) + text), HasSubstr("measured.csv: is another file than s.json saw"));
+  EXPECT_THAT(refusal(state, p, readings(poses, 2) + text), HasSubstr("measured.csv: differs from the file of s.json"));
   EXPECT_THAT(refusal(state, p, header), HasSubstr("it was replaced or cut"));
   const Problem other = problem(", candidates: 151");
   EXPECT_THAT(refusal(state, other, text), HasSubstr("changed"));
   Problem elsewhere = other;
   elsewhere.file = "other.yaml";
-  EXPECT_THAT(refusal(state, elsewhere, text), HasSubstr("s.json: is of another problem"));
+  EXPECT_THAT(refusal(state, elsewhere, text), HasSubstr("s.json: belongs to another problem"));
 }
 
 TEST_F(NextStates, ADamagedFileIsOneLine) {

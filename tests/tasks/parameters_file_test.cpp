@@ -133,7 +133,7 @@ TEST_F(PlannedAtParameters, ReportAndEvaluationAgreeAtTheParametersAndSaySoElsew
   EXPECT_EQ(same.plan.parameters_file.sha256, calibrated.parameters->sha256);
   const PoseListEvaluation other = evaluate_problem(nominal, poses_in(nominal, plan_file), options, Monitor{});
   ASSERT_EQ(other.notes.size(), 1U);
-  EXPECT_THAT(other.notes.front(), HasSubstr("everything here is at nominal ones (--parameters "));
+  EXPECT_THAT(other.notes.front(), HasSubstr("this run uses nominal ones (--parameters "));
 }
 
 TEST_F(PlannedAtParameters, RouteStatesThemAndNotesOthers) {

@@ -96,16 +96,16 @@ TEST(ReportResult, RefusesEverythingElseInOneLine) {
     }
     return std::string("accepted");
   };
-  const std::string known = "plan.json, or what calibrate, compare, next, simulate or stations prints with --json";
+  const std::string known = "plan.json, or the --json output of calibrate, compare, next, simulate or stations";
   EXPECT_THAT(refused("pose,joint_a1 [rad]\n1,0\n"), HasSubstr("is no JSON; " + known));
-  EXPECT_THAT(refused("[1, 2]"), HasSubstr("is no result of posewright; " + known));
+  EXPECT_THAT(refused("[1, 2]"), HasSubstr("is not a result of posewright; " + known));
   EXPECT_THAT(refused("{\"schema\": \"x\", \"log_det\": 1e999}"), HasSubstr("too large"));
-  EXPECT_THAT(refused("{\"schema\": 3}"), HasSubstr("is no result of posewright"));
+  EXPECT_THAT(refused("{\"schema\": 3}"), HasSubstr("is not a result of posewright"));
   EXPECT_THAT(refused("{\"schema\": \"other/1\"}"), HasSubstr("is of schema other/1, which has no page; " + known));
   EXPECT_THAT(refused("{\"schema\": \"posewright/route/1\"}"), HasSubstr("posewright report PLAN --route FILE"));
   EXPECT_THAT(refused("# from posewright\nposewright_parameters: 1\nvariant: a\n"), HasSubstr("is a parameters file"));
   EXPECT_THAT(refused("{\"schema\": \"posewright/stations/1\", \"ranking\": []}"),
-              HasSubstr("has no problem; what posewright stations --json of this version prints"));
+              HasSubstr("has no problem; the output of posewright stations --json of this version"));
   EXPECT_EQ(refused("{\"schema\": \"posewright/plan/1\"}"), "a plan");
 }
 

@@ -241,7 +241,7 @@ TEST_F(DrawnRobotsOfProblems, SmallTolerancesAreNotWorthAPlanOfTheirOwn) {
   const Plan plan = plan_problem(arm(", robust: {draws: 10}", "1e-5"), {}, Monitor());
   ASSERT_TRUE(plan.robust);
   EXPECT_FALSE(plan.robust->worth_it());
-  EXPECT_THAT(plan_summary(plan), HasSubstr("is not worth it, it gains 0.00 %"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("is not worthwhile, it gains 0.00 %"));
 }
 
 TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRobotSettles) {
@@ -285,7 +285,7 @@ TEST_F(DrawnRobotsOfProblems, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   refused(", robust: {robots: 5}", "robots");
   refused(", robust: {}, criterion: o3", "not for criterion 'o3'");
   refused(", robust: {}, criterion: compound", "is for one variant");
-  refused(", robust: {}, reserve: yes", "stands beside reserve");
+  refused(", robust: {}, reserve: yes", "cannot be combined with reserve");
 }
 
 TEST_F(DrawnRobotsOfProblems, ValidationPosesAreThoseOfTheNominalRobot) {
@@ -310,7 +310,7 @@ TEST_F(DrawnRobotsOfProblems, AStopKeepsThePlanOfTheNominalRobot) {
   ASSERT_TRUE(plan.robust);
   EXPECT_TRUE(plan.robust->stopped);
   EXPECT_EQ(plan.poses.size(), 4U);
-  EXPECT_THAT(plan_summary(plan), HasSubstr("ended before all of them were looked at"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("stopped before all were evaluated"));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(Simulate, SaysWhereThePredictionCannotHold) {
       simulate_problem(problem, given_poses(problem, list_of(problem, 20)), quick("rigid", 30), Monitor{});
   EXPECT_FALSE(s.confirmed);
   EXPECT_GT(s.curvature.largest, curvature_limit);
-  EXPECT_THAT(s.verdict, Contains(HasSubstr("not linear within its own uncertainty")));
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("nonlinear within one σ")));
 }
 
 TEST(Simulate, VariantsOfOtherCataloguesAreComparedByReadingsAlone) {
@@ -96,7 +96,7 @@ TEST(Simulate, VariantsOfOtherCataloguesAreComparedByReadingsAlone) {
   options.candidates = 200;
   const Simulation s = simulate_problem(problem, given_poses(problem, list_of(problem, 18)), options, Monitor{});
   EXPECT_FALSE(s.parameters.front().errors);
-  EXPECT_THAT(s.verdict, Contains(HasSubstr("do not share one catalogue")));
+  EXPECT_THAT(s.verdict, Contains(HasSubstr("use different kinds of parameters")));
   ASSERT_TRUE(s.accuracy);
   EXPECT_GT(s.accuracy->observed, 0);
   options.truth_nominal = true;

@@ -415,13 +415,13 @@ TEST_F(WorkspaceProofs, ASearchThatDidNotEndGivesNoFigureButWhatIsNotExceeded) {
   EXPECT_THAT(whole.method, HasSubstr(" more from drawn candidates found nothing better"));
   EXPECT_GE(whole.at_most, whole.efficiency);
   EXPECT_NEAR(whole.at_most, whole.efficiency, 0.005);
-  EXPECT_THAT(plan_summary(plan), HasSubstr("Predicted σ: what the stated noise alone leaves, if the model is"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Predicted σ: from the stated noise alone"));
   whole.settled = false;
   whole.at_most = 0.8765;
-  EXPECT_THAT(plan_summary(plan), HasSubstr("Over the whole workspace: no figure, the search for better poses did not "
-                                            "come to an end; at most 87.7 % of the best (no proof: "));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Over the whole workspace: no figure, the search for better poses was not "
+                                            "finished; at most 87.7 % of the best (no proof: "));
   whole.at_most = 1.02;
-  EXPECT_THAT(plan_summary(plan), HasSubstr("come to an end (no proof: "));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("was not finished (no proof: "));
 }
 
 TEST_F(WorkspaceProofs, TakesWhatRefutesItIntoTheWeights) {
@@ -484,7 +484,7 @@ TEST_F(WorkspaceProofs, OfPosesThatSomethingForbidsIsLooseAndSaysSo) {
                    {}, Monitor{});
   ASSERT_TRUE(plan.certificate.workspace);
   EXPECT_FALSE(plan.certificate.workspace->proved);
-  EXPECT_THAT(plan.certificate.workspace->why_not, HasSubstr("forbidden by what it does not know: collision with "));
+  EXPECT_THAT(plan.certificate.workspace->why_not, HasSubstr("forbidden by conditions outside it: collision with "));
   ASSERT_TRUE(plan.certificate.workspace->loose_bound);
   EXPECT_GE(*plan.certificate.workspace->loose_bound, plan.log_det);
   EXPECT_LT(plan.log_det, free.log_det);

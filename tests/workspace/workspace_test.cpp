@@ -81,7 +81,7 @@ TEST(Workspace, ContradictoryLimitsNameLineAndRange) {
               HasSubstr("p.yaml:4: 'w' is not a coordinate of this robot; allowed: x, y, z"));
   EXPECT_THAT(text(problem_with({{{"x", 5}, 0, 3}})),
               HasSubstr("p.yaml:5: limits of 'x' go beyond the robot's own; allowed: -1000 to 1000 mm"));
-  EXPECT_THAT(text(problem_with({}, 1.5)), HasSubstr("nothing is left of the range of 'x'"));
+  EXPECT_THAT(text(problem_with({}, 1.5)), HasSubstr("no range is left for 'x'"));
 }
 
 TEST(Workspace, OmplSeesTheSameFeasibleSet) {

@@ -69,9 +69,10 @@ Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options)
   program.notes.push_back(
       program.wait ? fmt::format("signal {} must exist in the controller's I/O configuration", output)
                    : fmt::format("signals {} and {} must exist in the controller's I/O configuration", output, input));
-  program.notes.push_back(options.tool.empty() ? "the robot moves with tool0, which weighs nothing: --tool NAME is the "
-                                                 "tooldata that has the load it carries"
-                                               : "tooldata " + tool + " must exist on the controller");
+  program.notes.push_back(
+      options.tool.empty()
+          ? "the robot moves with tool0, which has no load: --tool NAME names the tooldata with its load"
+          : "tooldata " + tool + " must exist on the controller");
   return one_file(program.name + ".mod", with_crlf(text), program.notes);
 }
 

@@ -44,8 +44,8 @@ Exported write_delmia(const PoseSequence& all, const ExportOptions&) {
   }
   std::vector<std::string> notes = list_notes(sequence);
   notes.push_back(
-      "the tag poses are predictions (nominal model, measurement frame; R = Rz(yaw) Ry(pitch) Rx(roll)): "
-      "replace them by what is measured");
+      "the tag poses are predictions (nominal model, measurement frame; R = Rz(yaw) Ry(pitch) Rx(roll)): replace them "
+      "by measured values");
   return one_file("calposes.txt", text, notes);
 }
 

@@ -48,9 +48,9 @@ Exported write_samples(const PoseSequence& all, const ExportOptions& options, bo
     text += fmt::format("# pose {}\n{}", pose.id, sample);
   }
   std::vector<std::string> notes = list_notes(sequence);
-  notes.push_back("the measured transforms (camera to marker) are .nan: replace them by what is measured");
+  notes.push_back("the measured transforms (camera to marker) are .nan: replace them by measured values");
   notes.push_back(
-      "easy_handeye2 takes samples where the robot stands: joint-trajectory, srdf or a robot program leads it there");
+      "easy_handeye2 takes samples at the robot's current pose: move it by joint-trajectory, srdf or a robot program");
   return one_file("posewright.samples", text, notes);
 }
 

@@ -46,12 +46,10 @@ Exported write_figaroh_csv(const PoseSequence& all, const ExportOptions&) {
   }
   std::vector<std::string> notes = list_notes(sequence);
   if (names.empty())
-    notes.push_back(
-        "marker positions are nan: the plan has no targets seen from one station; fill in what is measured");
+    notes.push_back("marker positions are nan: the plan has no targets seen from one station; fill in measured values");
   else
-    notes.push_back(
-        fmt::format("marker positions ({}; station frame) are predictions to be replaced by what is measured",
-                    ascii(fmt::format("{}", fmt::join(names, ", ")))));
+    notes.push_back(fmt::format("marker positions ({}; station frame) are predictions; replace them by measured values",
+                                ascii(fmt::format("{}", fmt::join(names, ", ")))));
   return one_file("calibration.csv", text, notes);
 }
 

@@ -70,8 +70,8 @@ Exported write_hexapod_gcs(const PoseSequence& all, const ExportOptions& options
   allow_settings(options.controller, "hexapod-gcs", {"pivot_mm"});
   if (turns(sequence) && !options.controller.pivot_mm)
     throw InputError({}, "hexapod-gcs needs pivot_mm: [R, S, T] in --controller FILE",
-                     "the platform turns about the origin of the problem's platform frame; say where the controller "
-                     "counts it (SPI), or the platform goes elsewhere");
+                     "the platform turns about the origin of the problem's platform frame; set the controller's pivot "
+                     "to it (SPI), or the platform reaches other poses");
   std::string text = "SVO X 1 Y 1 Z 1 U 1 V 1 W 1\n";
   text += fmt::format("VLS {}\n", fixed(options.speed.value_or(10.0) / 10, 1));
   if (const auto& pivot = options.controller.pivot_mm)

@@ -23,7 +23,7 @@ Exported write_industrial_calibration(const PoseSequence& all, const ExportOptio
     for (const double value : pose.values) text += fmt::format("  - {}\n", yaml_number(value));
   }
   std::vector<std::string> notes = list_notes(sequence);
-  notes.push_back("the measured poses (camera to target) are .nan: replace them by what is measured");
+  notes.push_back("the measured poses (camera to target) are .nan: replace them by measured values");
   notes.push_back(
       "the joints are those that carry the target; where they carry the camera, they belong in camera_joints");
   return one_file("measurements.yaml", text, notes);

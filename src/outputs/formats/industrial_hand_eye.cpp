@@ -26,7 +26,7 @@ Exported write_industrial_hand_eye(const PoseSequence& all, const ExportOptions&
   const PoseSequence sequence = to_measure(all);
   Exported exported;
   std::string list = yaml_head("hand-eye data of industrial_calibration") +
-                     "# The images are yours to take: images/N.png while the robot stands at pose N.\ndata:\n";
+                     "# Take the images yourself: images/N.png with the robot at pose N.\ndata:\n";
   exported.files.push_back({"cal_data.yaml", ""});
   for (const SequencePose& pose : sequence.poses) {
     if (!pose.tool_pose)
@@ -36,7 +36,7 @@ Exported write_industrial_hand_eye(const PoseSequence& all, const ExportOptions&
   }
   exported.files.front().bytes = list;
   exported.notes = list_notes(sequence);
-  exported.notes.push_back("the poses are those of the nominal model: replace them by what the controller reports");
+  exported.notes.push_back("the poses are those of the nominal model: replace them by the controller's values");
   return exported;
 }
 

@@ -154,7 +154,7 @@ RobotProgram make_program(const PoseSequence& all, const ExportOptions& options,
   program.settle = options.settle.value_or(sequence.settle > 0 ? sequence.settle : default_settle);
   program.wait = options.wait;
   if (options.wait && !options.digital_input.empty())
-    throw InputError({}, "--wait stands beside --digital-input", "one of both is allowed");
+    throw InputError({}, "--wait and --digital-input cannot be combined", "leave one of them out");
   program.decimals = options.controller.decimals.value_or(rules.decimals);
   Composer(sequence, axes, rules, program).compose();
   program.number = number_of(program.points);

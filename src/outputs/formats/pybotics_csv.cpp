@@ -29,8 +29,7 @@ Exported write_pybotics_csv(const PoseSequence& all, const ExportOptions&) {
         text += shortest(r < 3 && c == 3 ? X(r, c) * 1e3 : X(r, c)) + (r == 3 && c == 3 ? "\n" : ",");
   }
   std::vector<std::string> notes = list_notes(sequence);
-  notes.push_back(
-      "the tool poses are predictions (nominal model, measurement frame): replace them by what is measured");
+  notes.push_back("the tool poses are predictions (nominal model, measurement frame): replace them by measured values");
   return one_file("calposes.csv", text, notes);
 }
 

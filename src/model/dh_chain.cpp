@@ -25,7 +25,7 @@ std::vector<Axis> axes_of(const ChainDescription& chain, Eigen::Isometry3d& X_Me
   std::vector<Axis> axes;
   Eigen::Isometry3d X = chain.X_MeasureBase;
   for (const ChainJoint& joint : chain.joints) {
-    if (joint.mimic)
+    if (joint.mimic || joint.multiplier != 1 || joint.offset != 0)
       throw CannotDo("variant: Denavit–Hartenberg parameters are not defined for the mimic joint '" + joint.name + "'");
     X = X * joint.X_ParentJoint;
     axes.push_back({X.translation(), X.linear() * joint.axis, joint.prismatic});

@@ -21,7 +21,10 @@ class LinkCollector {
       : urdf_(std::move(urdf)), folder_(std::move(folder)), wanted_(wanted) {
     int frame = 0;
     for (const auto& joint : urdf_.joints())
-      if (joint->type != urdf::Joint::FIXED) frame_after_[joint->name] = ++frame;
+      if (joint->type != urdf::Joint::FIXED) {
+        frame_after_[joint->name] = ++frame;
+        if (joint->mimic != nullptr) masters_.insert(joint->mimic->joint_name);
+      }
     if (wanted_ == ShapesOf::collision) urdf_.lines().check_collision_shapes();
     // Above the base everything stands where zero position puts it.
     Eigen::Isometry3d X_RootBase = Eigen::Isometry3d::Identity();
@@ -68,7 +71,9 @@ class LinkCollector {
   bool follows_chain(const urdf::Joint& joint) const {
     std::set<std::string> seen;
     urdf::JointConstSharedPtr at = urdf_.model().getJoint(joint.name);
-    while (at != nullptr && at->mimic != nullptr && seen.insert(at->name).second) {
+    while (at != nullptr && seen.insert(at->name).second) {
+      if (masters_.count(at->name) > 0) return true;
+      if (at->mimic == nullptr) return false;
       if (frame_after_.count(at->mimic->joint_name) > 0) return true;
       at = urdf_.model().getJoint(at->mimic->joint_name);
     }
@@ -89,6 +94,7 @@ class LinkCollector {
   std::filesystem::path folder_;
   ShapesOf wanted_;
   std::map<std::string, int> frame_after_;
+  std::set<std::string> masters_;  // joints that those of the chain follow, in it or not
   std::vector<LinkGeometry> links_;
 };
 

@@ -89,8 +89,9 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
     if (joint.mimic) continue;
     geometric_.push_back({int(parameters_.size()), 2});
     columns_.push_back({int(k), 6});
-    parameters_.push_back({joint.name + ".offset", joint.prismatic ? "m" : "rad", 0.0,
-                           joint.prismatic ? 0.5e-3 : 0.05 * degree, Role::interest});
+    // Of the coordinate: a joint that slides may follow one that turns.
+    const std::string& unit = chain_.coordinates[std::size_t(joint.coordinate)].unit;
+    parameters_.push_back({joint.name + ".offset", unit, 0.0, unit == "m" ? 0.5e-3 : 0.05 * degree, Role::interest});
     columns_.push_back({int(k), 7});
     parameters_.push_back({joint.name + ".gear", "1", 0.0, 1e-3, Role::interest});
   }

@@ -114,16 +114,34 @@ class ChainBuilder {
       throw InputError(place, "joint '" + joint.name + "' has a zero axis", "a direction is needed");
     result.axis.normalize();
     if (joint.mimic != nullptr) {
-      result.mimic = true;
       result.multiplier = joint.mimic->multiplier;
       result.offset = joint.mimic->offset;
-      masters_.push_back({chain_.joints.size(), joint.mimic->joint_name});
+      const urdf::JointConstSharedPtr outside = master_outside(*joint.mimic);
+      result.mimic = outside == nullptr;
+      if (result.mimic) masters_.push_back({chain_.joints.size(), joint.mimic->joint_name});
+      else add_coordinate(*outside, result);
     } else {
-      result.coordinate = int(chain_.coordinates.size());
-      chain_.coordinates.push_back(coordinate_of(joint, place));
-      chain_.encoder_noise.push_back(arm_.encoder_noise);
+      add_coordinate(joint, result);
     }
     chain_.joints.push_back(std::move(result));
+  }
+
+  /// @param own  the joint of the chain whose offset and gear are those of the coordinate
+  void add_coordinate(const urdf::Joint& driven, ChainJoint& own) {
+    own.coordinate = int(chain_.coordinates.size());
+    chain_.coordinates.push_back(coordinate_of(driven, lines_.joint(driven.name)));
+    chain_.encoder_noise.push_back(arm_.encoder_noise);
+  }
+
+  /// The master that is not in the chain and moves, if this is the first joint of the chain that follows it.
+  urdf::JointConstSharedPtr master_outside(const urdf::JointMimic& mimic) const {
+    const urdf::JointConstSharedPtr master = model_.getJoint(mimic.joint_name);
+    const bool known =
+        std::ranges::any_of(chain_.coordinates, [&](const Coordinate& c) { return c.name == mimic.joint_name; });
+    if (known || master == nullptr || path_.count(master->name) > 0 || master->mimic != nullptr) return nullptr;
+    const bool moves = master->type == urdf::Joint::REVOLUTE || master->type == urdf::Joint::CONTINUOUS ||
+                       master->type == urdf::Joint::PRISMATIC;
+    return moves ? master : nullptr;
   }
 
   /// Mass of a link and of the branches on it that are not part of the chain, as they hang at zero position.
@@ -149,13 +167,12 @@ class ChainBuilder {
 
   void resolve_mimics() {
     for (const auto& [index, master] : masters_) {
-      const auto found = std::find_if(chain_.joints.begin(), chain_.joints.end(),
-                                      [&, name = master](const ChainJoint& j) { return j.name == name && !j.mimic; });
-      if (found == chain_.joints.end())
+      const auto found = std::ranges::find(chain_.coordinates, master, &Coordinate::name);
+      if (found == chain_.coordinates.end())
         throw InputError(lines_.joint(chain_.joints[index].name),
                          "joint '" + chain_.joints[index].name + "' mimics '" + master + "', which is not in the chain",
-                         "choose a tip whose chain has both");
-      chain_.joints[index].coordinate = found->coordinate;
+                         "its master must be a joint that moves and follows no other");
+      chain_.joints[index].coordinate = int(found - chain_.coordinates.begin());
     }
     // Fingers and covers beside the chain follow its joints too, and end them.
     for (const auto& [name, joint] : model_.joints_) {

@@ -86,6 +86,29 @@ TEST(UrdfReader, MimicJointFollowsItsMaster) {
   EXPECT_EQ(chain.joints[1].multiplier, -2);
 }
 
+TEST(UrdfReader, MasterOutsideTheChainIsACoordinateOfItsFollowers) {
+  const TemporaryFolder folder;
+  std::string text = good;
+  const auto follow = [&](const std::string& joint, const char* limit, const char* mimic) {
+    text.insert(text.find("</joint>", text.find("<joint name=\"" + joint)), std::string(limit) + mimic);
+  };
+  follow("j1", "", "<mimic joint=\"motor\" multiplier=\"0.5\" offset=\"0.1\"/>");
+  follow("j2", "", "<mimic joint=\"motor\"/>");
+  text.insert(text.find("</robot>"),
+              "<link name=\"wheel\"/><joint name=\"motor\" type=\"prismatic\"><parent link=\"base\"/><child "
+              "link=\"wheel\"/><axis xyz=\"1 0 0\"/><limit lower=\"-1\" upper=\"0.4\" effort=\"0\" "
+              "velocity=\"2\"/></joint>");
+  const ChainDescription chain = read(folder, text, "c");
+  ASSERT_EQ(chain.coordinates.size(), 1U);
+  EXPECT_EQ(chain.coordinates[0].name, "motor");
+  EXPECT_EQ(chain.coordinates[0].unit, "m");
+  EXPECT_EQ(chain.coordinates[0].upper, 0.4);
+  EXPECT_FALSE(chain.joints[0].mimic) << "its offset and gear are the coordinate's";
+  EXPECT_EQ(chain.joints[0].multiplier, 0.5);
+  EXPECT_TRUE(chain.joints[1].mimic);
+  EXPECT_EQ(chain.joints[1].coordinate, 0);
+}
+
 struct Bad {
   const char* what;
   const char* replace;

@@ -6,7 +6,8 @@
 namespace posewright {
 
 /// The chain from base to tip of a URDF file, read with urdfdom. Fixed joints are merged; continuous joints get ±π; a
-/// mimic joint follows its master, which must be in the chain too.
+/// mimic joint follows its master; a master outside the chain is a coordinate, too, whose offset and gear are those of
+/// the first joint that follows it.
 /// @param place  where the problem file names the robot, for errors about base and tip
 /// Throws InputError with the URDF's file and, where it can be told, line: unreadable or malformed file, no such link,
 /// tip not below base, floating or planar joints, limits that are missing, empty or not finite, a zero axis, no moving

@@ -82,7 +82,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   const Problem problem = given_problem(file, values);
   if (!list.empty() || !augment.empty() || !fixed.empty()) {
     const std::vector<Coordinate> coordinates = pose_coordinates(problem, plan_options.variant);
-    if (!augment.empty()) plan_options.measured = read_poses(augment, coordinates);
+    if (!augment.empty()) plan_options.measured = read_poses(augment, without_limits(coordinates));
     if (!fixed.empty()) plan_options.fixed = read_poses(fixed, coordinates);
     if (!list.empty()) plan_options.candidates_from = read_poses(list, without_limits(coordinates));
   }

@@ -136,6 +136,8 @@ class ColumnMap {
       const Coordinate& c = coordinates_[k];
       if (column_[k] < 0) q.push_back(c.values.front());
       else q.push_back(value_of(row.cells[std::size_t(column_[k])], unit_of(column_[k]), c, place));
+      // What was measured was there.
+      if (row.measured && !c.discrete()) continue;
       require_inside(q.back(), c, place);
       q.back() = as_allowed(q.back(), c);
     }

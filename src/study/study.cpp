@@ -159,7 +159,7 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
   // Bad lists are told before the long work.
   study.measured.dimension = int(coordinates.size());
-  if (const auto measured = given_or_read(settings.measured, settings.measured_file, coordinates))
+  if (const auto measured = given_or_read(settings.measured, settings.measured_file, without_limits(coordinates)))
     for (const auto& q : measured->configurations) append(study.measured, q);
   study.fixed.dimension = study.measured.dimension;
   if (settings.fixed) fix_poses(study, *settings.fixed, settings.repeats);

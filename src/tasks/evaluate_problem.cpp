@@ -45,8 +45,9 @@ class ListEvaluation {
     std::vector<int> near;  // ids
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       // What the problem names as measured counts once.
-      if (study_.measured.count() > 0 && !list.measured.empty() && list.measured[i]) continue;
-      require_feasible(list.configurations[i], i, list);
+      const bool measured = !list.measured.empty() && list.measured[i];
+      if (measured && study_.measured.count() > 0) continue;
+      if (!measured) require_feasible(list.configurations[i], i, list);
       append(poses_, list.configurations[i]);
       if (!study_.first().workspace->within_margin(list.configurations[i]).empty())
         near.push_back(i < list.ids.size() ? list.ids[i] : int(i) + 1);

@@ -122,6 +122,21 @@ TEST_F(FixedPoses, TheRestIsTheBestOfAllWaysToFillThePlan) {
   }
 }
 
+TEST_F(FixedPoses, PoseThatWasMeasuredBeyondALimitIsAMeasuredOne) {
+  const Problem problem = this->problem("poses: 6, candidates: 60");
+  const auto coordinates = pose_coordinates(problem);
+  const auto file = folder_.write("measured.csv", csv({{3.0002, 1}}));
+  EXPECT_THROW(read_poses(file, coordinates), InputError) << "a pose to go to keeps the limits";
+  PlanOptions options;
+  options.measured = read_poses(file, without_limits(coordinates));
+  const Plan found = plan_problem(problem, options, Monitor{});
+  ASSERT_EQ(found.poses.size(), 7U);
+  EXPECT_EQ(found.poses[0].configuration[0].value, 3.0002);
+  const auto written = folder_.write("plan.json", plan_json(found));
+  const PoseListEvaluation judged = evaluate_problem(problem, read_poses(written, coordinates), {}, Monitor{});
+  EXPECT_NEAR(judged.plan.log_det, found.log_det, 1e-9);
+}
+
 TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
   const Problem problem = this->problem("poses: 6, candidates: 60");
   PlanOptions options;

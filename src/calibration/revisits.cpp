@@ -10,13 +10,13 @@
 namespace posewright {
 namespace {
 
-// Encoders jitter: rad and m that visits of one configuration differ by.
-constexpr double jitter = 1e-5;
+// Rad and m within which a controller comes back to a configuration; the model says what lies between.
+constexpr double come_back = 1e-3;
 
 bool same_place(const std::vector<Coordinate>& coordinates, const MeasuredPose& a, const MeasuredPose& b) {
   for (std::size_t i = 0; i < coordinates.size(); ++i)
     // Where it was warmer the robot drifted: that is what visits tell.
-    if (!coordinates[i].measurable && std::abs(a.q[i] - b.q[i]) > (coordinates[i].discrete() ? 0.0 : jitter))
+    if (!coordinates[i].measurable && std::abs(a.q[i] - b.q[i]) > (coordinates[i].discrete() ? 0.0 : come_back))
       return false;
   return true;
 }
@@ -60,7 +60,7 @@ void add_place(const IdentificationModel& model, const std::vector<MeasuredPose>
     if (!linearise_at(model, pose, correction, {}, at, predicted)) return;
     const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(at.covariance(read, read)));
     if (root.info() != Eigen::Success) return;
-    model.difference(pose.y, poses[place.front()].y, change);
+    model.difference(pose.y, predicted, change);
     const double time = double(place[std::size_t(v)]) / double(poses.size() - 1);
     mean.middleRows(v * r, r) = root.matrixL().solve(Eigen::MatrixXd::Identity(r, r));
     drift.middleRows(v * r, r) = time * mean.middleRows(v * r, r);

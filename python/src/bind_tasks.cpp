@@ -42,9 +42,11 @@ Weighting weighting_named(const py::object& word) {
 }
 
 MadeCalibration calibrate(const Shared& problem, const py::object& data, const std::string& variant,
-                          const py::object& weights, bool prior, const py::object& validate, long long hold_back,
-                          bool in_steps, bool interpolate, const py::object& profile, py::object progress) {
+                          const py::object& weights, bool prior, const std::string& moved, const py::object& validate,
+                          long long hold_back, bool in_steps, bool interpolate, const py::object& profile,
+                          py::object progress) {
   CalibrateOptions options;
+  options.moved = moved_between(moved);
   std::vector<std::filesystem::path> files;
   if (py::isinstance<py::list>(data) || py::isinstance<py::tuple>(data))
     files = data.cast<std::vector<std::filesystem::path>>();
@@ -189,7 +191,7 @@ void bind_classes(py::module_& m) {
           "columns", [](const C& c) { return c.value.columns; }, "of the covariance")
       .def_property_readonly("covariance", [](const C& c) { return array_of(Eigen::MatrixXd(c.value.fit.covariance)); })
       .def_property_readonly("frames", &frames_of,
-                             "{frame: 4 × 4} where the estimate puts base, camera, board, stations")
+                             "{frame: 4 × 4} where the estimate puts base, tool, camera, board, stations")
       .def_property_readonly(
           "noise_factor", [](const C& c) { return c.value.fit.noise_factor; }, "noise found over noise stated")
       .def_property_readonly("notes", [](const C& c) { return c.value.notes; })
@@ -233,12 +235,13 @@ void bind_tasks(py::module_& m) {
   bind_classes(m);
   const py::none none;
   m.def("calibrate", &calibrate, py::arg("problem"), py::arg("data"), py::arg("variant") = "", py::kw_only(),
-        py::arg("weights") = none, py::arg("prior") = true, py::arg("validate") = none, py::arg("hold_back") = 0,
-        py::arg("in_steps") = false, py::arg("interpolate") = false, py::arg("profile") = "auto",
-        py::arg("progress") = none,
+        py::arg("weights") = none, py::arg("prior") = true, py::arg("moved") = "auto", py::arg("validate") = none,
+        py::arg("hold_back") = 0, py::arg("in_steps") = false, py::arg("interpolate") = false,
+        py::arg("profile") = "auto", py::arg("progress") = none,
         R"(Estimates a variant's parameters from a file of measured data (docs/calibrate.md).
 
-data: a file, or a list of files: campaigns, each with a base of its own; weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
+data: a file, or a list of files: campaigns; moved: what stands elsewhere in each further file: "base" (the instrument was moved), "tool" (all that the
+tip carries), "both" or "nothing", "auto": the base, and the tool if the residuals ask for it; weights: "ols", "wls" (default) or "robust"; prior: tolerances of what was manufactured count; validate: a file of poses
 that are not fitted; hold_back: every so many-th pose is not fitted; in_steps: also base and tool, geometry, stiffness
 one after the other; interpolate: predict with what the parameters leave as well (a variant with `unmodelled`); profile: parameters
 whose intervals are by profile likelihood: "auto" (those that the curvature names), "none", "all", or names and globs.)");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/model/placement.hpp"
@@ -46,6 +47,19 @@ std::vector<std::array<double, 3>> cube_rotations() {
   return rotations;
 }
 
+/// Indices of a frame's angles in the catalogue; none where one of them is not free.
+std::optional<std::array<std::size_t, 3>> angles_of(const IdentificationModel& model, const VariantColumns& columns,
+                                                    const std::string& frame) {
+  std::array<std::size_t, 3> at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto turn = std::find_if(columns.selected.begin(), columns.selected.end(),
+                                   [&](int i) { return model.parameters()[std::size_t(i)].name == frame + turns[k]; });
+    if (turn == columns.selected.end()) return std::nullopt;
+    at[k] = std::size_t(*turn);
+  }
+  return at;
+}
+
 /// The best of the starts, by the stated noise.
 /// @param frame  that may be turned any way: base, base@NAME
 /// @param from   corrections of what is not placed
@@ -55,17 +69,11 @@ std::vector<double> placed_from_any_side(const IdentificationModel& model, const
   std::vector<double> best = from, found;
   double least = cost_from(model, place, poses, quick, best, found);
   if (std::isfinite(least)) best = found;
-  std::array<std::size_t, 3> at{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto turn = std::find_if(place.selected.begin(), place.selected.end(),
-                                   [&](int i) { return model.parameters()[std::size_t(i)].name == frame + turns[k]; });
-    if (turn == place.selected.end()) return best;
-    at[k] = std::size_t(*turn);
-  }
-  if (least < plausible * plausible) return best;
+  const auto at = angles_of(model, place, frame);
+  if (!at || least < plausible * plausible) return best;
   for (const std::array<double, 3>& rotation : cube_rotations()) {
     std::vector<double> start = from;
-    for (std::size_t k = 0; k < 3; ++k) start[at[k]] = rotation[k];
+    for (std::size_t k = 0; k < 3; ++k) start[(*at)[k]] = rotation[k];
     const double cost = cost_from(model, place, poses, quick, start, found);
     if (!(cost < 0.999 * least)) continue;
     least = cost;
@@ -122,29 +130,32 @@ std::vector<double> placed(const IdentificationModel& model, const VariantColumn
   }
 }
 
-std::vector<double> placed_base(const IdentificationModel& model, const VariantColumns& base,
-                                const std::vector<MeasuredPose>& poses, const FitOptions& options,
-                                const std::vector<double>& from) {
-  const std::string& name = base.parameters.front().name;
+std::vector<double> placed_moved(const IdentificationModel& model, const VariantColumns& moved,
+                                 const std::vector<MeasuredPose>& poses, const FitOptions& options,
+                                 const std::vector<double>& from) {
+  const std::string& name = moved.parameters.front().name;
   FitOptions quick = options;
   quick.most_evaluations = few_evaluations;
-  const VariantColumns place = determined(model, base, poses, from, options.prior);
+  const VariantColumns place = determined(model, moved, poses, from, options.prior);
   if (place.selected.empty()) return from;
   return placed_from_any_side(model, place, poses, quick, name.substr(0, name.rfind('.')), from);
 }
 
-void take_canonical_angles(const IdentificationModel& model, const std::string& frame,
+bool take_canonical_angles(const IdentificationModel& model, const VariantColumns& columns,
                            std::vector<double>& correction) {
-  std::array<std::size_t, 3> at{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto turn = std::find_if(model.parameters().begin(), model.parameters().end(),
-                                   [&](const Parameter& p) { return p.name == frame + turns[k]; });
-    // Angles beyond nominal ones other than zero are no rotation of their own.
-    if (turn == model.parameters().end() || turn->nominal != 0.0) return;
-    at[k] = std::size_t(turn - model.parameters().begin());
+  bool changed = false;
+  for (const Parameter& p : columns.parameters) {
+    if (!p.places || !p.name.ends_with(turns[0])) continue;
+    const auto at = angles_of(model, columns, p.name.substr(0, p.name.rfind('.')));
+    if (!at) continue;
+    const Eigen::Vector3d angles(correction[(*at)[0]], correction[(*at)[1]], correction[(*at)[2]]);
+    const Eigen::Vector3d canonical = rpy_of(rotation_of_rpy(angles));
+    // Another branch is half a turn off at least: less is rounding.
+    if ((canonical - angles).cwiseAbs().maxCoeff() < 1.0) continue;
+    changed = true;
+    for (std::size_t k = 0; k < 3; ++k) correction[(*at)[k]] = canonical[Eigen::Index(k)];
   }
-  const Eigen::Vector3d angles = rpy_of(rotation_of_rpy({correction[at[0]], correction[at[1]], correction[at[2]]}));
-  for (std::size_t k = 0; k < 3; ++k) correction[at[k]] = angles[Eigen::Index(k)];
+  return changed;
 }
 
 }  // namespace posewright

@@ -46,6 +46,8 @@ class Beside {
  public:
   explicit Beside(const Eigen::MatrixXd& fitted);
   Eigen::MatrixXd left(const Eigen::MatrixXd& X) const { return X - Q_ * (Q_.transpose() * X); }
+  /// Q, orthonormal columns.
+  const Eigen::MatrixXd& basis() const { return Q_; }
 
  private:
   Eigen::MatrixXd Q_;

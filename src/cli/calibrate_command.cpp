@@ -28,8 +28,12 @@ po::options_description calibrate_command_options() {
        "ols: equal weights; wls: weights by the instrument's noise; robust: small weights for gross errors (wls)")  //
       ("no-prior", "plain least squares, without manufacturing tolerances as prior knowledge")                      //
       ("validate", text("FILE"), "more measured data, for validation; they are not fitted")                         //
-      ("hold-back", text("K"), "keep every K-th pose for validation; it is not fitted")                             //
-      ("in-steps", "also estimate base and tool, geometry, and stiffness in turn")                                  //
+      ("moved", text("WHAT"),
+       "frames that moved between files: base, as of an instrument; tool, with all that the tip carries; both; "
+       "nothing; "
+       "auto: the base, and the tool if the residuals show it (auto)")                   //
+      ("hold-back", text("K"), "keep every K-th pose for validation; it is not fitted")  //
+      ("in-steps", "also estimate base and tool, geometry, and stiffness in turn")       //
       ("profile", text("WHICH"),
        "intervals by profile likelihood: auto (parameters with a large curvature), none, all, or a list of names and "
        "globs (auto)")  //
@@ -103,6 +107,10 @@ CalibrateOptions options_of(const po::variables_map& values, const Words& positi
   CalibrateOptions calibrate;
   calibrate.data = positional[1];
   calibrate.campaigns.assign(positional.begin() + 2, positional.end());
+  if (values.count("moved") > 0) {
+    calibrate.moved = moved_between(text_of(values, "moved"));
+    if (calibrate.campaigns.empty()) throw InputError({}, "--moved with one file", "it is about further files");
+  }
   if (const std::vector<std::string> variants = variants_of(values); variants.size() == 1)
     calibrate.variant = variants.front();
   calibrate.weighting = weighting_of(values);
@@ -204,7 +212,7 @@ Command calibrate_command() {
       "calibrate",
       "PROBLEM DATA.csv [MORE.csv...]",
       "Estimates a variant's parameters from measured data: values, intervals, residuals, tests of the model. Several "
-      "files are campaigns: one robot, and for each file a base of its own.",
+      "files are campaigns: one robot, and for each file frames that moved (--moved).",
       calibrate_command_options,
       "posewright calibrate problem.yaml measured.csv --validate more.csv",
       run_calibrate};

@@ -1,5 +1,6 @@
 #include "posewright/model/campaigns.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "posewright/support/error.hpp"
@@ -9,15 +10,16 @@ namespace {
 
 constexpr std::array<const char*, 6> components = {".x", ".y", ".z", ".rx", ".ry", ".rz"};
 
-std::string base_of(const std::string& campaign) { return campaign.empty() ? "base" : "base@" + campaign; }
-
 class Campaigns : public IdentificationModel {
  public:
-  Campaigns(std::unique_ptr<IdentificationModel> inside, const std::vector<std::string>& names)
-      : inside_(std::move(inside)), base_(base_parameters(*inside_)) {
-    if (base_.size() < components.size())
+  Campaigns(std::unique_ptr<IdentificationModel> inside, const std::vector<std::string>& names,
+            const std::vector<std::string>& moved)
+      : inside_(std::move(inside)), moved_(frame_parameters(*inside_, moved)) {
+    if (std::ranges::count(moved, "base") > 0 && base_parameters(*inside_).size() < components.size())
       throw CannotDo(
           "several files are campaigns with a base each, and these readings do not depend on where a base is");
+    if (moved_.empty() && !moved.empty())
+      throw CannotDo("nothing that these readings depend on is on the tool: no file has one of its own");
     parameters_ = inside_->parameters();
     own_ = int(parameters_.size());
     coordinates_ = inside_->coordinates();
@@ -30,9 +32,9 @@ class Campaigns : public IdentificationModel {
     tips_ = inside_->tips();
     tip_coordinates_ = inside_->tip_coordinates();
     for (std::size_t c = 1; c < names.size(); ++c)
-      for (std::size_t k = 0; k < components.size(); ++k) {
-        parameters_.push_back(inside_->parameters()[std::size_t(base_[k])]);
-        parameters_.back().name = base_of(names[c]) + components[k];
+      for (const int i : moved_) {
+        parameters_.push_back(inside_->parameters()[std::size_t(i)]);
+        parameters_.back().name = name_in(names[c], parameters_.back().name);
         parameters_.back().role = Role::nuisance;
       }
   }
@@ -49,22 +51,21 @@ class Campaigns : public IdentificationModel {
     if (at.correction.empty()) return {q, {}};
     correction.assign(at.correction.begin(), at.correction.begin() + own_);
     if (const int campaign = int(at.q.back()); campaign > 0)
-      for (std::size_t k = 0; k < base_.size(); ++k)
-        correction[std::size_t(base_[k])] = at.correction[std::size_t(first_of(campaign)) + k];
+      for (std::size_t k = 0; k < moved_.size(); ++k)
+        correction[std::size_t(moved_[k])] = at.correction[std::size_t(first_of(campaign)) + k];
     return {q, correction};
   }
-  int first_of(int campaign) const { return own_ + int(base_.size()) * (campaign - 1); }
+  int first_of(int campaign) const { return own_ + int(moved_.size()) * (campaign - 1); }
 
   /// Parameter of the inner model with the same effect on a campaign's readings; −1: none.
   int moves(int index, int campaign) const {
     if (index >= int(parameters_.size())) return index - int(parameters_.size()) + own_;  // along the tip's twists
     if (index >= own_) {
       const int first = first_of(campaign);
-      return campaign > 0 && index >= first && index < first + int(base_.size()) ? base_[std::size_t(index - first)]
-                                                                                 : -1;
+      return campaign > 0 && index >= first && index < first + int(moved_.size()) ? moved_[std::size_t(index - first)]
+                                                                                  : -1;
     }
-    const bool is_base = std::find(base_.begin(), base_.end(), index) != base_.end();
-    return is_base && campaign > 0 ? -1 : index;
+    return campaign > 0 && std::ranges::count(moved_, index) > 0 ? -1 : index;
   }
 
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override {
@@ -74,7 +75,7 @@ class Campaigns : public IdentificationModel {
     own.clear();
     for (const int i : selected) {
       const int moved = moves(i, campaign);
-      own.push_back(moved < 0 ? base_.front() : moved);
+      own.push_back(moved < 0 ? moved_.front() : moved);
     }
     const Inside there = inside(at);
     // Parallel robots stand elsewhere with their corrections: the model inside finds where.
@@ -110,33 +111,64 @@ class Campaigns : public IdentificationModel {
   }
 
   std::unique_ptr<IdentificationModel> inside_;
-  std::vector<int> base_;
+  std::vector<int> moved_;
   int own_ = 0;  ///< parameters of the model inside
 };
 
 }  // namespace
 
-std::vector<int> base_parameters(const IdentificationModel& model, const std::string& campaign) {
+std::string name_in(const std::string& campaign, const std::string& name) {
+  const std::size_t end = std::min(name.find('.'), name.size());
+  return name.substr(0, end) + "@" + campaign + name.substr(end);
+}
+
+std::vector<int> frame_parameters(const IdentificationModel& model, const std::vector<std::string>& frames) {
   std::vector<int> found;
-  for (const char* component : components)
-    for (std::size_t i = 0; i < model.parameters().size(); ++i)
-      if (model.parameters()[i].name == base_of(campaign) + component) found.push_back(int(i));
+  for (const std::string& frame : frames)
+    for (const char* component : components)
+      for (std::size_t i = 0; i < model.parameters().size(); ++i)
+        if (model.parameters()[i].name == frame + component) found.push_back(int(i));
   return found;
 }
 
-std::unique_ptr<IdentificationModel> with_campaigns(std::unique_ptr<IdentificationModel> model,
-                                                    const std::vector<std::string>& names) {
-  return std::make_unique<Campaigns>(std::move(model), names);
+std::vector<int> base_parameters(const IdentificationModel& model) { return frame_parameters(model, {"base"}); }
+
+std::vector<int> campaign_parameters(const IdentificationModel& model, const std::string& campaign) {
+  std::vector<int> found;
+  for (std::size_t i = 0; i < model.parameters().size(); ++i) {
+    const std::string& name = model.parameters()[i].name;
+    const std::size_t at = name.find('@');
+    // A campaign is called as its file, which may have dots.
+    if (at != std::string::npos && name.compare(at + 1, campaign.size() + 1, campaign + ".") == 0)
+      found.push_back(int(i));
+  }
+  return found;
 }
 
-VariantColumns with_campaign_bases(const IdentificationModel& model, const VariantColumns& columns) {
+std::vector<double> correction_in(const IdentificationModel& model, const std::string& campaign,
+                                  const std::vector<double>& correction) {
+  std::vector<double> there = correction;
+  for (const int own : campaign_parameters(model, campaign))
+    for (std::size_t i = 0; i < model.parameters().size(); ++i)
+      if (name_in(campaign, model.parameters()[i].name) == model.parameters()[std::size_t(own)].name)
+        there[i] = correction[std::size_t(own)];
+  return there;
+}
+
+std::unique_ptr<IdentificationModel> with_campaigns(std::unique_ptr<IdentificationModel> model,
+                                                    const std::vector<std::string>& names,
+                                                    const std::vector<std::string>& moved) {
+  return std::make_unique<Campaigns>(std::move(model), names, moved);
+}
+
+VariantColumns with_campaign_columns(const IdentificationModel& model, const VariantColumns& columns) {
   const Coordinate& campaign = model.coordinates().back();
   VariantColumns all = columns;
   all.selected.clear();
   all.parameters.clear();
   all.tiers.clear();
   for (std::size_t c = 1; c < campaign.labels.size(); ++c)
-    for (const int i : base_parameters(model, campaign.labels[c])) {
+    for (const int i : campaign_parameters(model, campaign.labels[c])) {
       all.selected.push_back(i);
       all.parameters.push_back(model.parameters()[std::size_t(i)]);
       all.parameters.back().places = true;

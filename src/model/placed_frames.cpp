@@ -1,6 +1,7 @@
 #include "posewright/model/placed_frames.hpp"
 
-#include <optional>
+#include <algorithm>
+#include <string_view>
 
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/nominal_placement.hpp"
@@ -10,20 +11,35 @@
 namespace posewright {
 namespace {
 
-/// None: nothing of the robot is stated in a measurement frame.
-std::optional<Eigen::Isometry3d> base_of(const Problem& problem, const VariantSpec& variant,
-                                         const std::vector<CalibratedValue>& values, const std::vector<Parameter>& at) {
-  // Denavit–Hartenberg parameters displace the base about a frame of their own.
-  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
-    const ChainDescription chain = read_urdf_chain(*arm, problem.at(arm->line));
-    return chain.X_MeasureBase * chain_correction(chain, variant.convention, values).base.X;
-  }
-  return std::visit(
-      [&](const auto& robot) -> std::optional<Eigen::Isometry3d> {
-        if constexpr (requires { robot.placement; }) return nominal_placement(at, "base", isometry(robot.placement));
-        else return std::nullopt;
-      },
-      problem.robot);
+constexpr const char* placement_key = "robot: placement";
+
+/// Base and tool of a serial arm. Denavit–Hartenberg parameters displace them about frames of their own.
+std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const Problem& problem, const VariantSpec& variant,
+                                   const std::vector<CalibratedValue>& values, const std::vector<Parameter>&) {
+  const ChainDescription chain = read_urdf_chain(arm, problem.at(arm.line));
+  const ChainCorrection correction = chain_correction(chain, variant.convention, values);
+  return {{"base", placement_key, false, chain.X_MeasureBase * correction.base.X},
+          {"tool", "", true, correction.tip.X}};
+}
+/// Nothing of a robot without a placement is stated in a measurement frame.
+template <class Robot>
+std::vector<PlacedFrame> frames_of(const Robot& robot, const Problem&, const VariantSpec&,
+                                   const std::vector<CalibratedValue>&, const std::vector<Parameter>& at) {
+  std::vector<PlacedFrame> frames;
+  if constexpr (requires { robot.placement; })
+    frames.push_back({"base", placement_key, false, nominal_placement(at, "base", isometry(robot.placement))});
+  frames.push_back({"tool", "", true, nominal_placement(at, "tool", Eigen::Isometry3d::Identity())});
+  return frames;
+}
+
+bool has_tool(const std::vector<Parameter>& parameters) {
+  return std::ranges::any_of(parameters, [](const Parameter& p) { return p.name.starts_with("tool."); });
+}
+
+std::string key_of(const std::string& prefix) {
+  constexpr std::string_view station = "station.";
+  if (prefix.starts_with(station)) return "measurement: device: stations: " + prefix.substr(station.size());
+  return "measurement: " + prefix;
 }
 
 }  // namespace
@@ -33,15 +49,16 @@ std::vector<PlacedFrame> placed_frames(const Problem& problem, const VariantSpec
   std::vector<Parameter> at;
   at.reserve(values.size());
   for (const CalibratedValue& v : values) at.push_back({v.name, v.unit, v.value, 0.0, Role::interest});
-  std::vector<PlacedFrame> frames;
-  if (const auto base = base_of(problem, variant, values, at)) frames.push_back({"base", false, *base});
+  std::vector<PlacedFrame> frames =
+      std::visit([&](const auto& robot) { return frames_of(robot, problem, variant, values, at); }, problem.robot);
+  if (!has_tool(at)) std::erase_if(frames, [](const PlacedFrame& frame) { return frame.name == "tool"; });
   const InstrumentView view = view_of(problem.measurement);
   if (view.has_places)
     for (const InstrumentView::Place& place : view.places)
-      frames.push_back({place.parameters, view.places_on_tip,
+      frames.push_back({place.parameters, key_of(place.parameters), view.places_on_tip,
                         nominal_placement(at, place.parameters, isometry(place.station.placement))});
   if (!view.points_parameters.empty())
-    frames.push_back({view.points_parameters, view.points_on_tip,
+    frames.push_back({view.points_parameters, key_of(view.points_parameters), view.points_on_tip,
                       nominal_placement(at, view.points_parameters, isometry(view.points_at))});
   return frames;
 }

@@ -52,6 +52,15 @@ Json revisits_json(const Revisits& r) {
           {"drift", moved}};
 }
 
+Json step_json(const std::optional<FrameStep>& step) {
+  if (!step) return nullptr;
+  return {{"frame", step->frame},
+          {"before", step->before},
+          {"after", step->after},
+          {"share", step->share},
+          {"chance", step->chance}};
+}
+
 Json interpolation_json(const std::optional<Interpolation>& i) {
   if (!i) return nullptr;
   if (!i->why_not.empty()) return {{"why_not", i->why_not}};
@@ -183,6 +192,7 @@ Json figures_json(const Calibration& c) {
             {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
           {"effects_left_out", effects_json(c)},
+          {"frame_step", step_json(c.step)},
           {"smooth_effect", smooth_json(c)},
           {"revisits", revisits_json(c.revisits)},
           {"not_in_auto", c.not_in_auto},

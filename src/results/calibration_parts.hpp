@@ -27,7 +27,7 @@ nlohmann::ordered_json requirements_json(const Calibration& calibration);
 nlohmann::ordered_json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy);
 nlohmann::ordered_json steps_json(const Calibration& calibration);
 nlohmann::ordered_json compensator_json(const CompensatorConstants& constants);
-/// Estimated frames for other programs: position and quaternion.
+/// Estimated frames as the problem file states them: position and rpy; JSON has the quaternion, too.
 std::string frames_text(const Calibration& calibration);
 nlohmann::ordered_json frames_json(const Calibration& calibration);
 /// Points a_i and b_i of a robot with legs, in base and platform, nominal and by the estimate; empty: it has none.

@@ -224,7 +224,7 @@ std::string chance_text(double probability) {
 }
 
 std::string calibration_text(const Calibration& c) {
-  return headline(c) + "\n" + parameters_text(c) + frames_text(c) +
+  return headline(c) + "\n" + frames_text(c) + parameters_text(c) +
          (c.compensator ? compensator_text(*c.compensator) : "") + (c.platform ? platform_text(*c.platform) : "") +
          steps_text(c) + residuals_text(c) + axes_text(c) + requirements_text(c) + predicted_poses_text(c) +
          histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) + revisits_text(c) + effects_text(c) +

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "calibration_parts.hpp"
+#include "posewright/model/placement.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright {
@@ -13,31 +17,51 @@ Eigen::Quaterniond quaternion_of(const Eigen::Isometry3d& X) {
   return q;
 }
 
+/// Whether the readings put the frame there.
+std::string remark_of(const Calibration& c, const PlacedFrame& frame) {
+  bool estimated = false;
+  for (const CalibratedParameter& p : c.parameters) {
+    if (!p.estimated || !p.label.name.starts_with(frame.name + ".")) continue;
+    if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
+    estimated = true;
+  }
+  return estimated ? "estimated" : "not estimated";
+}
+
+/// Without the sign of a number that is shown as zero.
+std::string fixed(double value) {
+  constexpr double digits = 1e4;
+  return fmt::format("{:.4f}", std::round(value * digits) / digits + 0.0);
+}
+
 }  // namespace
 
 std::string frames_text(const Calibration& c) {
   if (c.frames.empty()) return "";
   using A = Table::Align;
-  Table table({"frame", "in the frame of", "x [mm]", "y [mm]", "z [mm]", "qx", "qy", "qz", "qw"},
-              {A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::right, A::right});
+  Table table({"frame", "key in the file", "in the frame of", "x [mm]", "y", "z", "roll [deg]", "pitch", "yaw", ""},
+              {A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::right, A::left});
   for (const PlacedFrame& frame : c.frames) {
-    const Eigen::Quaterniond q = quaternion_of(frame.X);
-    std::vector<std::string> cells = {frame.name, frame.on_tip ? "the tip" : "the measurement"};
-    for (const double p : frame.X.translation()) cells.push_back(fmt::format("{:.4f}", 1e3 * p));
-    for (const double part : {q.x(), q.y(), q.z(), q.w()}) cells.push_back(fmt::format("{:.8f}", part));
+    std::vector<std::string> cells = {frame.name, frame.key.empty() ? "-" : frame.key,
+                                      frame.on_tip ? "the tip" : "the measurement"};
+    for (const double p : frame.X.translation()) cells.push_back(fixed(1e3 * p));
+    for (const double angle : rpy_of(frame.X.linear())) cells.push_back(fixed(angle * 180 / std::numbers::pi));
+    cells.push_back(remark_of(c, frame));
     table.row(cells);
   }
-  return "\nEstimated position and orientation of frames\n" + table.text();
+  return "Estimated position and orientation of frames\n" + table.text() + "\n";
 }
 
 nlohmann::ordered_json frames_json(const Calibration& c) {
   auto list = nlohmann::ordered_json::array();
   for (const PlacedFrame& frame : c.frames) {
-    const Eigen::Vector3d p = frame.X.translation();
+    const Eigen::Vector3d p = frame.X.translation(), rpy = rpy_of(frame.X.linear());
     const Eigen::Quaterniond q = quaternion_of(frame.X);
     list.push_back({{"name", frame.name},
+                    {"key", frame.key.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(frame.key)},
                     {"in", frame.on_tip ? "tip" : "measurement"},
                     {"position", {p.x(), p.y(), p.z()}},
+                    {"rpy", {rpy.x(), rpy.y(), rpy.z()}},
                     {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}});
   }
   return list;

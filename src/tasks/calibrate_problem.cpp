@@ -62,7 +62,7 @@ class CalibrationRun {
     fit_options.weighting = options_.weighting;
     fit_options.prior = result_.prior;
     VariantColumns all = select_columns(*model_, problem_, spec_);
-    if (!campaigns_.empty()) all = with_campaign_bases(*model_, all);
+    if (!campaigns_.empty()) all = with_campaign_columns(*model_, all);
     fit_options.components = result_.prior != Prior::none;
     fit_options.limits = frame_limits(*model_, all, result_.prior);
     place(all, fit_options);
@@ -73,7 +73,7 @@ class CalibrationRun {
     refuse_gross_poses(fit_options);
     refuse_conventions();
     if (options_.estimate_alone) {
-      result_.fit = fit(*model_, columns_, fitted_, fit_options);
+      fit_canonical(fit_options);
       return estimate_alone(fit_options);
     }
     estimate_with_profiles(fit_options);
@@ -84,6 +84,7 @@ class CalibrationRun {
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     if (options_.interpolate) interpolate(fit_options);
     judge_noise();
+    note_step();
     judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
     judge_frame();
     fill_parameters();
@@ -105,17 +106,49 @@ class CalibrationRun {
     return std::move(result_);
   }
 
+  /// From the other side where the fit left the canonical range of a frame's angles.
+  void fit_canonical(FitOptions& fit_options) {
+    result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    std::vector<double> canonical = result_.fit.correction;
+    if (!take_canonical_angles(*model_, columns_, canonical)) return;
+    fit_options.start = std::move(canonical);
+    result_.fit = fit(*model_, columns_, fitted_, fit_options);
+  }
+
   /// With everything that the residuals say of it.
   void estimate(FitOptions& fit_options) {
-    result_.fit = fit(*model_, columns_, fitted_, fit_options);
+    fit_canonical(fit_options);
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
                                        [this](const Problem& wider) { return model_of(wider); });
+    if (campaigns_.empty()) result_.step = frame_step(*model_, columns_, fitted_, result_.fit, frames_that_may_move());
     result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
     allow_for_unmodelled(fit_options);
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
     result_.orientations = orientations(*model_, columns_, result_.fit, stretch());
+  }
+
+  /// Base and what is on the tip, as effects.
+  std::vector<EffectToTest> frames_that_may_move() const {
+    std::vector<EffectToTest> frames;
+    for (const auto& [name, moved] : {std::pair{"base", Moved::base}, std::pair{"tool", Moved::tool}}) {
+      EffectToTest frame{name, frame_parameters(*model_, moved_frames(problem_, moved))};
+      if (!frame.parameters.empty()) frames.push_back(std::move(frame));
+    }
+    return frames;
+  }
+
+  void note_step() {
+    if (!result_.step) return;
+    const FrameStep& step = *result_.step;
+    note(
+        fmt::format("from pose {} on, the {} stands elsewhere than up to pose {} ({:.3g} % of the squared residuals, p "
+                    "{}): was {}? "
+                    "Split the file there and give both parts",
+                    step.after, step.frame, step.before, 100 * step.share,
+                    step.chance < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", step.chance),
+                    step.frame == "base" ? "the instrument moved" : "it remounted"));
   }
 
   /// A profile may pass a better estimate than the one that it began at.
@@ -148,10 +181,11 @@ class CalibrationRun {
     if (!data.images.empty()) judge_platform(data.images);
   }
 
-  /// With a base for every campaign if there are several.
+  /// With frames of its own for every campaign if there are several.
   std::unique_ptr<IdentificationModel> model_of(const Problem& problem) const {
     auto model = make_model(problem, spec_);
-    return campaigns_.empty() ? std::move(model) : with_campaigns(std::move(model), campaigns_);
+    return campaigns_.empty() ? std::move(model)
+                              : with_campaigns(std::move(model), campaigns_, moved_frames(problem_, options_.moved));
   }
 
   /// First fit of base and tool alone. Loads then bend the robot as it stands there; how little
@@ -159,9 +193,7 @@ class CalibrationRun {
   void place(const VariantColumns& all, FitOptions& fit_options) {
     placed_ = placed(*model_, all, of_campaign(0), fit_options);
     for (std::size_t c = 1; c < campaigns_.size(); ++c) place_campaign(c, all, fit_options);
-    take_canonical_angles(*model_, "base", placed_);
-    for (std::size_t c = 1; c < campaigns_.size(); ++c)
-      take_canonical_angles(*model_, "base@" + campaigns_[c], placed_);
+    take_canonical_angles(*model_, all, placed_);
     fit_options.start = placed_;
     model_->take_loads_at(placed_);
   }
@@ -174,16 +206,27 @@ class CalibrationRun {
     return poses;
   }
 
-  /// The base of another campaign, with everything else where the first one says that it stands.
+  /// What moved before another campaign, with everything else where the first one says that it stands.
   void place_campaign(std::size_t campaign, const VariantColumns& all, const FitOptions& fit_options) {
     std::vector<int> kept;
-    const std::vector<int> base = base_parameters(*model_, campaigns_[campaign]);
+    const std::vector<int> moved = campaign_parameters(*model_, campaigns_[campaign]);
     for (std::size_t j = 0; j < all.selected.size(); ++j)
-      if (std::find(base.begin(), base.end(), all.selected[j]) != base.end()) kept.push_back(int(j));
+      if (std::find(moved.begin(), moved.end(), all.selected[j]) != moved.end()) kept.push_back(int(j));
     if (kept.empty()) return;
+    start_at_the_first(campaigns_[campaign], moved);
     const std::vector<double> found =
-        placed_base(*model_, subset(all, kept), of_campaign(campaign), fit_options, placed_);
-    for (const int i : base) placed_[std::size_t(i)] = found[std::size_t(i)];
+        placed_moved(*model_, subset(all, kept), of_campaign(campaign), fit_options, placed_);
+    for (const int i : moved) placed_[std::size_t(i)] = found[std::size_t(i)];
+  }
+
+  /// Nobody knows where an instrument stands now; a tool is somewhere near where it was.
+  void start_at_the_first(const std::string& campaign, const std::vector<int>& moved) {
+    for (std::size_t i = 0; i < model_->parameters().size(); ++i) {
+      const std::string own = name_in(campaign, model_->parameters()[i].name);
+      for (const int k : moved)
+        if (model_->parameters()[std::size_t(k)].name == own && !own.starts_with("base@"))
+          placed_[std::size_t(k)] = placed_[i];
+    }
   }
 
   /// Reference of the estimate: columns of base, tool and targets alone.
@@ -403,6 +446,7 @@ class CalibrationRun {
                                   result_.correction.begin() + std::ptrdiff_t(robot->parameters().size()));
     std::vector<CalibratedValue> values = calibrated_values(problem_, spec_, *robot, own);
     result_.frames = placed_frames(problem_, spec_, values);
+    add_campaign_frames(*robot);
     // One that is nominal is half of what another one's place means: readings are in the axes of a station.
     if (std::ranges::none_of(result_.frames, [this](const PlacedFrame& frame) { return is_estimated(frame); }))
       result_.frames.clear();
@@ -414,6 +458,20 @@ class CalibrationRun {
     for (const Parameter& p : columns_.parameters) result_.columns.push_back(p.name);
     for (auto* more : {&nuisance, &left_out_})
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
+  }
+
+  /// What moved, where it stands in each further campaign.
+  void add_campaign_frames(const IdentificationModel& robot) {
+    const std::vector<std::string> moved = moved_frames(problem_, options_.moved);
+    for (std::size_t c = 1; c < campaigns_.size(); ++c) {
+      std::vector<double> there = correction_in(*model_, campaigns_[c], result_.correction);
+      there.resize(robot.parameters().size());
+      for (PlacedFrame& frame : placed_frames(problem_, spec_, calibrated_values(problem_, spec_, robot, there))) {
+        if (std::ranges::count(moved, frame.name) == 0) continue;
+        frame.name = name_in(campaigns_[c], frame.name);
+        result_.frames.push_back(std::move(frame));
+      }
+    }
   }
 
   bool is_estimated(const PlacedFrame& frame) const {
@@ -452,6 +510,32 @@ class CalibrationRun {
   Calibration result_;
 };
 
+/// The estimate alone; none if it cannot be made.
+std::optional<Fit> fit_alone(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
+  options.estimate_alone = true;
+  try {
+    return CalibrationRun(problem, options, monitor).run().fit;
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether each campaign has a tool of its own, by F of the parameters that it adds where the noise is refused.
+bool tool_moved(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
+  constexpr double chance = 1e-4, less = 0.8;
+  if (options.weighting != Weighting::weighted) return false;
+  const std::optional<Fit> base = fit_alone(problem, options, monitor);
+  if (base && base->noise_factor <= 1) return false;
+  options.moved = Moved::both;
+  const std::optional<Fit> both = fit_alone(problem, options, monitor);
+  if (!both || !both->converged) return false;
+  if (!base || !base->converged) return true;
+  const double added = double(both->covariance.rows() - base->covariance.rows());
+  if (!(added > 0) || both->freedom < 1 || !(both->scale < less * base->scale)) return false;
+  const double variance = both->chi_square / both->freedom;
+  return fisher_exceeded((base->chi_square - both->chi_square) / added / variance, added, both->freedom) < chance;
+}
+
 }  // namespace
 
 const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter) {
@@ -469,7 +553,18 @@ std::optional<CalibratedEffect> shown_effect(const Calibration& calibration) {
 }
 
 Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& options, const Monitor& monitor) {
-  return CalibrationRun(problem, options, monitor).run();
+  if (options.campaigns.empty() || options.moved != Moved::automatic)
+    return CalibrationRun(problem, options, monitor).run();
+  CalibrateOptions chosen = options;
+  chosen.moved = Moved::base;
+  const bool tool = tool_moved(problem, chosen, monitor);
+  if (tool) chosen.moved = Moved::both;
+  Calibration result = CalibrationRun(problem, chosen, monitor).run();
+  if (tool)
+    result.notes.push_back(
+        "residuals fall beyond chance with a tool of its own for each file (remounted between?): it is estimated; "
+        "--moved base shares one");
+  return result;
 }
 
 }  // namespace posewright

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
+#include "posewright/model/instrument_view.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -50,6 +53,32 @@ std::vector<std::string> campaigns_of(const CalibrateOptions& options) {
     names.push_back(std::move(name));
   }
   return names;
+}
+
+Moved moved_between(const std::string& text) {
+  constexpr std::array<std::pair<std::string_view, Moved>, 5> words = {{{"auto", Moved::automatic},
+                                                                        {"base", Moved::base},
+                                                                        {"tool", Moved::tool},
+                                                                        {"both", Moved::both},
+                                                                        {"nothing", Moved::nothing}}};
+  for (const auto& [word, moved] : words)
+    if (word == text) return moved;
+  throw InputError({}, "moved is '" + text + "'", "allowed: auto, base, tool, both, nothing");
+}
+
+std::vector<std::string> moved_frames(const Problem& problem, Moved moved) {
+  std::vector<std::string> frames;
+  if (moved == Moved::base || moved == Moved::both) frames.push_back("base");
+  if (moved != Moved::tool && moved != Moved::both) return frames;
+  frames.push_back("tool");
+  const InstrumentView view = view_of(problem.measurement);
+  if (view.places_on_tip)
+    for (const InstrumentView::Place& place : view.places) frames.push_back(place.parameters);
+  if (!view.points_on_tip) return frames;
+  if (!view.points_parameters.empty()) frames.push_back(view.points_parameters);
+  for (const InstrumentView::Point& point : view.points)
+    if (!point.parameters.empty()) frames.push_back(point.parameters);
+  return frames;
 }
 
 CalibrationData read_calibration_data(const Problem& problem, const CalibrateOptions& options,

@@ -22,6 +22,10 @@ struct CalibrationData {
 /// Names of the campaigns: the files' without folder and ending, numbered where two are alike; empty: one file.
 std::vector<std::string> campaigns_of(const CalibrateOptions& options);
 
+/// Frames that stand elsewhere in each further campaign, as their parameters begin: "base", "tool", "target.P1".
+/// @param moved  not automatic
+std::vector<std::string> moved_frames(const Problem& problem, Moved moved);
+
 /// Reads the files and says in `result` how many rows and poses there are and what the user must know of them.
 /// @param model  of one campaign
 /// Throws InputError with file and line.

@@ -41,6 +41,11 @@ def measured(folder):
 
 
 def frames_of(calibration):
+    """Their roll, pitch and yaw are the same rotation as the quaternions, in the range of the problem file's."""
+    for f in calibration["frames"]:
+        roll, pitch, yaw = f["rpy"]
+        assert np.allclose(placed(*f["position"], roll, pitch, yaw), rigid(f["position"], f["quaternion_xyzw"]), atol=1e-12), f
+        assert abs(pitch) <= np.pi / 2 and max(abs(roll), abs(yaw)) <= np.pi, f
     return {f["name"]: (f["in"], rigid(f["position"], f["quaternion_xyzw"])) for f in calibration["frames"]}
 
 
@@ -97,6 +102,10 @@ def check_camera(folder):
     prepare(folder, "--camera", "realsense-d435", "--board", "6x9x25mm")
     calibration = json.loads(run(folder, "calibrate", "problem.yaml", "measured.csv", "--json"))
     frames, chain = frames_of(calibration), chain_of((folder / "arm.urdf").read_text(), "flange")
+    keys = {f["name"]: f["key"] for f in calibration["frames"]}
+    assert keys == {"base": "robot: placement", "camera": "measurement: camera", "board": "measurement: board"}, keys
+    said = run(folder, "calibrate", "problem.yaml", "measured.csv")
+    assert said.index("Estimated position and orientation of frames") < said.index("parameter  tolerance"), said
     assert frames["camera"][0] == "tip" and frames["board"][0] == "measurement", frames
     squares, moved = [], frames["camera"][1] @ np.linalg.inv(rigid([0.25, 0.06, 0], [0, np.sqrt(0.5), 0, np.sqrt(0.5)]))
     for row in measured(folder):

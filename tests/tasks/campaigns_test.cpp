@@ -63,6 +63,77 @@ TEST(Campaigns, OfATrackerThatWasMovedShareTheRobot) {
   EXPECT_THAT(one.notes, testing::Contains(HasSubstr(": check its frame.")));
 }
 
+/// Two files of the positioner's readings; before the second the tool was put on again, millimetres and degrees off.
+class Remounted : public DrawnPositioner {
+ protected:
+  Remounted() : moved_(model_->parameters().size(), 0.0) {
+    for (std::size_t i = 0; i < moved_.size(); ++i)
+      if (const Parameter& p = model_->parameters()[i]; p.name.starts_with("tool."))
+        moved_[i] = p.unit == "m" ? 2e-3 : -6e-3;
+    options_.prior = Prior::none;
+    options_.variant = "everything";
+  }
+  /// @param again  the tool was put on again
+  Calibration calibrated(bool again, Moved moved) {
+    for (const bool second : {false, true}) {
+      std::vector<MeasuredPose> poses = drawn(20, 0.0, 1.0, 1.0, second ? 8 : 7);
+      for (MeasuredPose& pose : poses) {
+        Eigen::VectorXd nominal, there, change;
+        model_->predict(pose.q, {}, nominal);
+        model_->predict(pose.q, second && again ? moved_ : std::vector<double>{}, there);
+        model_->difference(pose.y, nominal, change);
+        model_->shifted(there, change, pose.y);
+      }
+      const auto file = folder_.write(second ? "b.csv" : "a.csv", measured_data_csv(*model_, poses));
+      if (second) options_.campaigns = {file};
+      else options_.data = file;
+    }
+    options_.moved = moved;
+    return calibrate_problem(problem_, options_, Monitor{});
+  }
+  static std::vector<const CalibratedParameter*> own(const Calibration& c, const std::string& frame) {
+    std::vector<const CalibratedParameter*> found;
+    for (const CalibratedParameter& p : c.parameters)
+      if (p.estimated && p.label.name.starts_with(frame + "@b.")) found.push_back(&p);
+    return found;
+  }
+  TemporaryFolder folder_;
+  std::vector<double> moved_;
+  CalibrateOptions options_;
+};
+
+TEST_F(Remounted, ToolIsFoundBesideTheBaseWhereResidualsAskForIt) {
+  const Calibration one = calibrated(true, Moved::base), found = calibrated(true, Moved::automatic);
+  EXPECT_GT(one.fit.scale, 3);
+  EXPECT_LT(found.fit.scale, 1.2);
+  EXPECT_TRUE(own(one, "tool").empty());
+  EXPECT_EQ(own(found, "tool").size(), 6u);
+  EXPECT_EQ(own(found, "base").size(), 6u);
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("a tool of its own")));
+  EXPECT_TRUE(std::ranges::any_of(found.frames, [](const PlacedFrame& f) { return f.name == "tool@b"; }));
+}
+
+TEST_F(Remounted, ToolIsRightWithTheBaseHeld) {
+  const Calibration found = calibrated(true, Moved::tool);
+  EXPECT_LT(found.fit.scale, 1.2);
+  EXPECT_TRUE(own(found, "base").empty());
+  const auto tool = own(found, "tool");
+  ASSERT_EQ(tool.size(), 6u);
+  for (const CalibratedParameter* p : tool) {
+    const double truth = p->label.nominal + (p->label.unit == "m" ? 2e-3 : -6e-3);
+    EXPECT_NEAR(p->value, truth, 5 * p->sigma + 1e-9) << p->label.name;
+  }
+}
+
+TEST_F(Remounted, ToolThatStayedIsOne) {
+  const Calibration stayed = calibrated(false, Moved::automatic);
+  EXPECT_TRUE(own(stayed, "tool").empty());
+  EXPECT_EQ(own(stayed, "base").size(), 6u);
+  const Calibration held = calibrated(false, Moved::nothing);
+  EXPECT_TRUE(own(held, "base").empty());
+  EXPECT_LT(held.fit.scale, 1.2);
+}
+
 TEST(Campaigns, TellAsMuchAsTheirReadingsTogether) {
   // σ by both files is below that by either, and above what all poses in one frame would give.
   VirtualFile data("kr270/problem.yaml", 40, 1.0);
@@ -190,6 +261,24 @@ TEST_F(Revisited, NoiseAndDriftAreToldApartAtTheirLevel) {
   EXPECT_NEAR(twice.noise, 2.0, 0.4);
   EXPECT_LT(twice.drift.probability, 1e-3);
   EXPECT_NEAR(twice.moved[1].change, 2e-3, 1e-3);
+}
+
+TEST_F(Revisited, ConfigurationsThatAControllerMissesByHalfAMilliradianAreVisits) {
+  Random random(4, 1);
+  std::vector<MeasuredPose> poses = in_rounds(*model_, places_, 3, 0.0, 0.0, random);
+  for (MeasuredPose& pose : poses) {
+    Eigen::VectorXd there, read = pose.y, change;
+    model_->predict(pose.q, {}, there);
+    model_->difference(read, there, change);
+    for (double& q : pose.q) q += random.uniform(-5e-4, 5e-4);
+    model_->predict(pose.q, {}, there);
+    model_->shifted(there, change, pose.y);
+  }
+  const Revisits found = revisits(*model_, poses, {});
+  EXPECT_EQ(found.places, 5);
+  EXPECT_EQ(found.visits, 15);
+  // The robot stood elsewhere by a millimetre, and the model says so.
+  EXPECT_NEAR(found.noise, 0.0, 1e-3);
 }
 
 TEST_F(Revisited, PosesWithoutAReturnTellNothing) { EXPECT_FALSE(revisits(*model_, places_, {}).larger.possible); }

@@ -22,15 +22,18 @@ VariantColumns determined(const IdentificationModel& model, const VariantColumns
 std::vector<double> placed(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const FitOptions& options);
 
-/// Variant for one base alone, all else as in `from`: the place of the instrument in another campaign.
-/// @param base  columns of one base
-std::vector<double> placed_base(const IdentificationModel& model, const VariantColumns& base,
-                                const std::vector<MeasuredPose>& poses, const FitOptions& options,
-                                const std::vector<double>& from);
+/// Variant for what moved before another campaign, all else as in `from`.
+/// @param moved  its columns, those of its base first if that moved
+std::vector<double> placed_moved(const IdentificationModel& model, const VariantColumns& moved,
+                                 const std::vector<MeasuredPose>& poses, const FitOptions& options,
+                                 const std::vector<double>& from);
 
-/// Equivalent orientation of a frame by rx and rz from −180 to 180 deg, ry from −90 to 90 deg, where its nominal angles
-/// are zero: an estimate from another side would state it by other angles.
-/// @param frame  "base"
-void take_canonical_angles(const IdentificationModel& model, const std::string& frame, std::vector<double>& correction);
+/// Equivalent orientations by rx and rz from −180 to 180 deg, ry from −90 to 90 deg: an estimate from another side would
+/// state them by other angles.
+/// @param columns     of which every frame with three free angles counts
+/// @param correction  of all parameters
+/// @return whether an angle changed
+bool take_canonical_angles(const IdentificationModel& model, const VariantColumns& columns,
+                           std::vector<double>& correction);
 
 }  // namespace posewright

@@ -8,20 +8,35 @@
 
 namespace posewright {
 
-/// A robot measured in several campaigns: between them the instrument was moved, the robot is unchanged. Wraps a
-/// model with one more coordinate `campaign`, the last, and for every campaign but the first six more parameters behind
-/// the model's own, base@NAME.{x, y, z, rx, ry, rz}, which take the place of base.* there.
+/// A robot measured in several campaigns: between them an instrument or a tool was moved, the robot is unchanged.
+/// Wraps a model with one more coordinate `campaign`, the last. For every campaign but the first, parameters behind the
+/// model's own take the place of those of each frame that moved: base@NAME.{x, y, z, rx, ry, rz}, target@NAME.P1.x.
 /// @param names  of all campaigns, two at least, no two alike
-/// Throws CannotDo if the model's readings know of no base.
+/// @param moved  frames that stand elsewhere in each, as their parameters begin: "base", "tool", "target.P1"
+/// Throws CannotDo for "base" if the model's readings do not depend on it, and if none of the frames has parameters.
 std::unique_ptr<IdentificationModel> with_campaigns(std::unique_ptr<IdentificationModel> model,
-                                                    const std::vector<std::string>& names);
+                                                    const std::vector<std::string>& names,
+                                                    const std::vector<std::string>& moved = {"base"});
 
-/// Adds the bases of all campaigns but the first to the columns, as nuisance.
+/// Adds the frames of all campaigns but the first to the columns, as nuisance.
 /// @param model    by with_campaigns()
 /// @param columns  of the model inside
-VariantColumns with_campaign_bases(const IdentificationModel& model, const VariantColumns& columns);
+VariantColumns with_campaign_columns(const IdentificationModel& model, const VariantColumns& columns);
 
-/// The six parameters of a base: base.{x, …, rz}, of a campaign base@NAME.{x, …, rz}; fewer where the model has none.
-std::vector<int> base_parameters(const IdentificationModel& model, const std::string& campaign = "");
+/// Parameters of a campaign's own frames, frame by frame.
+std::vector<int> campaign_parameters(const IdentificationModel& model, const std::string& campaign);
+
+/// Corrections of all parameters with those of a campaign's own frames in the places that they take.
+std::vector<double> correction_in(const IdentificationModel& model, const std::string& campaign,
+                                  const std::vector<double>& correction);
+
+/// The name of a campaign's own parameter or frame: "target.P1.x" → "target@NAME.P1.x".
+std::string name_in(const std::string& campaign, const std::string& name);
+
+/// Parameters of frames by their names: {"tool", "target.P1"} → tool.x, …, target.P1.z.
+std::vector<int> frame_parameters(const IdentificationModel& model, const std::vector<std::string>& frames);
+
+/// The six parameters of the base, base.{x, …, rz}; fewer where the model has none.
+std::vector<int> base_parameters(const IdentificationModel& model);
 
 }  // namespace posewright

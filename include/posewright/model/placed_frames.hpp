@@ -9,14 +9,16 @@
 
 namespace posewright {
 
-/// Frame without a place in a drawing: the robot's base, a station, a camera, a board.
+/// Frame without a place in a drawing: the robot's base, its tool, a station, a camera, a board.
 struct PlacedFrame {
-  std::string name;     ///< as its parameters begin: "base", "station.A", "camera", "board"
+  std::string name;     ///< as its parameters begin: "base", "tool", "station.A", "camera", "board"
+  std::string key;      ///< of the problem file that states it: "measurement: camera"; empty: none does
   bool on_tip = false;  ///< X is from the tip's frame; else from the measurement frame
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
 };
 
-/// Base, places of the instrument and its targets, where the values of a variant's parameters put them.
+/// Base, tool (if it has parameters), places of the instrument and what it looks at, where the values of a variant's
+/// parameters put them.
 /// @param values  of the variant's whole model (calibrated_values())
 /// Throws InputError where the robot's URDF can no longer be read.
 std::vector<PlacedFrame> placed_frames(const Problem& problem, const VariantSpec& variant,

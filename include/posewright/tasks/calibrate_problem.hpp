@@ -8,6 +8,7 @@
 #include "posewright/calibration/axis_errors.hpp"
 #include "posewright/calibration/compensator_constants.hpp"
 #include "posewright/calibration/curvature.hpp"
+#include "posewright/calibration/frame_step.hpp"
 #include "posewright/calibration/in_steps.hpp"
 #include "posewright/calibration/interpolation.hpp"
 #include "posewright/calibration/leave_out.hpp"
@@ -36,12 +37,20 @@ struct ProfileChoice {
 /// name.
 ProfileChoice profile_choice(const std::string& text);
 
+/// What stands elsewhere in each further campaign: the base (where the instrument stands), the tool (all that the tip
+/// carries: tool, targets, a camera or board), both, or nothing. automatic: the base, and the tool if the residuals ask
+/// for it.
+enum class Moved { automatic, base, tool, both, nothing };
+/// By its word: auto, base, tool, both, nothing. Throws InputError for another one.
+Moved moved_between(const std::string& text);
+
 struct CalibrateOptions {
   std::filesystem::path data;
   std::optional<std::string> text{};  ///< of `data`, if the file is not to be read: it holds more than counts
-  /// More files of the same robot, each a campaign with a base of its own: the instrument was moved between them.
+  /// More files of the same robot, each a campaign: the instrument or the tool was moved between them.
   std::vector<std::filesystem::path> campaigns{};
-  std::string variant;  ///< empty: as in the file
+  Moved moved = Moved::automatic;  ///< between campaigns
+  std::string variant;             ///< empty: as in the file
   Weighting weighting = Weighting::weighted;
   /// Use of manufacturing and stated tolerances as prior knowledge; none: plain least squares.
   Prior prior = Prior::manufactured;
@@ -130,8 +139,9 @@ struct Calibration {
   LeaveOut left_out;                ///< does the estimate predict poses that it has not seen?
   std::string weakest;              ///< weakest_combination()
   ResidualTests tests;
-  std::vector<ScoreTest> effects;  ///< not fitted, beside the fit that counts no smooth effect; best first
-  SmoothEffect smooth;             ///< that the residuals of a fit hold which counts none
+  std::vector<ScoreTest> effects;   ///< not fitted, beside the fit that counts no smooth effect; best first
+  std::optional<FrameStep> step{};  ///< of a file alone: a frame that stands elsewhere from some pose on
+  SmoothEffect smooth;              ///< that the residuals of a fit hold which counts none
   /// Unmodelled effect of the fit; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
   Revisits revisits;                             ///< configurations measured again after others

@@ -652,6 +652,7 @@ def calibrate(
     *,
     weights: Optional[str] = None,
     prior: bool = True,
+    moved: str = "auto",
     validate: Optional[_Path] = None,
     hold_back: int = 0,
     in_steps: bool = False,

@@ -26,7 +26,7 @@ std::string headline(const Plan& plan) {
   const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
   std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
   if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(" ({} fixed)", fixed);
-  if (measured > 0) text += fmt::format(" in addition to {} measured ones,", measured);
+  if (measured > 0) text += fmt::format(" in addition to {} measured,", measured);
   if (!plan.variant.empty())
     text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);
   text += fmt::format(": {} parameters", kept - nuisance);

@@ -172,7 +172,7 @@ TEST(Samplers, LookAtIsRefusedWhereNothingSaysWhereToLook) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                testing::ContainsRegex(":[0-9]+: look_at: this instrument has no viewing direction; cameras do"));
+                testing::ContainsRegex(":[0-9]+: look_at: this instrument has no viewing direction; cameras have one"));
   }
 }
 

@@ -47,6 +47,9 @@ class Robot:
         self.folder, self.chain = folder, chain_of(expanded)
         (folder / name).write_text(text)
         self.run("init", name, "--tracker", "--tip", "tool0", "--at", "2,-1,0.3", "--floor", "none", "-o", "problem.yaml", "--force")
+        # What xacro made stands in the problem, and below it the file that a correction needs.
+        problem = folder / "problem.yaml"
+        problem.write_text(re.sub(r'  urdf: "problem.urdf"\n(  #.*\n)  # urdf:', r"\1  urdf:", problem.read_text()))
         random = np.random.default_rng(seed)
         self.off = {joint: random.normal(size=7) * 1e-3 for joint, moves, *_ in self.chain if moves}
         sha256 = hashlib.sha256((folder / "problem.yaml").read_bytes()).hexdigest()

@@ -37,7 +37,8 @@ function checkPrefix(engine, data) {
     );
     if (!said || said.log_det === null || !figures.identifiable) return;
     near(figures.logDet, said.log_det, 1e-6, `log det after ${k + 1} poses`);
-    near(figures.worst.ratio, said.largest_sigma_ratio, 1e-5, `largest σ/tolerance after ${k + 1} poses`);
+    // Rounded blocks of few poses: the worst-known parameter has the fewest digits.
+    near(figures.worst.ratio, said.largest_sigma_ratio, 1e-4, `largest σ/tolerance after ${k + 1} poses`);
     if (said.rho0 !== null) near(figures.rho0, said.rho0, 1e-5, `position error after ${k + 1} poses`);
   });
 }

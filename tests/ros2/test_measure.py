@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import importlib.util
 import json
+import math
 import pathlib
 import py_compile
 import re
@@ -82,7 +83,9 @@ class World:
         jitter = 1e-6 * (-1) ** self.turn
         kind, take = node.topics["/joint_states"]
         take(kind(name=[name.split()[0] for name in reversed(self.joints)], position=[q + jitter for q in reversed(self.at)]))
-        row = next((row for row in self.rows if all(abs(row[name] - q) < 1e-6 for name, q in zip(self.joints, self.at))), None)
+        # A route may have joints on another turn than the plan.
+        near = lambda row: all(abs(math.remainder(row[name] - q, math.tau)) < 1e-6 for name, q in zip(self.joints, self.at))
+        row = next(filter(near, self.rows), None)
         for target in self.targets if row and not self.silent else []:
             kind, take = node.topics[f"/tracker/{target}"]
             take(kind(point=Point(**{axis: row[f"{target}.{axis} [m]"] + jitter for axis in "xyz"})))

@@ -139,7 +139,7 @@ TEST(Approach, APoseThatHasNoRoomForItIsLeftOutWithTheReason) {
   const Route route = route_problem(problem, read_poses_text(text, "p.csv", coordinates), options, Monitor{});
   ASSERT_EQ(route.unreachable.size(), 1U);
   EXPECT_EQ(route.unreachable.front().pose, 2);
-  EXPECT_THAT(route.unreachable.front().reason, HasSubstr("no room to arrive as stated"));
+  EXPECT_THAT(route.unreachable.front().reason, HasSubstr("no room to arrive from the stated side"));
 }
 
 TEST(Approach, WithoutAColumnTheOrderOfTheListSaysIt) {

@@ -154,7 +154,7 @@ TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
   const auto json = parse_json(plan_json(found));
   EXPECT_FALSE(json["poses"][0].contains("fixed"));
   EXPECT_EQ(json["poses"][1]["fixed"], true);
-  EXPECT_THAT(plan_summary(found), HasSubstr("6 poses (2 fixed) beside 1 that are measured already, for"));
+  EXPECT_THAT(plan_summary(found), HasSubstr("6 poses (2 fixed) in addition to 1 measured, for"));
   EXPECT_THAT(plan_summary(found), HasSubstr("any plan of 6 that has the 2 fixed, all others of these"));
   EXPECT_THAT(poses_csv(found), HasSubstr("\n2,0.2,0.3\n")) << "still to be measured";
 }

@@ -28,8 +28,8 @@ std::vector<double> placed_moved(const IdentificationModel& model, const Variant
                                  const std::vector<MeasuredPose>& poses, const FitOptions& options,
                                  const std::vector<double>& from);
 
-/// Equivalent orientations by rx and rz from −180 to 180 deg, ry from −90 to 90 deg: an estimate from another side would
-/// state them by other angles.
+/// Equivalent orientations by rx and rz from −180 to 180 deg, ry from −90 to 90 deg: an estimate from another side
+/// would state them by other angles.
 /// @param columns     of which every frame with three free angles counts
 /// @param correction  of all parameters
 /// @return whether an angle changed

@@ -145,13 +145,20 @@ std::vector<int> campaign_parameters(const IdentificationModel& model, const std
   return found;
 }
 
-std::vector<double> correction_in(const IdentificationModel& model, const std::string& campaign,
-                                  const std::vector<double>& correction) {
-  std::vector<double> there = correction;
+std::vector<std::pair<int, int>> campaign_pairs(const IdentificationModel& model, const std::string& campaign) {
+  std::vector<std::pair<int, int>> pairs;
   for (const int own : campaign_parameters(model, campaign))
     for (std::size_t i = 0; i < model.parameters().size(); ++i)
       if (name_in(campaign, model.parameters()[i].name) == model.parameters()[std::size_t(own)].name)
-        there[i] = correction[std::size_t(own)];
+        pairs.emplace_back(own, int(i));
+  return pairs;
+}
+
+std::vector<double> correction_in(const IdentificationModel& model, const std::string& campaign,
+                                  const std::vector<double>& correction) {
+  std::vector<double> there = correction;
+  for (const auto& [own, first] : campaign_pairs(model, campaign))
+    there[std::size_t(first)] = correction[std::size_t(own)];
   return there;
 }
 

@@ -24,9 +24,9 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/study/columns.hpp"
-#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
+#include "remounted_tool.hpp"
 
 namespace posewright {
 namespace {
@@ -213,20 +213,17 @@ class CalibrationRun {
     for (std::size_t j = 0; j < all.selected.size(); ++j)
       if (std::find(moved.begin(), moved.end(), all.selected[j]) != moved.end()) kept.push_back(int(j));
     if (kept.empty()) return;
-    start_at_the_first(campaigns_[campaign], moved);
+    start_at_the_first(campaigns_[campaign]);
     const std::vector<double> found =
         placed_moved(*model_, subset(all, kept), of_campaign(campaign), fit_options, placed_);
     for (const int i : moved) placed_[std::size_t(i)] = found[std::size_t(i)];
   }
 
   /// Nobody knows where an instrument stands now; a tool is somewhere near where it was.
-  void start_at_the_first(const std::string& campaign, const std::vector<int>& moved) {
-    for (std::size_t i = 0; i < model_->parameters().size(); ++i) {
-      const std::string own = name_in(campaign, model_->parameters()[i].name);
-      for (const int k : moved)
-        if (model_->parameters()[std::size_t(k)].name == own && !own.starts_with("base@"))
-          placed_[std::size_t(k)] = placed_[i];
-    }
+  void start_at_the_first(const std::string& campaign) {
+    for (const auto& [own, first] : campaign_pairs(*model_, campaign))
+      if (!model_->parameters()[std::size_t(own)].name.starts_with("base@"))
+        placed_[std::size_t(own)] = placed_[std::size_t(first)];
   }
 
   /// Reference of the estimate: columns of base, tool and targets alone.
@@ -510,32 +507,6 @@ class CalibrationRun {
   Calibration result_;
 };
 
-/// The estimate alone; none if it cannot be made.
-std::optional<Fit> fit_alone(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
-  options.estimate_alone = true;
-  try {
-    return CalibrationRun(problem, options, monitor).run().fit;
-  } catch (const CannotDo&) {
-    return std::nullopt;
-  }
-}
-
-/// Whether each campaign has a tool of its own, by F of the parameters that it adds where the noise is refused.
-bool tool_moved(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
-  constexpr double chance = 1e-4, less = 0.8;
-  if (options.weighting != Weighting::weighted) return false;
-  const std::optional<Fit> base = fit_alone(problem, options, monitor);
-  if (base && base->noise_factor <= 1) return false;
-  options.moved = Moved::both;
-  const std::optional<Fit> both = fit_alone(problem, options, monitor);
-  if (!both || !both->converged) return false;
-  if (!base || !base->converged) return true;
-  const double added = double(both->covariance.rows() - base->covariance.rows());
-  if (!(added > 0) || both->freedom < 1 || !(both->scale < less * base->scale)) return false;
-  const double variance = both->chi_square / both->freedom;
-  return fisher_exceeded((base->chi_square - both->chi_square) / added / variance, added, both->freedom) < chance;
-}
-
 }  // namespace
 
 const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter) {
@@ -557,7 +528,7 @@ Calibration calibrate_problem(const Problem& problem, const CalibrateOptions& op
     return CalibrationRun(problem, options, monitor).run();
   CalibrateOptions chosen = options;
   chosen.moved = Moved::base;
-  const bool tool = tool_moved(problem, chosen, monitor);
+  const bool tool = is_tool_remounted(problem, chosen, monitor);
   if (tool) chosen.moved = Moved::both;
   Calibration result = CalibrationRun(problem, chosen, monitor).run();
   if (tool)

@@ -245,7 +245,7 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
     place.left_out.push_back(*obstacle);
   }
   if (!no_home.empty()) result.notes.push_back("reachability of poses is not checked: " + no_home);
-  if (facts.files_beside) result.expanded = expanded_robot(facts, file);
+  if (facts.files_beside) result.expanded = expanded_robot(facts, robot, file);
   result.text = init_text(facts, robot, place, result.expanded.file.filename());
   for (const InitObstacle& obstacle : place.left_out)
     result.notes.push_back(left_out_note(obstacle, result.text, file));

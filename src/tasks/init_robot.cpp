@@ -151,15 +151,16 @@ InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
                      fmt::format("{} to {} m; URDF is written in metres", robot_smallest, robot_largest));
   robot.outward = outward_of(robot.chain);
   robot.urdf = file_name_of(facts.robot, file);
+  robot.expanded = arm.expanded;
   return robot;
 }
 
-FileToWrite expanded_robot(const InitFacts& facts, const fs::path& file) {
-  const SerialArmSpec arm = read_robot_file(facts.robot, facts.xacro);
-  if (arm.expanded == nullptr) return {};
+FileToWrite expanded_robot(const InitFacts& facts, const InitRobot& robot, const fs::path& file) {
+  if (robot.expanded == nullptr) return {};
   const auto folder = [](const fs::path& of) { return fs::absolute(of).lexically_normal().parent_path(); };
   const bool moved = folder(file) != folder(facts.robot);
-  return {fs::path(file).replace_extension(".urdf"), moved ? with_meshes_found(*arm.expanded, facts) : *arm.expanded};
+  return {fs::path(file).replace_extension(".urdf"),
+          moved ? with_meshes_found(*robot.expanded, facts) : *robot.expanded};
 }
 
 void add_bodies(InitRobot& robot, const Problem& problem) {

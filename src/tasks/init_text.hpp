@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,21 +19,22 @@ namespace posewright {
 struct InitRobot {
   ProposedChain links;
   ChainDescription chain;
-  double reach = 0.0;                ///< m, no point of the tip is farther from the first joint
-  Eigen::Vector3d outward{0, 0, 1};  ///< tip frame, unit, along an axis: where a tool points
-  std::string urdf;                  ///< as the problem file names it
-  double lowest = 0.0;               ///< m, of what the arm stands on, base frame; at most 0
-  double face = 0.0;                 ///< m, how far bodies reach beyond the tip along `outward`
+  double reach = 0.0;                             ///< m, no point of the tip is farther from the first joint
+  Eigen::Vector3d outward{0, 0, 1};               ///< tip frame, unit, along an axis: where a tool points
+  std::string urdf;                               ///< as the problem file names it
+  double lowest = 0.0;                            ///< m, of what the arm stands on, base frame; at most 0
+  double face = 0.0;                              ///< m, how far bodies reach beyond the tip along `outward`
+  std::shared_ptr<const std::string> expanded{};  ///< by xacro; null: the file is a URDF
 };
 
-/// Text of the file. Throws as init_problem().
+/// Facts about the robot of the file. Throws as init_problem().
 InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
 /// Adds `lowest` and `face`. Throws InputError where meshes are missing, and for links that are far larger or smaller
 /// than the arm: a scale is missing or one too many.
 void add_bodies(InitRobot& robot, const Problem& problem);
 /// What xacro made of the robot's file, to be written beside the problem `file`; meshes are named so that they are
 /// found from there. Empty for a URDF.
-FileToWrite expanded_robot(const InitFacts& facts, const std::filesystem::path& file);
+FileToWrite expanded_robot(const InitFacts& facts, const InitRobot& robot, const std::filesystem::path& file);
 
 /// Two bodies that hinder nearly all configurations: one of them the floor, or two links.
 struct InitObstacle {

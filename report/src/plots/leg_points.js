@@ -1,7 +1,7 @@
 import { h, svg, table } from '../dom.js';
 import { amplification, amplified, deviation } from '../numerics/leg_points.js';
 import { number } from '../text/units.js';
-import { Plane, gridOf } from './plane.js';
+import { Plane, mapOf } from './plane.js';
 
 /** @typedef {{name: string, points: import('../numerics/leg_points.js').LegPoint[]}} Model */
 
@@ -40,17 +40,9 @@ function bodyPicture(models, title, times) {
     'div',
     {},
     h('h4', {}, title),
-    svg(
-      'svg',
-      {
-        class: 'map',
-        viewBox: `0 0 ${plane.width} ${plane.height}`,
-        width: plane.width,
-        height: plane.height,
-        role: 'img',
-        'aria-label': `${title}: nominal, and by ${models.map((m) => m.name).join(', ')}, deviations ${number(times)} times as large`,
-      },
-      gridOf(plane),
+    mapOf(
+      plane,
+      `${title}: nominal, and by ${models.map((m) => m.name).join(', ')}, deviations ${number(times)} times as large`,
       models.flatMap(({ points }, k) => points.flatMap((p) => deviationOf(plane, k, p, times))),
       nominal.flatMap((p) => [
         svg('circle', { class: 'nominal-point', 'data-point': p.name, cx: plane.x(p.nominal[0]), cy: plane.y(p.nominal[1]), r: 3 }),

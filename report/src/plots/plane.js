@@ -35,8 +35,25 @@ export class Plane {
   }
 }
 
+/** The picture of a plane over its grid. @param {Plane} plane @param {string} label of what it shows @param {any[]} drawn on it */
+export function mapOf(plane, label, ...drawn) {
+  return svg(
+    'svg',
+    {
+      class: 'map',
+      viewBox: `0 0 ${plane.width} ${plane.height}`,
+      width: plane.width,
+      height: plane.height,
+      role: 'img',
+      'aria-label': label,
+    },
+    gridOf(plane),
+    ...drawn,
+  );
+}
+
 /** @param {Plane} plane */
-export function gridOf(plane) {
+function gridOf(plane) {
   const { step } = plane;
   const lines = [];
   const ticks = (axis) => {

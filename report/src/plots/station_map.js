@@ -3,7 +3,7 @@ import { inkOn } from '../parts/shares.js';
 import { convexHull } from '../numerics/outline.js';
 import { viridisAt } from '../theme.js';
 import { endsOf, placesOf, shareOf, valuesOf } from '../numerics/stations.js';
-import { Plane, gridOf } from './plane.js';
+import { Plane, mapOf } from './plane.js';
 
 /** @param {Plane} plane @param {any} place @param {any} s @param {Value} value */
 function mark(plane, place, s, value) {
@@ -56,17 +56,9 @@ export function stationMap(s) {
     const outline = (hull) => hull.map(([x, y]) => `${plane.x(x)},${plane.y(y)}`).join(' ');
     const best = Object.keys(s.ranking[0].stations).map((name) => places.find((p) => p.name === name).position);
     holder.replaceChildren(
-      svg(
-        'svg',
-        {
-          class: 'map',
-          viewBox: `0 0 ${plane.width} ${plane.height}`,
-          width: plane.width,
-          height: plane.height,
-          role: 'img',
-          'aria-label': `Places from above, coloured by ${values[Number(select.value)].name}`,
-        },
-        gridOf(plane),
+      mapOf(
+        plane,
+        `Places from above, coloured by ${values[Number(select.value)].name}`,
         bodies.flatMap(({ name, hull }) => [
           svg('polygon', { class: 'obstacle', points: outline(hull) }),
           svg('text', { x: plane.x(middle(hull)[0]), y: plane.y(middle(hull)[1]) + 4, 'text-anchor': 'middle' }, name),

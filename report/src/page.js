@@ -21,3 +21,6 @@ export function showPage({ kind, heading, title, sections, mark }, version) {
   document.getElementById('page').append(...shown.map(([, element]) => element));
   document.getElementById('version').textContent = `posewright ${version}`;
 }
+
+/** What a result belongs to. @param {string} robot @param {string} [variant] of several, none */
+export const headingOf = (robot, variant) => (variant ? `${robot}, variant ${variant}` : robot);

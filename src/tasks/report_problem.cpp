@@ -15,6 +15,7 @@
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
 #include "posewright/tasks/report_result.hpp"
@@ -44,6 +45,41 @@ Settings report_settings(const Problem& problem, const WrittenPlan& plan, int th
   return settings_of(problem, options);
 }
 
+/// A plan's text with the poses of its route in the place of those that they replace.
+struct DrivenPlan {
+  std::string text;
+  std::vector<std::string> notes;  ///< one a replaced pose
+};
+
+void take_over(nlohmann::ordered_json& pose, const nlohmann::ordered_json& stop) {
+  pose.erase("listed");
+  pose["candidate"] = nullptr;
+  for (const auto& [key, value] : stop.items()) pose[key] = value;
+}
+
+DrivenPlan driven_plan(std::string plan, const std::string& route) {
+  DrivenPlan driven{std::move(plan), {}};
+  try {
+    const auto way = parse_ordered_json(route);
+    if (way.value("replaced", nlohmann::ordered_json::array()).empty()) return driven;
+    auto json = parse_ordered_json(driven.text);
+    for (const auto& lost : way.at("replaced"))
+      for (auto& pose : json.at("poses"))
+        for (const auto& stop : way.at("poses")) {
+          if (pose.at("id") != lost.at("pose") || stop.at("id") != lost.at("by")) continue;
+          take_over(pose, stop);
+          driven.notes.push_back(fmt::format("Pose {} is replaced by pose {} of the route: {}.",
+                                             lost.at("pose").get<int>(), lost.at("by").get<int>(),
+                                             lost.at("reason").get<std::string>()));
+          break;
+        }
+    driven.text = json_text(json);
+  } catch (const nlohmann::json::exception&) {
+    // Playing the route says what is wrong with it.
+  }
+  return driven;
+}
+
 class ReportBuilder {
  public:
   ReportBuilder(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
@@ -54,7 +90,9 @@ class ReportBuilder {
         plan_(read_written_plan(file)),
         settings_(report_settings(problem, plan_, options.threads)) {
     if (!options.route.empty()) report_.route_json = read_text(options.route, plan_size_limit);
-    report_.plan_json = std::move(plan_.text);
+    DrivenPlan driven = driven_plan(std::move(plan_.text), report_.route_json);
+    report_.plan_json = std::move(driven.text);
+    report_.notes = std::move(driven.notes);
     // What was measured before is in the plan, wherever it came from.
     list_ = read_poses_text(report_.plan_json, plan_.file.string(),
                             pose_coordinates(problem, settings_.variants.front().name.value));
@@ -104,6 +142,8 @@ class ReportBuilder {
           "ones for the new file.");
     else if (std::string note = parameters_note("The plan", plan_.parameters_file, problem_); !note.empty())
       report_.notes.push_back(note + ".");
+    else if (!report_.notes.empty())
+      report_.notes.push_back("Figures of the plan are for its own poses, recomputed ones for those of the route.");
     else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
       report_.notes.push_back(fmt::format(
           "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",

@@ -8,10 +8,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -118,6 +121,24 @@ TEST(Route, ReplacesLostPosesByOthersThatAddTheMostToTheRest) {
   EXPECT_GT(route.worth->efficiency, lost.worth->efficiency);
   EXPECT_THAT(route_summary(route), testing::StartsWith(fmt::format("{} of 8 poses", route.replaced.size())));
   EXPECT_THAT(route_json(route), HasSubstr(fmt::format("\"by\": {}", route.replaced.front().by)));
+
+  // The page of the plan with this route has the new poses in the place of those that are replaced.
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  brief.route = folder.write("route.json", route_json(route));
+  const Report report = report_problem(problem, folder.write("plan.json", plan_json(plan)), brief, Monitor{});
+  const PoseList shown = read_poses_text(report.plan_json, "shown", pose_coordinates(problem));
+  ASSERT_EQ(shown.ids.size(), plan.poses.size());
+  for (std::size_t i = 0; i < shown.ids.size(); ++i) {
+    const PlannedPose* stop = pose_with(route, shown.ids[i]);
+    ASSERT_NE(stop, nullptr) << shown.ids[i];
+    const bool is_new = shown.ids[i] > int(plan.poses.size());
+    if (is_new) EXPECT_EQ(shown.configurations[i], values_of(*stop));
+    else EXPECT_EQ(shown.ids[i], plan.poses[i].id);
+  }
+  EXPECT_THAT(report.notes,
+              testing::Contains(HasSubstr(fmt::format("Pose {} is replaced by pose {} of the route",
+                                                      route.replaced.front().pose, route.replaced.front().by))));
 }
 
 TEST(Route, StatesItsTimeAtTheSpeedOfProgramsToo) {

@@ -1,3 +1,4 @@
+import { headingOf } from '../page.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
 import { calibratedParametersSection } from '../sections/calibrated_parameters.js';
@@ -89,8 +90,8 @@ function repeat(c, report, variants) {
 /** @param {any} c @param {any} report @returns {import('../page.js').Page} */
 export function calibrationPage(c, report) {
   return {
-    kind: `Calibration of variant ${c.variant}, from ${c.data}`,
-    heading: report.title,
+    kind: `Calibration, from ${c.data}`,
+    heading: headingOf(report.title, c.variant),
     title: `Calibration: ${report.title}`,
     sections: [...modelSections(c), ['Legs', legPointsSection([c])], ['Repeat', repeat(c, report, `--variant ${shell(c.variant)}`)]],
   };

@@ -1,3 +1,4 @@
+import { headingOf } from '../page.js';
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
@@ -102,8 +103,8 @@ export function nextPage(n, report) {
     `--seed ${shell(n.seed)}`,
   ];
   return {
-    kind: `Next poses of variant ${n.variant}${n.data ? `, from ${n.data}` : ''}${report.refresh > 0 ? '; this page follows the file' : ''}`,
-    heading: report.title,
+    kind: `Next poses${n.data ? `, from ${n.data}` : ''}${report.refresh > 0 ? '; this page follows the file' : ''}`,
+    heading: headingOf(report.title, n.variant),
     title: `${n.stop ? 'Stop' : 'Go on'}: ${report.title}`,
     sections: [
       ['In short', inShort(tiles(n), warnings(n))],

@@ -1,3 +1,4 @@
+import { headingOf } from '../page.js';
 import { h } from '../dom.js';
 import { PoseList } from '../pose_list.js';
 import { percent } from '../text/units.js';
@@ -25,7 +26,7 @@ export function planPage(report) {
   const list = new PoseList(report);
   return {
     kind: `Measurement plan for calibration, from ${report.plan.problem.file}`,
-    heading: report.title,
+    heading: headingOf(report.title, report.plan.variant),
     title: `Measurement plan: ${report.title}`,
     sections: [
       ['In short', summarySection(list)],

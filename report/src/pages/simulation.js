@@ -1,3 +1,4 @@
+import { headingOf } from '../page.js';
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
@@ -139,8 +140,8 @@ function repeat(s, report) {
 export function simulationPage(s, report) {
   const plots = [sigmaPlot(s), coveragePlot(s), errorHistograms(s), accuracyHistogram(s.accuracy)].filter(Boolean);
   return {
-    kind: `Virtual calibrations of variant ${s.variant} with ${s.plan}`,
-    heading: report.title,
+    kind: `Virtual calibrations with ${s.plan}`,
+    heading: headingOf(report.title, s.variant),
     title: `Simulation: ${report.title}`,
     sections: [
       ['In short', inShort(tiles(s), warnings(s))],

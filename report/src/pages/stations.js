@@ -1,3 +1,4 @@
+import { headingOf } from '../page.js';
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
@@ -101,8 +102,8 @@ function entrySection(s) {
 /** @param {any} s stations.json @param {any} report @returns {import('../page.js').Page} */
 export function stationsPage(s, report) {
   return {
-    kind: `Places for the instrument, variant ${s.variant}, from ${s.problem.file}`,
-    heading: report.title,
+    kind: `Places for the instrument, from ${s.problem.file}`,
+    heading: headingOf(report.title, s.variant),
     title: `Stations: ${report.title}`,
     sections: [
       ['In short', inShort(tiles(s))],

@@ -245,6 +245,7 @@ Compensation compensate_files(const Words& files, const Problem& problem, Docume
   none.variant = problem.parameters->variant.value;
   if (files.empty()) return none;
   const std::vector<Coordinate> coordinates = compensation_coordinates(problem);
+  reading.threads = options.threads;
   try {
     reading.inverse = nominal_inverse(problem);
   } catch (const CannotDo& error) {

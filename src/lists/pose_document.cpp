@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/parallel.hpp"
 #include "posewright/support/trimmed.hpp"
 
 namespace posewright {
@@ -231,7 +233,7 @@ class CsvDocument : public PoseDocument {
 class ProgramPoses : public PoseDocument {
  public:
   ProgramPoses(std::unique_ptr<ProgramDocument> program, const std::vector<Coordinate>& coordinates,
-               const std::optional<ArmInverse>& inverse)
+               const std::optional<ArmInverse>& inverse, int threads)
       : moving_(moving(coordinates)),
         coordinates_(coordinates),
         inverse_(inverse),
@@ -244,9 +246,11 @@ class ProgramPoses : public PoseDocument {
                          "a plan, route or list with it; its result can be exported");
     poses_.name = name;
     std::vector<int> pose_of_point(program_->points().size(), -1);
-    std::vector<std::string> reasons(program_->points().size());
-    for (std::size_t p = 0; p < program_->points().size(); ++p) {
-      if (!add(p, reasons[p])) continue;
+    std::vector<Stood> stood(program_->points().size());
+    parallel_for(stood.size(), thread_count(threads), [&](std::size_t p, int) { stood[p] = stood_at(p); });
+    for (std::size_t p = 0; p < stood.size(); ++p) {
+      if (!stood[p].why_not.empty()) continue;
+      add(program_->points()[p], std::move(stood[p].stand));
       pose_of_point[p] = int(of_pose_.size());
       of_pose_.push_back(p);
     }
@@ -256,7 +260,7 @@ class ProgramPoses : public PoseDocument {
       entry.point = pose_of_point[p];
       if (entry.point >= 0) continue;
       entry.treatment = Treatment::not_compensated;
-      entry.why = reasons[p];
+      entry.why = stood[p].why_not;
     }
     if (of_pose_.empty()) poses_.notes.push_back(name + " has no point that is compensated");
   }
@@ -285,21 +289,25 @@ class ProgramPoses : public PoseDocument {
     return joints;
   }
 
-  /// Takes a point over; false with the reason where a pose has no joints.
-  bool add(std::size_t p, std::string& why) {
+  /// Joints of a point, or why a pose has none.
+  struct Stood {
+    ArmStand stand;
+    std::string why_not;
+  };
+
+  Stood stood_at(std::size_t p) const {
     const ProgramDocument::Point& point = program_->points()[p];
-    ArmStand stand{point.joints};
-    if (point.is_pose()) {
-      const std::vector<ArmStand> stands = stands_at(point.X_BaseTip);
-      const std::vector<std::size_t> meant = program_->meant(p, stands);
-      if (meant.size() != 1) {
-        why = stands.empty()  ? "the nominal robot does not reach it within its limits, or its wrist is stretched"
-              : meant.empty() ? "no joints within the limits have the status that it states"
-                              : "its status does not decide between several joints";
-        return false;
-      }
-      stand = stands[meant.front()];
-    }
+    if (!point.is_pose()) return {{point.joints}, ""};
+    const std::vector<ArmStand> stands = stands_at(point.X_BaseTip);
+    const std::vector<std::size_t> meant = program_->meant(p, stands);
+    if (meant.size() == 1) return {stands[meant.front()], ""};
+    return {{},
+            stands.empty()  ? "the nominal robot does not reach it within its limits, or its wrist is stretched"
+            : meant.empty() ? "no joints within the limits have the status that it states"
+                            : "its status does not decide between several joints"};
+  }
+
+  void add(const ProgramDocument::Point& point, ArmStand stand) {
     std::vector<double> q;
     for (const Coordinate& c : coordinates_) q.push_back(c.choice() ? c.values.front() : 0.0);
     for (std::size_t i = 0; i < moving_.size(); ++i) {
@@ -311,7 +319,6 @@ class ProgramPoses : public PoseDocument {
     poses_.lines.push_back(point.line);
     poses_.own_ids.push_back(point.measured);
     branches_.push_back(std::move(stand));
-    return true;
   }
 
   /// All joints within the limits, on any turn, that the nominal robot has at a pose.
@@ -320,20 +327,23 @@ class ProgramPoses : public PoseDocument {
     inverse_->solve(X_BaseTip, branches);
     std::vector<ArmStand> all;
     for (const ArmBranch& branch : branches) {
-      std::vector<ArmStand> stands = {{{branch.q.begin(), branch.q.end()}, branch.behind_base, branch.behind_arm}};
-      for (std::size_t i = 0; i < branch.q.size(); ++i) {
-        std::vector<ArmStand> turned;
-        for (const ArmStand& stand : stands)
-          for (const int turn : {0, -1, 1}) {
-            ArmStand other = stand;
-            other.joints[i] += turn * 2 * std::numbers::pi;
-            if (inside(other.joints[i], coordinates_[moving_[i]])) turned.push_back(std::move(other));
-          }
-        stands = std::move(turned);
-      }
-      all.insert(all.end(), stands.begin(), stands.end());
+      std::array<double, 6> joints{};
+      add_turns(branch, 0, joints, all);
     }
     return all;
+  }
+
+  /// The branch with its joints from i on, on any turns within the limits.
+  void add_turns(const ArmBranch& branch, std::size_t i, std::array<double, 6>& joints,
+                 std::vector<ArmStand>& stands) const {
+    if (i == joints.size()) {
+      stands.push_back({{joints.begin(), joints.end()}, branch.behind_base, branch.behind_arm});
+      return;
+    }
+    for (const int turn : {0, -1, 1}) {
+      joints[i] = branch.q[i] + turn * 2 * std::numbers::pi;
+      if (inside(joints[i], coordinates_[moving_[i]])) add_turns(branch, i + 1, joints, stands);
+    }
   }
 
   bool same(const std::vector<double>& q, std::size_t pose) const {
@@ -479,7 +489,8 @@ std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<Doc
   }
   std::vector<std::unique_ptr<ProgramDocument>> read = read_programs(programs, robot_of(coordinates, options));
   for (std::size_t k = 0; k < read.size(); ++k)
-    documents[places[k]] = std::make_unique<ProgramPoses>(std::move(read[k]), coordinates, options.inverse);
+    documents[places[k]] =
+        std::make_unique<ProgramPoses>(std::move(read[k]), coordinates, options.inverse, options.threads);
   std::erase(documents, nullptr);
   return documents;
 }
@@ -494,6 +505,7 @@ std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std:
                                                           const std::vector<Coordinate>& coordinates,
                                                           const DocumentOptions& options) {
   std::vector<DocumentFile> files;
+  files.reserve(paths.size());
   for (const std::filesystem::path& path : paths)
     files.push_back({read_file(path, document_size_limit), path.string()});
   for (const std::filesystem::path& path : paths)

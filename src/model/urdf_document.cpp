@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <new>
 
 #include "posewright/model/srdf.hpp"
 #include "posewright/support/near_words.hpp"
@@ -47,6 +48,8 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   urdf::ModelInterfaceSharedPtr model;
   try {
     model = urdf::parseURDF(text);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw InputError({file, 0}, std::string("is not valid URDF: ") + error.what(), "");
   }

@@ -23,6 +23,8 @@ AxisCounter::AxisCounter(const Language& language, std::vector<std::string> name
   require_settings(coupling);
   coupling_ = coupling.value_or(0);
   name_axes();
+  for (const std::string& axis : language_.axes)
+    places_.push_back(std::size_t(std::find(axes_.begin(), axes_.end(), axis) - axes_.begin()));
 }
 
 void AxisCounter::require_settings(std::optional<double> coupling) const {
@@ -54,12 +56,6 @@ void AxisCounter::name_axes() {
     throw CannotDo(fmt::format("{} has six turning axes, the robot {} joints{}", language_.format, names_.size(),
                                external ? "; name the controller's axes in --controller FILE (axes)" : ""));
   axes_.assign(language_.axes.begin(), language_.axes.begin() + std::ptrdiff_t(names_.size()));
-}
-
-/// Index of an axis of the language among the joints; their number if it is none.
-std::size_t AxisCounter::index_of(std::size_t axis) const {
-  if (axis >= language_.axes.size()) return axes_.size();
-  return std::size_t(std::find(axes_.begin(), axes_.end(), language_.axes[axis]) - axes_.begin());
 }
 
 std::vector<double> AxisCounter::joints(const std::vector<double>& values) const {

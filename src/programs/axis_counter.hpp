@@ -22,6 +22,8 @@ class AxisCounter {
   const std::vector<std::string>& axes() const { return axes_; }
   /// SI, the robot's signs and zeros.
   std::vector<double> joints(const std::vector<double>& values) const;
+  /// Index of an axis of the language among the joints; their number if it is none.
+  std::size_t index_of(std::size_t axis) const { return axis < places_.size() ? places_[axis] : axes_.size(); }
   /// As the controller counts them, wherever that is.
   std::vector<double> count(const std::vector<double>& joints) const;
   /// Throws CannotDo for an axis beyond the range that the settings give it.
@@ -32,10 +34,10 @@ class AxisCounter {
  private:
   void require_settings(std::optional<double> coupling) const;
   void name_axes();
-  std::size_t index_of(std::size_t axis) const;
 
   const Language& language_;
   std::vector<std::string> names_, units_, axes_;
+  std::vector<std::size_t> places_;  ///< of the language's axes among the joints
   ControllerSettings settings_;
   double coupling_ = 0.0;
 };

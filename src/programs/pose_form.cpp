@@ -31,20 +31,20 @@ std::array<double, 6> with_fixed_turns(const Isometry3d& X) {
   return {p.x(), p.y(), p.z(), x / rad_per_deg, y / rad_per_deg, z / rad_per_deg};
 }
 
-std::vector<long> krl_status(const ArmStand& stand, const std::array<double, 6>& axes) {
+Status krl_status(const ArmStand& stand, const std::array<double, 6>& axes) {
   long turns = 0;
   for (std::size_t i = 0; i < 6; ++i) turns |= axes[i] < 0 ? 1L << i : 0;
   const bool fifth = (axes[4] >= -180 && axes[4] < 0) || axes[4] >= 180;
   return {(stand.behind_base ? 1 : 0) | (stand.behind_arm ? 0 : 2) | (fifth ? 4 : 0), turns};
 }
 
-std::vector<long> rapid_status(const ArmStand& stand, const std::array<double, 6>& axes) {
+Status rapid_status(const ArmStand& stand, const std::array<double, 6>& axes) {
   const auto quadrant = [&](std::size_t i) { return long(std::floor(axes[i] / 90)); };
   return {quadrant(0), quadrant(3), quadrant(5),
           (stand.behind_base ? 4 : 0) + (stand.behind_arm ? 2 : 0) + (axes[4] < 0 ? 1 : 0)};
 }
 
-std::vector<long> tp_status(const ArmStand& stand, const std::array<double, 6>& axes) {
+Status tp_status(const ArmStand& stand, const std::array<double, 6>& axes) {
   const auto turn = [&](std::size_t i) { return long(std::floor((axes[i] + 180) / 360)); };
   return {axes[4] < 0 ? 0 : 1, stand.behind_arm ? 1 : 0, stand.behind_base ? 1 : 0, turn(0), turn(3), turn(5)};
 }

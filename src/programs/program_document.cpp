@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "account.hpp"
@@ -40,7 +41,8 @@ class Document : public ProgramDocument {
     const PoseForm& form = program_.language->pose();
     std::vector<std::size_t> left(stands.size());
     std::iota(left.begin(), left.end(), 0);
-    std::vector<std::vector<std::vector<long>>> statuses;
+    std::vector<std::vector<Status>> statuses;
+    statuses.reserve(stands.size());
     for (const ArmStand& stand : stands) statuses.push_back(statuses_of(stand));
     for (std::size_t k = 0; k < form.status.size(); ++k) {
       const TextNumber* listed = value_of(*found_[point], form.status[k]);
@@ -90,24 +92,23 @@ class Document : public ProgramDocument {
     const std::vector<double> values = counter_.count(stand.joints);
     std::array<double, 6> axes{};
     for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t k = 0; k < values.size(); ++k)
-        if (counter_.axes()[k] == program_.language->axes[i]) axes[i] = values[k];
+      if (const std::size_t k = counter_.index_of(i); k < values.size()) axes[i] = values[k];
     return axes;
   }
 
-  bool met(std::size_t k, const TextNumber& listed, const std::vector<std::vector<long>>& statuses) const {
-    return std::ranges::any_of(statuses, [&](const std::vector<long>& status) {
-      return program_.language->pose().meets(k, listed.value, status[k]);
-    });
+  bool met(std::size_t k, const TextNumber& listed, const std::vector<Status>& statuses) const {
+    return std::ranges::any_of(
+        statuses, [&](const Status& status) { return program_.language->pose().meets(k, listed.value, status[k]); });
   }
 
   /// The status of these joints, first, and those that it may be stated as where an axis is at a border, as at zero.
-  std::vector<std::vector<long>> statuses_of(const ArmStand& stand) const {
+  std::vector<Status> statuses_of(const ArmStand& stand) const {
     constexpr double border = 0.01;  // deg
     const PoseForm& form = program_.language->pose();
     const std::array<double, 6> axes = axes_of(stand);
     std::vector<std::array<double, 6>> near = {axes};
-    for (std::size_t i = 0; i < axes.size(); ++i)
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (std::abs(std::remainder(axes[i], 90)) > border) continue;
       for (const double side : {-border, border}) {
         std::array<double, 6> beside = axes;
         beside[i] += side;
@@ -117,7 +118,9 @@ class Document : public ProgramDocument {
           near.back()[i] = beside[i];
         }
       }
-    std::vector<std::vector<long>> statuses;
+    }
+    std::vector<Status> statuses;
+    statuses.reserve(near.size());
     for (const std::array<double, 6>& at : near) statuses.push_back(form.status_of(stand, at));
     return statuses;
   }
@@ -129,8 +132,8 @@ class Document : public ProgramDocument {
     for (std::size_t i = 0; i < pose.size(); ++i)
       edits.push_back(
           edit(*value_of(*found_[p], form.values[i]), formats::fixed(pose[i], i < 3 ? 4 : form.turn_decimals)));
-    const std::vector<std::vector<long>> statuses = statuses_of(values.stand);
-    const std::vector<long>& status = statuses.front();
+    const std::vector<Status> statuses = statuses_of(values.stand);
+    const Status& status = statuses.front();
     for (std::size_t k = 0; k < form.status.size(); ++k) {
       const TextNumber* listed = value_of(*found_[p], form.status[k]);
       // What only decides between others may be anything where it is not needed.

@@ -59,7 +59,7 @@ def lift_arm(_):
     return [motor, joint(SLIDE, (0, 0, 0.5), (0, 0, 1), -1, 1, (0, 0.8, 0.02))] + arm(5)
 
 
-ROBOTS = {
+ARMS = {
     "one_joint": lambda random: [joint(TURN, (0, 0, 0.3), (0, 0, 1), -2.5, 2.5)],
     "planar": lambda random: [joint(TURN, (x, 0, 0.1), (0, 0, 1), -2, 2) for x in (0, 0.5, 0.4)],
     "scara": lambda random: [joint(TURN, (0, 0, 0.3), (0, 0, 1), -2, 2), joint(TURN, (0.4, 0, 0), (0, 0, 1), -2, 2), joint(SLIDE, (0.35, 0, 0), (0, 0, 1), -0.2, 0), joint(TURN, (0, 0, -0.1), (0, 0, 1), -3, 3)],
@@ -70,6 +70,92 @@ ROBOTS = {
     "arm_4": lambda random: arm(4), "arm_5": lambda random: arm(5), "arm_6": lambda random: arm(6), "arm_7": lambda random: arm(7),
     **{f"mixed_{n}": lambda random, n=n: mixed(random, n) for n in range(2, 9)},
 }
+
+
+class Arm:
+    zeros, workspace = "*.offset", []
+    text = "robot: {urdf: robot.urdf, base: base, tip: tip}"
+
+    def __init__(self, joints):
+        self.joints, self.moving = joints, coordinates(joints)
+        self.names, self.ranges = [f"j{k}" for k in self.moving], [joints[k]["range"] for k in self.moving]
+
+    def off(self, random):
+        return [[*(2e-4 * random.normal(size=3)), *(3e-4 * random.normal(size=3)), (1e-3 if j["of"] == TURN else 3e-4) * random.normal()] for j in self.joints]
+
+    def tip(self, q, error):
+        return tip(self.joints, dict(zip(self.moving, q)), error)
+
+
+def root(f, x):
+    """Newton's method, the derivative by differences."""
+    for _ in range(30):
+        x = x - np.linalg.solve(np.array([(f(x + h) - f(x - h)) / 2e-6 for h in 1e-6 * np.eye(len(x))]).T, f(x))
+    return x
+
+
+class Platform:
+    """Actuators stand where the nominal robot has them at a pose; the platform is where the true legs then close.
+
+    A kind says `nominal` and `spread` (1σ) of its legs' values, what its loops miss (`loops`: platform, actuators, values → m),
+    and where the platform's frame is (`frame`)."""
+
+    def off(self, random):
+        return self.spread * random.normal(size=self.nominal.shape)
+
+    def tip(self, q, error):
+        q = np.array(q)
+        rho = root(lambda rho: self.loops(q, rho, self.nominal), np.zeros(len(self.nominal)))
+        return self.frame(root(lambda x: self.loops(x, rho, self.nominal + error), q))
+
+
+def speeds(legs, speed):
+    return "motion: {velocity: {" + ", ".join(f"leg_{i}.rho: {speed}" for i in range(1, legs + 1)) + "}}"
+
+
+class Hexapod(Platform):
+    """Six legs of variable length. A value is a, b, and the length at which the actuator counts from zero."""
+    text = ("robot: {model: gough, reference: {position: [0, 0, 0.42]}, actuators: {travel: [-0.06, 0.06]}, legs: ["
+            + ", ".join(f'{{a: {{radius: 0.25, angle: "{a} deg"}}, b: {{radius: 0.15, angle: "{b} deg"}}, l: 0.45}}'
+                        for a, b in zip((50, 130, 170, 250, 290, 370), (80, 100, 200, 220, 320, 340))) + "]}")
+    names, ranges = ["x", "y", "z", "rx", "ry", "rz"], [(-0.05, 0.05)] * 2 + [(-0.03, 0.03)] + [(-0.15, 0.15)] * 3
+    zeros, workspace = "*.l", ["pose: {" + ", ".join(f"{n}: [{low}, {high}]" for n, (low, high) in zip(names, ranges)) + "}", speeds(6, 0.1)]
+
+    def __init__(self):
+        on_circle = lambda radius, angle: [radius * np.cos(np.radians(angle)), radius * np.sin(np.radians(angle)), 0]
+        self.nominal = np.array([[*on_circle(0.25, a), *on_circle(0.15, b), 0.45] for a, b in zip((50, 130, 170, 250, 290, 370), (80, 100, 200, 220, 320, 340))])
+        self.spread = 3e-4
+
+    def frame(self, x):
+        return placed(np.array([0, 0, 0.42]) + x[:3], x[3:])
+
+    def loops(self, x, rho, legs):
+        X = self.frame(x)
+        return legs[:, 6] + rho - np.linalg.norm(legs[:, 3:6] @ X[:3, :3].T + X[:3, 3] - legs[:, :3], axis=1)
+
+
+class Delta(Platform):
+    """Three arms that turn downwards. A value is base radius, platform radius, arm, forearm, zero and azimuth."""
+    text = ("robot: {model: delta, base_radius: 0.2, platform_radius: 0.05, arm: 0.3, forearm: 0.7, "
+            'travel: ["-40 deg", "80 deg"], range: {x: [-0.2, 0.2], y: [-0.2, 0.2], z: [-0.8, -0.6]}}')
+    names, ranges = ["x", "y", "z"], [(-0.2, 0.2), (-0.2, 0.2), (-0.8, -0.6)]
+    zeros, workspace = "*.offset", [speeds(3, 1)]
+
+    def __init__(self):
+        self.nominal = np.array([[0.2, 0.05, 0.3, 0.7, 0, azimuth] for azimuth in np.radians([0, 120, 240])])
+        self.spread = np.array([3e-4, 3e-4, 3e-4, 3e-4, 1e-3, 5e-4])
+
+    def frame(self, x):
+        return placed(x, (0, 0, 0))
+
+    def loops(self, x, rho, legs):
+        base, platform, arm, forearm, zero, azimuth = legs.T
+        outwards, below = np.array([np.cos(azimuth), np.sin(azimuth), 0 * azimuth]).T, rho + zero
+        elbow = (base + arm * np.cos(below))[:, None] * outwards - (arm * np.sin(below))[:, None] * [0, 0, 1]
+        return forearm - np.linalg.norm(x + platform[:, None] * outwards - elbow, axis=1)
+
+
+ROBOTS = {**{name: lambda random, of=of: Arm(of(random)) for name, of in ARMS.items()}, "hexapod": lambda _: Hexapod(), "delta": lambda _: Delta()}
 
 
 def turn(axis, angle):
@@ -132,6 +218,19 @@ def pose(position, rotation):
     return f'measurement: {{type: pose, device: {{type: isotropic, noise: {{position: {position}, rotation: {rotation}}}}}}}', "tool.*", read
 
 
+def camera(noise):
+    """A camera four metres away sees a board on the hand from any side, as if it were of glass."""
+    at, rpy, focal, centre, spacing = (4, 0, 0.5), (-np.pi / 2, 0, np.pi / 2), 1500, (1280, 1024), 0.06
+    points = np.array([[c * spacing, r * spacing, 0, 1] for r in range(3) for c in range(4)])
+
+    def read(T, random, moved):
+        p = np.linalg.inv(placed(at, rpy)) @ moved @ T @ points.T
+        pixels = focal * p[:2] / p[2] + np.array([centre]).T + noise * random.normal(size=(2, len(points)))
+        return {f"point_{i + 1}.{axis}": pixels[k, i] for i in range(len(points)) for k, axis in enumerate("uv")}
+    return (f"measurement: {{type: camera, mount: fixed, camera: {{focal: {[focal] * 2}, centre: {list(centre)}, size: [2560, 2048], position: {list(at)}, rpy: {list(rpy)}}}, "
+            f'board: {{rows: 3, columns: 4, spacing: {spacing}}}, device: {{type: isotropic, noise: {noise}}}}}'), "board.*", read
+
+
 def unit(v):
     angle = np.linalg.norm(v)
     return v / angle, angle
@@ -152,6 +251,7 @@ INSTRUMENTS = {
     "points": points("{type: isotropic, noise: 30 um}", 30e-6),
     "tracker": points("{type: laser_tracker, noise: {range: 20 um, transverse: 20 um}, stations: {A: [4, 0.5, 0.5]}}", 20e-6),
     "pose": pose(50e-6, 1e-4),
+    "camera": camera(0.1),
 }
 
 
@@ -164,10 +264,11 @@ class Fault(Exception):
 class Way:
     def __init__(self, robot, instrument, seed):
         self.random = np.random.default_rng([seed, *map(ord, robot + instrument)])
-        self.joints = ROBOTS[robot](self.random)
+        self.robot = ROBOTS[robot](self.random)
         self.measurement, self.carried, self.read = INSTRUMENTS[instrument]
         self.tracker = instrument == "tracker"
-        self.alone = len(coordinates(self.joints)) == 1
+        self.arm = isinstance(self.robot, Arm)
+        self.alone = len(self.robot.names) == 1
 
     def run(self, *words, codes=(0,)):
         done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=600)
@@ -177,8 +278,9 @@ class Way:
 
     def go(self, folder):
         self.folder = pathlib.Path(folder)
-        (self.folder / "robot.urdf").write_text(urdf(self.joints))
-        self.run("init", "robot.urdf", "--tip", "tip", "--tracker", "--yes", "-o", "by_init.yaml", codes=(0, 1))
+        if self.arm:
+            (self.folder / "robot.urdf").write_text(urdf(self.robot.joints))
+            self.run("init", "robot.urdf", "--tip", "tip", "--tracker", "--yes", "-o", "by_init.yaml", codes=(0, 1))
         (self.folder / "problem.yaml").write_text(self.problem())
         self.run("observe", "problem.yaml", codes=(0, 1) if self.alone else (0,))
         done = self.run("plan", "problem.yaml", "--force", codes=(1,) if self.alone else (0,))
@@ -199,14 +301,14 @@ class Way:
 
     def problem(self):
         # What turns by less than a nominal joint's range keeps a parameter apart from the others; auto leaves out what none can tell.
-        return (f"posewright: 1\nrobot: {{urdf: robot.urdf, base: base, tip: tip}}\n{self.measurement}\n"
-                + ("workspace: {stations: {among: {A: [4, 0.5, 0.5], B: [2, 3, 1]}}}\n" if self.tracker else "")
-                + f'variants:\n  geometric: {{parameters: auto, nuisance: ["base.*", "{self.carried}"]}}\n  zeros: {{parameters: ["*.offset"], nuisance: ["base.*", "{self.carried}"]}}\n'
+        workspace = ["stations: {among: {A: [4, 0.5, 0.5], B: [2, 3, 1]}}"] * self.tracker + self.robot.workspace
+        return (f"posewright: 1\n{self.robot.text}\n{self.measurement}\n" + (f"workspace: {{{', '.join(workspace)}}}\n" if workspace else "")
+                + f'variants:\n  geometric: {{parameters: auto, nuisance: ["base.*", "{self.carried}"]}}\n  zeros: {{parameters: ["{self.robot.zeros}"], nuisance: ["base.*", "{self.carried}"]}}\n'
                 "design: {poses: 30, candidates: 150, restarts: 1, method: exchange, test_poses: {random: 20}}\n")
 
     def before(self):
         self.run("route", "plan.json", "--force")
-        for form, file in (("csv", "poses_out.csv"), ("joint-trajectory", "trajectory.yaml")):
+        for form, file in (("csv", "poses_out.csv"), ("joint-trajectory", "trajectory.yaml") if self.arm else ("json", "poses_out.json")):
             self.run("export", "route.json", "--to", form, "-o", file, "--force")
         self.run("simulate", "problem.yaml", "plan.json", "--draws", "3", "--json")
         self.run("compare", "problem.yaml", "--variant", "geometric,zeros")
@@ -222,23 +324,22 @@ class Way:
 
     def measure(self):
         plan = json.loads((self.folder / "plan.json").read_text())
-        moving = coordinates(self.joints)
-        error = [[*(2e-4 * self.random.normal(size=3)), *(3e-4 * self.random.normal(size=3)), (1e-3 if j["of"] == TURN else 3e-4) * self.random.normal()] for j in self.joints]
-        places = [[dict(zip(pose["names"], pose["configuration"]))[f"j{k}"] for k in moving] for pose in plan["poses"]]
+        names, error = self.robot.names, self.robot.off(self.random)
+        places = [[dict(zip(pose["names"], pose["configuration"]))[name] for name in names] for pose in plan["poses"]]
         fit = len(places)
-        places += [[self.random.uniform(*self.joints[k]["range"]) for k in moving] for _ in range(10)]
+        places += [[self.random.uniform(*of) for of in self.robot.ranges] for _ in range(10)]
         # The base is a centimetre from where the file has it.
         moved = placed(1e-2 * self.random.normal(size=3), 1e-2 * self.random.normal(size=3))
         station = np.linalg.inv(placed((4, 0.5, 0.5), (0, 0, 0))) if self.tracker else np.eye(4)
         rows = []
         for i, q in enumerate(places):
-            T = tip(self.joints, dict(zip(moving, q)), error)
-            rows.append({"id": i + 1, **{f"j{k}": v for k, v in zip(moving, q)}, **self.read(T, self.random, station @ moved), "use": "fit" if i < fit else "validate"})
+            T = self.robot.tip(q, error)
+            rows.append({"id": i + 1, **dict(zip(names, q)), **self.read(T, self.random, station @ moved), "use": "fit" if i < fit else "validate"})
         lines = [",".join(rows[0])] + [",".join(repr(float(v)) if not isinstance(v, (int, str)) else str(v) for v in row.values()) for row in rows]
         (self.folder / "measured.csv").write_text("\n".join(lines) + "\n")
 
     def calibrations(self):
-        result = json.loads(self.run("calibrate", "problem.yaml", "measured.csv", "-o", "found.yaml", "--urdf", "found.urdf", "--json").stdout)
+        result = json.loads(self.run("calibrate", "problem.yaml", "measured.csv", "-o", "found.yaml", *(["--urdf", "found.urdf"] if self.arm else []), "--json").stdout)
         (self.folder / "calibration.json").write_text(json.dumps(result))
         for words in (("--no-prior",), ("--weights", "ols"), ("--weights", "robust"), ("--in-steps", "--profile", "none")):
             self.run("calibrate", "problem.yaml", "measured.csv", *words)
@@ -246,11 +347,15 @@ class Way:
         return self.judge(result)
 
     def judge(self, result):
-        """Residuals are the noise, and the ten poses err as the intervals of the estimate and the noise say."""
+        """Residuals are the noise, and the ten poses err as the intervals of the estimate and the noise say; of pictures, as those that were fitted."""
         if not 0.8 < result["noise_scale"] < 1.25:
             raise Fault(f"residuals are {result['noise_scale']:.2f} times the noise")
-        ratios = [pose["accuracy"]["observed"]["position"] / pose["accuracy"]["with_noise"]["position"] for pose in result["poses"] if pose["held_back"]]
-        size = np.sqrt(np.mean(np.square(ratios)))
+        judged = [pose["accuracy"] for pose in result["poses"] if pose["held_back"]]
+        if judged[0]["observed"]["position"] is None:  # pixels tell no place
+            rms = {r["poses"]: r["rms"] for r in result["residuals"] if r["parameters"] == "calibrated"}
+            size = rms["held back"] / rms["fitted"]
+        else:
+            size = np.sqrt(np.mean([(a["observed"]["position"] / a["with_noise"]["position"])**2 for a in judged]))
         if not 0.5 < size < 1.6:
             raise Fault(f"poses that were not fitted err {size:.2f} times as far as predicted")
         return size

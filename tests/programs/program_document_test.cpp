@@ -311,5 +311,92 @@ TEST(JointTrajectory, HasNoCoupling) {
   EXPECT_THROW(read_programs({{"joint-trajectory", text, "t.yaml"}}, robot), InputError);
 }
 
+TEST(JointTrajectory, TakesNamesInBracketsOrOneALineAndRefusesPointsOfAnotherLength) {
+  const std::string names = "joint_names:\n  - j1\n  - 'j2'\n  - j3  # elbow\n  - j4\n  - j5\n  - j6\npoints:\n";
+  const std::string first = "  - positions: [0, 0.1, 0.2, 0, 0.3, 0]\n", short_one = "  - positions: [0, 0.1]\n";
+  const auto document = std::move(read({{"joint-trajectory", names + first, "t.yaml"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("9 positions: C"));
+  EXPECT_DOUBLE_EQ(document->points()[0].joints[4], 0.3);
+  try {
+    read({{"joint-trajectory", names + first + short_one, "t.yaml"}});
+    FAIL() << "two numbers for six joints";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("t.yaml:10: has positions that are no list in brackets"));
+  }
+}
+
+TEST(KrlProgram, ReadsTypedListsAndLeavesBrokenOnesAlone) {
+  const std::string typed = "{E6AXIS: A1 0,A2 10,A3 20,A4 0,A5 30,A6 0}";
+  const std::string text = "DEF T()\nPTP " + typed +
+                           "\nPTP {A1 0,A2 (10,A3 20,A4 0,A5 30,A6 0}\nPTP {A1 0,A2 -(B),A3 20," +
+                           "A4 0,A5 30,A6 0}\nEND\n";
+  const auto document = std::move(read({{"kuka-krl", text, "t.src"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("2 PTP: C", "3 PTP: ?", "4 PTP: ?"));
+  const std::string after = moved(*document);
+  EXPECT_THAT(after, HasSubstr("PTP {E6AXIS: A1 0.57296,A2 10.57296"));
+  EXPECT_THAT(after, HasSubstr("PTP {A1 0,A2 (10,A3 20,A4 0,A5 30,A6 0}"));
+}
+
+TEST(KrlProgram, TellsPosesFromStepsAndChangedDataThatNothingMovesTo) {
+  const std::string text = std::string("DEF C()\nDECL E6AXIS XA\nDECL E6AXIS XB\nXA=") + krl_zero + "\nXB=" + krl_zero +
+                           "\nPTP XA\nPTP_REL XA\nXB.A1=5\nEND\n";
+  const auto document = std::move(read({{"kuka-krl", text, "c.src"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("4 XA: ?", "5 XB: L", "6 PTP XA: ?", "7 PTP_REL XA: L"));
+  EXPECT_EQ(why(*document, 4), "is a pose (line 6) and a relative motion (line 7)");
+  EXPECT_EQ(why(*document, 5), "the program changes it (line 8) and does not move to it");
+}
+
+TEST(InformProgram, DoesNotUnderstandValuesThatAreNoNumbersNorMotionsWithoutAPoint) {
+  const std::string job =
+      "/JOB\n//NAME W\n//POS\n///NPOS 1,0,0,0,0,0\n///POSTYPE PULSE\n///PULSE\nC00000=0,B,0,0,3000,0\n//INST\nNOP\n"
+      "MOVJ C00000 VJ=5.00\nMOVJ VJ=5.00\nEND\n";
+  const auto document = std::move(read({{"yaskawa-inform", job, "w.jbi"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("7 C0: ?", "10 MOVJ C0: ?", "11 MOVJ: ?"));
+  EXPECT_EQ(why(*document, 11), "its point is not understood");
+}
+
+TEST(TpProgram, DoesNotUnderstandAPointWithoutBraces) {
+  const auto document = std::move(
+      read({{"fanuc-tp", "/PROG W\n/ATTR\n/MN\n   1:J P[1] 10% FINE ;\n/POS\nP[1]\n/END\n", "w.ls"}}).front());
+  EXPECT_EQ(document->account().count(Treatment::compensated), 0U);
+  EXPECT_GE(document->account().count(Treatment::not_understood), 1U);
+}
+
+TEST(Val3Program, DoesNotUnderstandAValueThatIsNoNumber) {
+  const std::string data =
+      "<Database>\n<Data name=\"jA\" type=\"jointRx\"><Value key=\"0\" j1=\"0\" j2=\"x\" j3=\"0\" j4=\"0\" j5=\"0\" "
+      "j6=\"0\"/>"
+      "</Data>\n</Database>\n";
+  const auto document = std::move(read({{"staubli-val3", data, "w.dtx"}}).front());
+  EXPECT_THAT(lines_of(*document), ElementsAre("2 jA: ?"));
+}
+
+TEST(Program, RefusesSettingsThatAreMissingOrOfAnotherRobot) {
+  const auto refused = [](const std::string& format, const ProgramRobot& robot) -> std::string {
+    try {
+      read_programs({{format, "", "p", true}}, robot);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ProgramRobot robot = six_axes();
+  robot.settings.pulses_per_degree = {1000, 1000};
+  EXPECT_THAT(refused("urscript", robot), HasSubstr("pulses_per_degree has 2 entries; the robot has 6 joints"));
+  robot.settings.pulses_per_degree.clear();
+  EXPECT_THAT(refused("yaskawa-inform", robot), HasSubstr("needs pulses_per_degree in --controller FILE"));
+  robot.coupling.reset();
+  EXPECT_THAT(refused("fanuc-tp", robot), HasSubstr("fanuc-tp needs --coupling F"));
+  robot.coupling = 1.0;
+  robot.names = {"j1", "j2"};
+  robot.units = {"rad", "rad"};
+  EXPECT_THAT(refused("kuka-krl", robot), HasSubstr("--coupling is for robots of three axes or more"));
+  robot.coupling = 0.0;
+  robot.names = std::vector<std::string>(7, "j");
+  robot.units = std::vector<std::string>(7, "rad");
+  EXPECT_THAT(refused("urscript", robot), HasSubstr("urscript has six turning axes, the robot 7 joints"));
+  EXPECT_THAT(refused("kuka-krl", robot), HasSubstr("name the controller's axes in --controller FILE (axes)"));
+}
+
 }  // namespace
 }  // namespace posewright

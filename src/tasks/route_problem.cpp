@@ -54,7 +54,9 @@ std::string temperature_of(const PlannedPose& pose) {
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
  public:
-  Router(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor)
+  /// @param kept  ids of poses whose joints stay on the plan's turn
+  Router(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor,
+         const std::vector<int>& kept = {})
       : problem_(problem),
         options_(options),
         monitor_(monitor),
@@ -75,7 +77,7 @@ class Router {
       route_.units.push_back(c.unit);
     }
     route_.home = space_.home();
-    take_stops(poses);
+    take_stops(poses, kept);
   }
 
   Route make() {
@@ -91,20 +93,24 @@ class Router {
     return std::move(route_);
   }
 
+  /// Ids of poses whose joints are on another turn than the plan's.
+  const std::vector<int>& turned() const { return turned_; }
+
  private:
-  void take_stops(const PoseList& list) {
+  void take_stops(const PoseList& list, const std::vector<int>& kept) {
     require_fits(list, variant_.workspace->coordinates());
     route_.plan_file = list.name;
     route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
     route_.notes = list.notes;
     note_parameters(list, problem_, route_.notes);
     stops_.push_back({0, space_.whole(space_.home()), {}});
-    std::vector<int> turned;
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;
       const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
-      std::vector<double> q = nearest_turn(problem_, variant_, stops_.front().configuration, list.configurations[i]);
-      if (q != list.configurations[i]) turned.push_back(id);
+      std::vector<double> q = list.configurations[i];
+      if (std::find(kept.begin(), kept.end(), id) == kept.end())
+        q = nearest_turn(problem_, variant_, stops_.front().configuration, std::move(q));
+      if (q != list.configurations[i]) turned_.push_back(id);
       Stop stop{id, q, pose_of(*variant_.model, q)};
       stop.pose.id = stop.id;
       if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
@@ -114,9 +120,9 @@ class Router {
       if (stops_[i].id > 0) stops_[i].pose.nearest = nearest_at(*cell_, stops_[i].configuration);
     });
     if (monitor_.should_stop()) throw CannotDo("stopped before all motions were found");
-    if (!turned.empty())
+    if (!turned_.empty())
       route_.notes.push_back(fmt::format("joints of pose{} {} stand on another turn than in the plan, nearer to home",
-                                         turned.size() == 1 ? "" : "s", fmt::join(turned, ", ")));
+                                         turned_.size() == 1 ? "" : "s", fmt::join(turned_, ", ")));
     std::vector<int> near;
     for (const Stop& stop : stops_)
       if (stop.id > 0 && !variant_.workspace->within_margin(stop.configuration).empty()) near.push_back(stop.id);
@@ -382,9 +388,22 @@ class Router {
   Route route_;
   double one_reading_ = 0.0;  // s, of one target where they are read in turn
   std::vector<Stop> stops_;   // the first is home
+  std::vector<int> turned_;   // ids
   std::vector<int> open_;     // stops that can be reached, home too where the route begins there
   std::unique_ptr<Motions> motions_;
 };
+
+/// A pose that no motion reaches on the turn nearest to home keeps the plan's.
+Route routed(const Problem& problem, const PoseList& poses, const RouteOptions& options, const Monitor& monitor) {
+  Router router(problem, poses, options, monitor);
+  Route route = router.make();
+  std::vector<int> lost;
+  for (const SkippedPose& pose : route.unreachable)
+    if (std::find(router.turned().begin(), router.turned().end(), pose.pose) != router.turned().end())
+      lost.push_back(pose.pose);
+  if (lost.empty() || route.interrupted) return route;
+  return Router(problem, poses, options, monitor, lost).make();
+}
 
 nlohmann::json read_plan(const std::filesystem::path& plan) {
   const std::string text = read_text(plan, plan_size_limit);
@@ -415,13 +434,13 @@ Route route_problem(const Problem& problem, const PoseList& poses, const RouteOp
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(poses, most_routed, "route orders");
-  Route route = Router(problem, poses, options, monitor).make();
+  Route route = routed(problem, poses, options, monitor);
   PoseList list = poses;
   for (int round = 0; options.replace && round < most_rounds && !route.unreachable.empty() && !route.interrupted;
        ++round) {
     std::vector<SkippedPose> replaced = route.replaced;
     list = with_replacements(problem, list, route, options.seed, monitor, replaced);
-    route = Router(problem, list, options, monitor).make();
+    route = routed(problem, list, options, monitor);
     route.replaced = std::move(replaced);
   }
   settle_replaced(route);

@@ -84,6 +84,24 @@ TEST(Route, TurnsJointsToTheTurnNearestHomeUnlessAParameterGrowsWithTurns) {
   EXPECT_EQ(values_of(*pose_with(kept, 1)), poses[0]) << "the gear of j1 tells turns apart";
 }
 
+TEST(Route, KeepsThePlansTurnWhereNoMotionReachesTheOneNearestToHome) {
+  const TemporaryFolder folder;
+  Problem problem = problem_of(folder, "[j2.offset, j3.offset]");
+  const std::vector<std::vector<double>> poses = {{4.2, 0.3, 0.4, 1, 0.6, 0.2}, {1, 0.2, 0.3, 1, -0.4, 2}};
+  const auto driven = [&] {
+    return route_problem(problem, poses_given(poses, pose_coordinates(problem)), from_home(), Monitor{});
+  };
+  EXPECT_NEAR(values_of(*pose_with(driven(), 1))[0], 4.2 - 2 * std::numbers::pi, 1e-12);
+  // A wall from the first axis outwards, 60 deg on the way to the nearest turn.
+  const double angle = -60 * std::numbers::pi / 180;
+  problem.workspace.collision->obstacles.push_back(
+      {"wall", BoxShape{{3, 0.02, 2}}, {{1.59 * std::cos(angle), 1.59 * std::sin(angle), 0.6}, {0, 0, angle}}, "", 1});
+  const Route route = driven();
+  for (const SkippedPose& lost : route.unreachable) FAIL() << lost.pose << ": " << lost.reason;
+  EXPECT_EQ(values_of(*pose_with(route, 1)), poses[0]);
+  EXPECT_EQ(values_of(*pose_with(route, 2)), poses[1]);
+}
+
 TEST(Route, ReplacesLostPosesByOthersThatAddTheMostToTheRest) {
   const TemporaryFolder folder;
   Problem problem = problem_of(folder, "auto");

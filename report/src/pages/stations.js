@@ -60,7 +60,7 @@ function rankingSection(s) {
     placeOf(r),
     r.in_full ? 'in full' : 'quickly',
     String(r.parameters),
-    number(r.phi, 7),
+    number(r.phi, 5),
     isDeterminant(s) ? `${number(sigmaRatio(s.ranking, r), 4)} ×` : '–',
     percent(r.feasible_share),
     ...(withError ? [quantity(r.rho0, 'm')] : []),

@@ -175,7 +175,7 @@ def turns(problem):
 
 
 def criteria(problem):
-    """By name; an effect's size is in units of the noise. `smooth 2` is the program's criterion accuracy."""
+    """By name; an effect's size is in units of the noise. `smooth 2` is the program's criterion bias without a truth."""
     none = (np.zeros((problem.n, problem.r, 1)), np.zeros((problem.n, len(problem.there), 1)), 1.0)
     table = {"o1": Determinant(problem, False, False), "ds": Determinant(problem, False, True),
              "variance": MeanSquare(problem, False, [(1, 0, *none)])}

@@ -194,7 +194,7 @@ def planned(program, name, data, N):
             ids = list(dict.fromkeys(row[0] for row in list(csv.reader(file))[1:]))
         made = subprocess.run([program, "plan", here / "problem.yaml", "--candidates-from", poses, "--poses", str(N),
                                "--json", "-o", "-", "--poses-csv", "-", "--quiet", "--threads", "1", "--variant",
-                               "everything", "--criterion", "accuracy"], check=True, capture_output=True, text=True)
+                               "everything", "--criterion", "bias"], check=True, capture_output=True, text=True)
     return [ids.index(str(pose["listed"]["id"])) for pose in json.loads(made.stdout)["poses"]]
 
 
@@ -203,7 +203,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--criteria", default="")
     parser.add_argument("--sets", default="")
-    parser.add_argument("--program", help="plans of this program by criterion accuracy, too")
+    parser.add_argument("--program", help="plans of this program by criterion bias, too")
     options = parser.parse_args()
     for s in sets(options.data):
         if options.sets not in s.name:

@@ -5,6 +5,13 @@
 namespace posewright {
 namespace {
 
+// Columns of an assumed effect make each candidate several times as costly, and more of them gain little: what the
+// robot's effect is like is not known so well.
+constexpr int candidates_with_effect = 1000, restarts_with_effect = 2;
+
+/// Whether the criterion counts an effect that nobody stated.
+bool assumes_effect(const Settings& s) { return find_criterion(s.criterion)->needs_truth && s.truth.value.empty(); }
+
 std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, const PlanOptions& options, bool several) {
   const DesignSpec& design = problem.design;
   if (!several) return {{{find_variant(problem, options.variant).name, 0}, 1.0}};
@@ -22,7 +29,8 @@ Located<std::string> truth_of(const Problem& problem, const PlanOptions& options
       options.truth.empty() ? design.truth.value_or(Located<std::string>{}) : Located<std::string>{options.truth, 0};
   const CriterionEntry& entry = *find_criterion(criterion);
   const SourcePlace asked = options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{};
-  if (entry.needs_truth && truth.value.empty())
+  // Without a truth, bias counts an effect that is assumed.
+  if (entry.needs_residual && truth.value.empty())
     throw InputError(asked, "criterion '" + criterion + "' needs an alternative model to test",
                      "set design: truth or --truth");
   if (!truth.value.empty()) find_variant(problem, truth.value);
@@ -72,6 +80,12 @@ Settings settings_of(const Problem& problem, const PlanOptions& options) {
   if (!s.measured) s.measured_file = design.measured.value_or("");
   s.planner.restarts = options.restarts.value_or(design.restarts.value);
   s.planner.restarts_stated = options.restarts || design.restarts.line > 0;
+  if (assumes_effect(s)) {
+    if (!options.candidates && design.candidates.line == 0) s.candidates = candidates_with_effect;
+    if (!s.planner.restarts_stated) s.planner.restarts = restarts_with_effect;
+    if (options.method.empty() && design.method.line == 0) s.method = "exchange";
+    s.planner.kicks = 0;
+  }
   s.planner.seed = options.seed;
   s.candidates_alone = options.candidates_alone;
   s.same_robot = options.same_robot;

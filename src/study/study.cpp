@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "assumed_effect.hpp"
 #include "fixed_poses.hpp"
 #include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -237,7 +238,9 @@ SearchRequest spaced_request(const Study& study, const Settings& settings, int p
 
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion) {
-  if (!study.list.empty()) return {};
+  const bool assumed = find_criterion(criterion)->needs_truth && study.discrepancy == nullptr;
+  // An effect that is assumed says too little for moves between candidates.
+  if (!study.list.empty() || assumed) return {};
   return [&study, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const Variant& v : study.variants)
@@ -294,7 +297,8 @@ std::vector<SearchPart> search_parts(const Study& study, const std::string& crit
                                      const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
   if (find_criterion(criterion)->needs_truth) {
-    parts.push_back(part_with_effects(study, configurations, threads));
+    parts.push_back(study.discrepancy == nullptr ? part_with_assumed_effect(study, configurations, threads)
+                                                 : part_with_effects(study, configurations, threads));
     return parts;
   }
   for (const Variant& variant : study.variants) parts.push_back(search_part(variant, configurations, threads));

@@ -66,7 +66,7 @@ void KnownSoFar::settle() {
   settings_.criterion = options_.criterion.empty() ? design.criterion.value : options_.criterion;
   require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
   const CriterionEntry& entry = *find_criterion(settings_.criterion);
-  if (entry.several_variants || entry.needs_truth)
+  if (entry.several_variants || (entry.needs_truth && !settings_.truth.value.empty()))
     throw CannotDo("next supports only criteria of a single variant: criterion '" + settings_.criterion +
                    "' needs several (--criterion names another)");
 }

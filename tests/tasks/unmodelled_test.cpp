@@ -3,6 +3,7 @@
 
 #include "posewright/study/unmodelled.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -267,6 +268,65 @@ TEST_F(UnmodelledEffects, BoundHoldsForEverySetOfCandidates) {
     EXPECT_TRUE(found.certificate.proved);
     EXPECT_LE(found.certificate.efficiency, 1.0);
   }
+}
+
+TEST_F(UnmodelledEffects, BiasWithoutATruthIsTheErrorOfAPlainFitAtTheCandidates) {
+  List places;
+  std::string file = "q1 [rad],q2 [rad]\n";
+  Random random(7, 1);
+  for (int i = 0; i < 60; ++i) {
+    places.push_back({2 * random.uniform() - 1, 0.3 + 1.5 * random.uniform()});
+    file += fmt::format("{:.17g},{:.17g}\n", places.back()[0], places.back()[1]);
+  }
+  folder_.write("places.csv", file);
+  const Problem p = problem("{size: 0.2 mm}", "{variant: short, poses: 8, candidates_from: places.csv}");
+  EvaluateOptions options;
+  options.plan.criterion = "bias";
+  const Plan plan = evaluate_problem(p, given_poses(p, eight), options, Monitor{}).plan;
+
+  constexpr double size = 2e-4;
+  Eigen::MatrixXd J(16, 3), K(16, 16), at(16, 2);
+  for (Eigen::Index i = 0; i < 8; ++i) {
+    J.middleRows(2 * i, 2) = jacobian(eight[std::size_t(i)]);
+    for (Eigen::Index k = 0; k < 8; ++k)
+      K.block<2, 2>(2 * i, 2 * k) = size * size * kernel(eight[std::size_t(i)], eight[std::size_t(k)], sixty_degrees) *
+                                    Eigen::Matrix2d::Identity();
+  }
+  const Eigen::MatrixXd V = (J.transpose() * J).inverse(), takes = V * J.transpose();
+  double noise = 0, all = 0;
+  for (const std::vector<double>& place : places) {
+    const Eigen::MatrixXd A = jacobian(place);
+    for (Eigen::Index i = 0; i < 8; ++i)
+      at.middleRows(2 * i, 2) =
+          size * size * kernel(eight[std::size_t(i)], place, sixty_degrees) * Eigen::Matrix2d::Identity();
+    noise += sigma * sigma * (A * V * A.transpose()).trace();
+    all += sigma * sigma * (A * V * A.transpose()).trace() +
+           (A * takes * K * takes.transpose() * A.transpose()).trace() - 2 * (A * takes * at).trace() + 2 * size * size;
+  }
+  const double expected = all / 60 / (sigma * sigma);
+  EXPECT_GT(all, 2 * noise) << "noise alone would do";
+  // The features leave 1.4 % of the effect's variance, here 0.055 of the noise's, which is in the unit of the value.
+  EXPECT_NEAR(-plan.criterion_value / expected, 1 / 1.055, 0.01);
+}
+
+TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
+  const Problem p = problem("", "{variant: plain, poses: 8, candidates: 200}");
+  const auto planned = [&](const std::string& criterion) {
+    PlanOptions options;
+    options.criterion = criterion;
+    options.candidates_alone = true;
+    return plan_problem(p, options, Monitor{});
+  };
+  const Plan best = planned("bias"), determinant = planned("o1");
+  EXPECT_FALSE(best.certificate.proved);
+  const auto value = [&](const Plan& plan) {
+    EvaluateOptions options;
+    options.plan.criterion = "bias";
+    return evaluate_problem(p, planned_poses(p, plan), options, Monitor{}).plan.criterion_value;
+  };
+  const double here = value(best), there = value(determinant);
+  EXPECT_NEAR(here / best.criterion_value, 1, 1e-6);
+  EXPECT_GT(here, there);
 }
 
 TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {

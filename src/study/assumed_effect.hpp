@@ -1,0 +1,12 @@
+#pragma once
+
+#include "posewright/study/study.hpp"
+
+namespace posewright {
+
+/// Blocks, prior and effects for `bias` without a truth: the variant's columns, then features of a smooth effect that
+/// the fit does not estimate. It is that of `unmodelled`, else one of 60 deg and twice the noise of a pose. Errors
+/// count where the candidates are, as readings in units of their noise. Throws CannotDo if the readings contain no tip.
+SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads);
+
+}  // namespace posewright

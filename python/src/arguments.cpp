@@ -55,12 +55,11 @@ std::uint64_t seed_of(const py::int_& value) {
   throw InputError({}, "seed is " + py::repr(value).cast<std::string>(), "0 to 18446744073709551615 is allowed");
 }
 
-void set_search(PlanOptions& options, const py::object& candidates, const py::object& restarts, const py::int_& seed,
-                long long threads) {
-  options.candidates = optional_number(candidates, "candidates", most_candidates);
-  options.restarts = optional_number(restarts, "restarts", most_restarts);
-  options.seed = seed_of(seed);
-  options.threads = checked("threads", threads, 0, most_threads);
+RunOptions run_options(const py::int_& seed, long long threads) {
+  RunOptions run;
+  run.seed = seed_of(seed);
+  run.threads = checked("threads", threads, 0, most_threads);
+  return run;
 }
 
 }  // namespace posewright::python

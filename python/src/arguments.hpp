@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "posewright/problem/design_specs.hpp"
-#include "posewright/study/plan_options.hpp"
+#include "posewright/study/run_options.hpp"
 
 namespace posewright::python {
 
@@ -27,8 +27,7 @@ std::string choice(const py::object& value, const std::string& name, const std::
 std::optional<Repeats> repeats_of(const py::object& value);
 /// From 0 up. Throws InputError for other numbers.
 std::uint64_t seed_of(const py::int_& value);
-/// What every search is told: how many candidates and starts (None: as in the problem), seed, threads.
-void set_search(PlanOptions& options, const py::object& candidates, const py::object& restarts, const py::int_& seed,
-                long long threads);
+/// Seed and threads of a run.
+RunOptions run_options(const py::int_& seed, long long threads);
 
 }  // namespace posewright::python

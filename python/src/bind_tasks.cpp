@@ -4,6 +4,7 @@
 #include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "design_keywords.hpp"
 #include "made.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
@@ -125,37 +126,35 @@ MadeSimulation simulate(const Shared& problem, const py::object& poses, const st
                             });
 }
 
+// Arguments that a function has beside the keys of the design.
+const std::vector<std::string> of_compare{"variants", "truth"}, of_stations{};
+
 MadeComparison compare(const Shared& problem, const py::dict& plans, const std::vector<std::string>& variants,
-                       const std::string& truth, const py::object& poses, const std::string& method,
-                       const py::object& candidates, const py::object& restarts, const py::int_& seed,
-                       long long threads, py::object progress) {
+                       const std::string& truth, const py::int_& seed, long long threads, py::object progress,
+                       const py::kwargs& design) {
   CompareOptions options;
   options.variants = variants;
   options.truth = truth;
-  if (!plans.empty() && (!poses.is_none() || !method.empty() || !restarts.is_none()))
-    throw InputError({}, "poses, method and restarts are for plans that are searched", "leave them out, or the plans");
-  const std::vector<Coordinate> coordinates = coordinates_of(*problem, variants.empty() ? "" : variants.front());
+  for (const char* name : {"poses", "method", "restarts"})
+    if (!plans.empty() && design.contains(name) && !design[name].is_none())
+      throw InputError({}, std::string(name) + " is for plans that are searched", "leave it out, or the plans");
+  options.run = run_options(seed, threads);
+  const auto compared = designed(*problem, design, of_compare, options.run);
+  const std::vector<Coordinate> coordinates = coordinates_of(*compared, variants.empty() ? "" : variants.front());
   for (const auto& [name, list] : plans)
     options.plans.push_back(
         {py::cast<std::string>(name), pose_list(py::reinterpret_borrow<py::object>(list), coordinates)});
-  options.plan.poses = optional_number(poses, "poses", most_poses);
-  options.plan.method = method;
-  set_search(options.plan, candidates, restarts, seed, threads);
-  return MadeComparison::of(problem, options, {}, std::move(progress), compare_problem);
+  return MadeComparison::of(compared, options, {}, std::move(progress), compare_problem);
 }
 
-MadeStations stations(const Shared& problem, const py::object& choose, long long full, const py::object& poses,
-                      const std::string& variant, const std::string& criterion, const py::object& candidates,
-                      const py::object& restarts, const py::int_& seed, long long threads, Limit time_limit,
-                      py::object progress) {
+MadeStations stations(const Shared& problem, const py::object& choose, long long full, const py::int_& seed,
+                      long long threads, Limit time_limit, py::object progress, const py::kwargs& design) {
   StationOptions options;
   options.choose = optional_number(choose, "choose", 100);
   options.full = checked("full", full, 0, 10000);
-  options.plan.poses = optional_number(poses, "poses", most_poses);
-  options.plan.variant = variant;
-  options.plan.criterion = criterion;
-  set_search(options.plan, candidates, restarts, seed, threads);
-  return MadeStations::of(problem, options, time_limit, std::move(progress), place_stations);
+  options.run = run_options(seed, threads);
+  return MadeStations::of(designed(*problem, design, of_stations, options.run), options, time_limit,
+                          std::move(progress), place_stations);
 }
 
 Report report(const Shared& problem, const std::filesystem::path& plan, const py::object& route, bool brief,
@@ -252,15 +251,25 @@ whose intervals are by profile likelihood: "auto" (those that the curvature name
         py::arg("time_limit") = none, py::arg("progress") = none,
         "Measures the poses on robots with drawn parameters, calibrates, and compares with the truth "
         "(docs/simulate.md).");
+  py::options signatures;
+  signatures.disable_function_signatures();
+  const std::string run = ", seed: int = 0, threads: int = 0";
   m.def("compare", &compare, py::arg("problem"), py::arg("plans") = py::dict(), py::kw_only(),
-        py::arg("variants") = std::vector<std::string>(), py::arg("truth") = "", py::arg("poses") = none,
-        py::arg("method") = "", py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0,
+        py::arg("variants") = std::vector<std::string>(), py::arg("truth") = "", py::arg("seed") = 0,
         py::arg("threads") = 0, py::arg("progress") = none,
-        "Variants against plans, {name: Plan, file or array}; without plans the best for each variant is searched.");
+        (signature("compare", "problem: Problem, plans: dict = {}, *, variants: list[str] = [], truth: str = ''",
+                   of_compare, run + ", progress: object = None", "Comparison") +
+         "Variants against plans, {name: Plan, file or array}; without plans the best for each variant is searched. "
+         "Other keywords are the keys of design, as in plan.")
+            .c_str());
   m.def("stations", &stations, py::arg("problem"), py::kw_only(), py::arg("choose") = none, py::arg("full") = 3,
-        py::arg("poses") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("candidates") = none,
-        py::arg("restarts") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
-        py::arg("progress") = none, "Where the instrument should stand: ranks the places of workspace.stations.");
+        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
+        (signature("stations", "problem: Problem, *, choose: Optional[int] = None, full: int = 3", of_stations,
+                   run + ", time_limit: Optional[float] = None, progress: object = None", "Stations") +
+         "Where the instrument should stand: ranks the places of workspace.stations. Other keywords are the keys of "
+         "design, as in plan.")
+            .c_str());
+  signatures.enable_function_signatures();
   m.def("report", &report, py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("route") = none,
         py::arg("brief") = false, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
         "The page of a plan.json, with its route.json; brief: without other numbers of poses, candidates and moved "

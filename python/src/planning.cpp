@@ -2,10 +2,9 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
+#include "design_keywords.hpp"
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/problem/design_words.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/repeats.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
@@ -16,68 +15,47 @@ namespace {
 
 using Limit = std::optional<double>;
 
-Plan plan(const GivenProblem& given, const py::object& poses, const std::string& criterion, const std::string& method,
-          const std::string& variant, const py::object& candidates, const py::object& restarts,
-          const py::object& repeats, const py::object& scaling, const py::object& prior, bool reserve,
-          const py::object& measured, const py::object& fixed, const std::string& truth,
-          const py::object& candidates_from, std::optional<double> gap, std::optional<double> proof_time,
-          const py::object& robust, const std::string& robust_measure, const py::int_& seed, long long threads,
-          Limit time_limit, py::object progress) {
-  PlanOptions options;
-  options.robust = robust_spec(optional_number(robust, "robust", most_robust_draws, least_robust_draws), robust_measure,
-                               "robust_measure");
-  options.truth = truth;
-  if (py::isinstance<py::str>(poses)) options.smallest = !choice(poses, "poses", {"auto"}).empty();
-  else options.poses = optional_number(poses, "poses", most_poses);
-  options.criterion = criterion;
-  options.method = method;
-  options.variant = variant;
-  set_search(options, candidates, restarts, seed, threads);
-  options.repeats = repeats_of(repeats);
-  if (const std::string text = choice(scaling, "scaling", {"tolerance", "norm", "none"}); !text.empty())
-    options.scaling = scaling_of(text);
-  if (const std::string text = choice(prior, "prior", {"none", "tolerance"}); !text.empty())
-    options.prior = text == "tolerance";
-  options.reserve = reserve;
+// Arguments that a function has beside the keys of the design.
+const std::vector<std::string> of_plan{}, of_evaluate{"poses"};
+const char* const search_arguments =
+    ", seed: int = 0, threads: int = 0, time_limit: Optional[float] = None, progress: object = None";
+
+Plan plan(const GivenProblem& given, const py::object& poses, std::optional<double> gap,
+          std::optional<double> proof_time, const py::int_& seed, long long threads, Limit time_limit,
+          py::object progress, py::kwargs design) {
+  RunOptions run = run_options(seed, threads);
   if (gap && !(*gap > 0 && *gap < 100)) throw InputError({}, "gap is no percentage", "above 0 and below 100");
   if (proof_time && !(*proof_time >= 0 && *proof_time < 1e9))
     throw InputError({}, "proof_time is no number of seconds", "0 or more are allowed");
-  if (gap) options.proof.gap = *gap / 100;
-  options.proof.seconds = proof_time;
-  if (!measured.is_none() || !fixed.is_none() || !candidates_from.is_none()) {
-    const std::vector<Coordinate> coordinates = coordinates_of(given, variant);
-    if (!measured.is_none()) options.measured = pose_list(measured, coordinates);
-    if (!fixed.is_none()) options.fixed = pose_list(fixed, coordinates);
-    if (!candidates_from.is_none()) options.candidates_from = pose_list(candidates_from, without_limits(coordinates));
-  }
+  if (gap) run.proof.gap = *gap / 100;
+  run.proof.seconds = proof_time;
+  design["poses"] = poses;
+  const auto designed_problem = designed(given, design, of_plan, run);
   Plan result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        result = with_places(given, [&] { return plan_problem(given.problem, options, monitor); });
+        result = with_places(given, [&] { return plan_problem(designed_problem->problem, run, monitor); });
       },
       OnInterrupt::keep_best);
   return result;
 }
 
 PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, const py::object& drop,
-                            const py::object& add, const std::string& format, const std::string& variant,
-                            const std::string& criterion, const std::string& method, const py::object& candidates,
-                            const py::object& restarts, const py::int_& seed, long long threads, Limit time_limit,
-                            py::object progress) {
+                            const py::object& add, const std::string& format, const py::int_& seed, long long threads,
+                            Limit time_limit, py::object progress, const py::kwargs& design) {
   EvaluateOptions options;
   options.drop = optional_number(drop, "drop", most_poses);
   options.add = optional_number(add, "add", most_poses);
-  options.plan.variant = variant;
-  options.plan.criterion = criterion;
-  options.plan.method = method;
-  set_search(options.plan, candidates, restarts, seed, threads);
-  const PoseList list = pose_list(poses, coordinates_of(given, variant), format);
+  options.run = run_options(seed, threads);
+  const auto designed_problem = designed(given, design, of_evaluate, options.run);
+  const PoseList list = pose_list(poses, coordinates_of(*designed_problem), format);
   PoseListEvaluation result;
   Watch watch(time_limit, std::move(progress));
   watch.run(
       [&](const Monitor& monitor) {
-        result = with_places(given, [&] { return evaluate_problem(given.problem, list, options, monitor); });
+        result =
+            with_places(given, [&] { return evaluate_problem(designed_problem->problem, list, options, monitor); });
       },
       OnInterrupt::raise);
   return result;
@@ -135,29 +113,38 @@ Route route(const GivenProblem& given, const py::object& poses, const std::strin
 
 void bind_planning(py::module_& m) {
   const py::none none;
-  m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("criterion") = "",
-        py::arg("method") = "", py::arg("variant") = "", py::arg("candidates") = none, py::arg("restarts") = none,
-        py::arg("repeats") = none, py::arg("scaling") = none, py::arg("prior") = none, py::arg("reserve") = false,
-        py::arg("measured") = none, py::arg("fixed") = none, py::arg("truth") = "", py::arg("candidates_from") = none,
-        py::arg("gap") = none, py::arg("proof_time") = none, py::arg("robust") = none, py::arg("robust_measure") = "",
-        py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        R"(Searches for the poses to measure. What is not said is as in the problem.
+  // Signatures come from the table of keys.
+  py::options options;
+  options.disable_function_signatures();
+  m.def("plan", &plan, py::arg("problem"), py::arg("poses") = none, py::kw_only(), py::arg("gap") = none,
+        py::arg("proof_time") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("time_limit") = none,
+        py::arg("progress") = none,
+        (signature("plan", "problem: Problem, poses: object = None, *", {"poses"},
+                   std::string(", gap: Optional[float] = None, proof_time: Optional[float] = None") + search_arguments,
+                   "Plan") +
+         R"(Searches for the poses to measure. Keywords are the keys of design in a problem file
+(docs/problem-file-reference.md), a mapping's own ones with _ (require_accuracy="0.1 mm"); what is not stated is as in
+the problem.
 
-poses: their number, or "auto": the smallest that reaches what the problem requires; measured: poses that are there
-already (Plan, file or array); fixed: poses that the plan has among its own; candidates_from: choose among these (Plan, file or array); truth: an alternative model,
-for criteria that test it; repeats: "forbid", "allow" or how often; time_limit: s; progress: called with a Progress;
-gap: percent at which the proof over the workspace ends, proof_time: s for it, 0: none; robust: plan for so many robots
-drawn from the tolerances, robust_measure: "mean", "worst" or "tail 0.1".
+poses: their number, or "auto": the smallest that reaches what the problem requires; measured (or augment), fixed,
+candidates_from: Plan, file or array; time_limit: s; progress: called with a Progress; gap: percent at which the proof
+over the workspace ends, proof_time: s for it, 0: none.
 The same problem, options and seed give the same plan, whatever the number of threads. Ctrl-C ends the search and returns
-the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)");
+the best plan so far with a RuntimeWarning; a second one raises KeyboardInterrupt.)")
+            .c_str());
   m.def("evaluate", &evaluate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("drop") = none,
-        py::arg("add") = none, py::arg("format") = "", py::arg("variant") = "", py::arg("criterion") = "",
-        py::arg("method") = "", py::arg("candidates") = none, py::arg("restarts") = none, py::arg("seed") = 0,
-        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        R"(Judges poses that you have: a Plan, the name of a pose list, or an array N × n in SI units.
+        py::arg("add") = none, py::arg("format") = "", py::arg("seed") = 0, py::arg("threads") = 0,
+        py::arg("time_limit") = none, py::arg("progress") = none,
+        (signature("evaluate",
+                   "problem: Problem, poses: object, *, drop: Optional[int] = None, add: Optional[int] = None, "
+                   "format: str = ''",
+                   of_evaluate, search_arguments, "Evaluation") +
+         R"(Judges poses that you have: a Plan, the name of a pose list, or an array N × n in SI units.
 
 drop, add: which so many poses to leave out, or to measure more; format: of a list that another program wrote
-(docs/export.md).)");
+(docs/export.md). Other keywords are the keys of design, as in plan.)")
+            .c_str());
+  options.enable_function_signatures();
   m.def("observe", &observe, py::arg("problem"), py::arg("variant") = "", py::kw_only(), py::arg("candidates") = 2000,
         py::arg("poses") = none, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("progress") = none,
         "Identifiability of one variant or of all: {variant: Observation}.");

@@ -57,7 +57,7 @@ def test_a_plan_for_the_tolerances_tells_every_drawn_robots_efficiency(examples)
     lowest = sorted(written["efficiency"])[:2]
     assert written["value"] == pytest.approx(float(np.exp(np.mean(np.log(lowest)))))
     assert len(pw.plan(problem, candidates=60, restarts=1, method="greedy").robust_efficiency) == 0
-    with pytest.raises(pw.InputError, match="is not a measure"):
+    with pytest.raises(pw.InputError, match="is no measure"):
         pw.plan(problem, robust=5, robust_measure="median")
 
 

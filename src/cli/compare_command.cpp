@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "design_options.hpp"
 #include "planners/registry.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
@@ -15,16 +16,16 @@
 namespace posewright::cli {
 namespace {
 
+DesignOptions compare_keys() { return {"poses", "method", "candidates", "restarts"}; }
+
 po::options_description compare_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                              //
       ("variant", po::value<Words>()->value_name("V")->composing(), "variants to compare, one or a list A,B (all)")  //
       ("truth", text("V"), "effects of this variant on the others, by parameter, tolerances included")               //
-      ("poses", text("N"), "number of poses of each searched plan (design: poses)")                                  //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                              //
-      ("candidates", text("n"), "feasible configurations to compare with (as plan)")                                 //
-      ("restarts", text("k"), "starts of a search (as plan)")                                                        //
       ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
+  options.add_options()("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str());
+  add_design_options(options, {"poses", "candidates", "restarts"});
   options.add(resume_option()).add(problem_options());
   return options;
 }
@@ -42,12 +43,8 @@ CompareOptions options_of(const Problem& problem, const po::variables_map& value
       throw InputError({}, std::string("--") + option + " is for plans that are searched",
                        "leave it out, or the plans");
   if (!given && !from.empty()) throw InputError({}, "--from is for given plans", "name them after the problem");
-  compare.plan.poses = whole_number(values, "poses", 1, 1000000);
-  compare.plan.method = text_of(values, "method");
-  compare.plan.candidates = whole_number(values, "candidates", 1, 10000000);
-  compare.plan.restarts = whole_number(values, "restarts", 1, 1000000);
-  compare.plan.seed = common.seed;
-  compare.plan.threads = common.threads;
+  compare.run.seed = common.seed;
+  compare.run.threads = common.threads;
   if (!given) return compare;
   const std::vector<Coordinate> coordinates =
       pose_coordinates(problem, compare.variants.empty() ? "" : compare.variants.front());
@@ -59,7 +56,7 @@ CompareOptions options_of(const Problem& problem, const po::variables_map& value
 int run_compare(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
-  const Problem problem = given_problem(positional.front(), values);
+  const Problem problem = designed_problem(positional.front(), values, compare_keys());
   const CompareOptions compare = options_of(problem, values, positional, common);
   const auto engine = engine_of(values, "compare");
   const auto [result, was_interrupted] = watched(

@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "planners/registry.hpp"
+#include "design_options.hpp"
 #include "posewright/controller/known_controllers.hpp"
-#include "posewright/criterion/registry.hpp"
 #include "posewright/lists/pose_document.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
@@ -19,24 +18,20 @@
 namespace posewright::cli {
 namespace {
 
+DesignOptions evaluate_keys() { return {"variant", "truth", "criterion", "method", "candidates", "restarts"}; }
+
 po::options_description evaluate_command_options() {
   po::options_description options("Options");
-  options.add_options()                                                                           //
-      ("drop", text("k"), "suggest k poses to leave out")                                         //
-      ("add", text("k"), "suggest k additional poses")                                            //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                   //
-      ("truth", text("V"), "alternative model to test the fitted one against (design: truth)")    //
-      ("criterion", text("NAME"), ("criterion: " + criterion_names() + " (o1)").c_str())          //
-      ("method", text("NAME"), ("planner for --add: " + planner_names() + " (as plan)").c_str())  //
-      ("candidates", text("n"),
-       help_with_default("feasible configurations to compare with", default_candidates).c_str())  //
-      ("restarts", text("k"), "starts of a search (10)")                                          //
-      ("time-limit", text("S"), "stop searching after S seconds")                                 //
+  options.add_options()                                            //
+      ("drop", text("k"), "suggest k poses to leave out")          //
+      ("add", text("k"), "suggest k additional poses")             //
+      ("time-limit", text("S"), "stop searching after S seconds")  //
       ("from", text("FORMAT"),
        ("format of POSES: " + readable_format_names() + "; of programs: " + program_format_names()).c_str())  //
       ("controller", text("NAME"),
        "controller of programs: known name, or YAML file with sign, zero_deg, range_deg, …")  //
       ("coupling", text("F"), "programs: J3 of the controller is J3 - F*J2 of the robot; 0: no coupling");
+  add_design_options(options, evaluate_keys());
   options.add(problem_options());
   return options;
 }
@@ -67,16 +62,10 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
   evaluate.add = whole_number(values, "add", 1, 1000000);
   const std::string from = text_of(values, "from");
   if (!from.empty() && !is_program_format(from)) find_readable_format(from, program_format_names());
-  evaluate.plan.variant = text_of(values, "variant");
-  evaluate.plan.truth = text_of(values, "truth");
-  evaluate.plan.criterion = text_of(values, "criterion");
-  evaluate.plan.method = text_of(values, "method");
-  evaluate.plan.candidates = whole_number(values, "candidates", 1, 10000000);
-  evaluate.plan.restarts = whole_number(values, "restarts", 1, 1000000);
-  evaluate.plan.seed = common.seed;
-  evaluate.plan.threads = common.threads;
-  const Problem problem = given_problem(positional[0], values);
-  const PoseList poses = given_poses(values, positional[1], pose_coordinates(problem, evaluate.plan.variant));
+  evaluate.run.seed = common.seed;
+  evaluate.run.threads = common.threads;
+  const Problem problem = designed_problem(positional[0], values, evaluate_keys());
+  const PoseList poses = given_poses(values, positional[1], pose_coordinates(problem));
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
     return evaluate_problem(problem, poses, evaluate, monitor);
   });

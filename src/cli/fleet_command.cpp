@@ -4,6 +4,7 @@
 #include <map>
 
 #include "command.hpp"
+#include "design_options.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/bytes.hpp"
@@ -21,14 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+DesignOptions fleet_keys() { return {"poses", "restarts"}; }
+
 po::options_description fleet_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                    //
       ("output-dir", text("DIR"), "folder for NAME.plan.json and NAME.poses.csv, created if missing (.)")  //
-      ("poses", text("N"), "number of poses of each plan (design: poses of each problem)")                 //
-      ("restarts", text("k"), "starts of each search (10)")                                                //
       ("force", "replace files that posewright did not write")                                             //
       ("time-limit", text("S"), "stop after S seconds; finished plans are written");
+  add_design_options(options, fleet_keys());
+  add_set_option(options);
   options.add(task_options()).add(package_options());
   return options;
 }
@@ -99,16 +102,14 @@ std::string fleet_json(const std::vector<std::string>& names, const std::vector<
 int run_fleet(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.empty()) throw InputError({}, "no problem files are named", "see posewright help fleet");
-  PlanOptions options;
-  options.poses = whole_number(values, "poses", 1, 1000000);
-  options.restarts = whole_number(values, "restarts", 1, 1000000);
-  options.seed = common.seed;
-  options.threads = common.threads;
+  RunOptions run;
+  run.seed = common.seed;
+  run.threads = common.threads;
   const auto engine = engine_of(values, "fleet");
   std::vector<Problem> problems;
   std::vector<fs::path> inputs, outputs;
   for (const std::string& file : positional) {
-    problems.push_back(given_problem(file, values));
+    problems.push_back(designed_problem(file, values, fleet_keys()));
     const auto named = files_of(problems.back());
     inputs.insert(inputs.end(), named.begin(), named.end());
   }
@@ -132,8 +133,8 @@ int run_fleet(const po::variables_map& values, const Words& positional) {
     return bytes.take();
   };
   const auto [fleet, was_interrupted] = watched(
-      common, time_limit(values),
-      [&](const Monitor& monitor) { return plan_fleet(problems, options, render, monitor); }, engine.get());
+      common, time_limit(values), [&](const Monitor& monitor) { return plan_fleet(problems, run, render, monitor); },
+      engine.get());
   for (std::size_t i = 0; i < fleet.size(); ++i)
     if (fleet[i].why_not.empty()) write(files[i], fleet[i]);
   if (common.json) fmt::print("{}", fleet_json(names, problems, fleet, files));

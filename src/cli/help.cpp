@@ -26,10 +26,11 @@ std::string general_help() {
     text += fmt::format("  {:<{}}{}{}\n", call, column, call.size() < column ? "" : "  ", command.summary);
   }
   text += fmt::format(
-      "  {:<28}{}\n  {:<28}{}\n  {:<28}{}\n\nExample:\n  {}\n\n"
+      "  {:<28}{}\n  {:<28}{}\n  {:<28}{}\n  {:<28}{}\n\nExample:\n  {}\n\n"
       "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
       "written).\n",
-      "help COMMAND", "Options of a command.", "help --man", "The manual page, for man -l.", "completion bash|zsh",
+      "help COMMAND", "Options of a command.", "help --man", "The manual page, for man -l.", "help --keys",
+      "Keys of a problem's design, as JSON.", "completion bash|zsh",
       "Completion for a shell: source <(posewright completion bash)", general_example);
   return text;
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "command.hpp"
+#include "design_options.hpp"
 #include "help.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/near_words.hpp"
@@ -84,9 +85,10 @@ int run_program(const Words& words) {
     return done;
   }
   if (first == "--help" || first == "-h" || first == "help") {
-    fmt::print("{}", words.size() < 2      ? general_help()
-                     : words[1] == "--man" ? manual_page()
-                                           : command_help(find_command(words[1])));
+    fmt::print("{}", words.size() < 2       ? general_help()
+                     : words[1] == "--man"  ? manual_page()
+                     : words[1] == "--keys" ? design_keys_json()
+                                            : command_help(find_command(words[1])));
     return done;
   }
   if (first == "completion") {

@@ -2,6 +2,7 @@
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/apply_parameters.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "session.hpp"
@@ -44,9 +45,15 @@ po::options_description package_options() {
   return options;
 }
 
+void add_set_option(po::options_description& options) {
+  options.add_options()("set", po::value<Words>()->value_name("KEY=VALUE")->composing(),
+                        "key of the design in place of the file's: design.minimum_distance='5 deg'");
+}
+
 po::options_description problem_options() {
   po::options_description options("Problem");
   add_package_option(options);
+  add_set_option(options);
   options.add_options()("parameters", po::value<std::string>()->value_name("FILE"),
                         "calibrated parameters to linearise at (nominal ones; for a plan: its own)");
   return options;
@@ -70,6 +77,13 @@ std::vector<std::string> variants_of(const po::variables_map& values) {
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {
   Problem problem = read_problem(file, packages_of(values));
   if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
+  if (values.count("set") == 0) return problem;
+  for (const std::string& text : values["set"].as<Words>()) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos) throw InputError({}, "--set " + text.substr(0, 60), "KEY=VALUE is expected");
+    const std::string key = text.substr(0, equal);
+    set(problem, key, text.substr(equal + 1), "--set " + key);
+  }
   return problem;
 }
 
@@ -97,7 +111,7 @@ std::vector<std::filesystem::path> files_of(const Problem& problem) {
     add(arm->urdf);
     if (arm->srdf) add(arm->srdf->value);
   }
-  if (problem.design.candidates_from) add(*problem.design.candidates_from);
+  if (problem.design.candidates_from) add(problem.design.candidates_from->value);
   if (problem.design.measured) add(*problem.design.measured);
   if (problem.design.fixed) add(*problem.design.fixed);
   if (problem.design.test_poses) add(problem.design.test_poses->file);

@@ -13,7 +13,9 @@ namespace posewright::cli {
 po::options_description package_options();
 /// Its values. Throws InputError for a package without name or folder, and for a folder that is not there.
 Packages packages_of(const po::variables_map& values);
-/// --package NAME=DIR and --parameters FILE, for every command that reads a problem file.
+/// --set KEY=VALUE.
+void add_set_option(po::options_description& options);
+/// --package NAME=DIR, --set KEY=VALUE and --parameters FILE, for every command that reads a problem file.
 po::options_description problem_options();
 /// Names of --variant, given once, several times or with commas; none if the command has no such option.
 /// Throws InputError for an empty name.

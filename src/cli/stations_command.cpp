@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "posewright/criterion/registry.hpp"
+#include "design_options.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/results/stations.hpp"
 #include "posewright/support/json.hpp"
@@ -13,19 +13,16 @@
 namespace posewright::cli {
 namespace {
 
+DesignOptions stations_keys() { return {"poses", "variant", "criterion", "candidates", "restarts"}; }
+
 po::options_description stations_command_options() {
   po::options_description options("Options");
   options.add_options()                                                                                      //
       ("choose", text("k"), "number of stations to use (workspace: stations: choose, 1)")                    //
       ("pairs", "score every pair of places; without it, beyond 100 pairs, only pairs with the best place")  //
       ("full", text("n"), "number of best places that get a full plan (3)")                                  //
-      ("poses", text("N"), "number of poses (design: poses)")                                                //
-      ("variant", text("V"), "model variant (design: variant, else the first)")                              //
-      ("criterion", text("NAME"), ("criterion to maximise: " + criterion_names() + " (o1)").c_str())(
-          "candidates", text("n"),
-          help_with_default("feasible configurations of the full plans", default_candidates).c_str())  //
-      ("restarts", text("k"), "starts of the search of the full plans (10)")                           //
       ("time-limit", text("S"), "stop after S seconds with the results so far");
+  add_design_options(options, stations_keys());
   options.add(task_options()).add(problem_options());
   return options;
 }
@@ -35,20 +32,15 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   StationOptions stations;
   stations.choose = whole_number(values, "choose", 1, 100);
   stations.full = whole_number(values, "full", 0, 10000).value_or(3);
-  stations.plan.poses = whole_number(values, "poses", 1, 1000000);
-  stations.plan.variant = text_of(values, "variant");
-  stations.plan.criterion = text_of(values, "criterion");
-  stations.plan.candidates = whole_number(values, "candidates", 1, 10000000);
-  stations.plan.restarts = whole_number(values, "restarts", 1, 1000000);
-  stations.plan.seed = common.seed;
-  stations.plan.threads = common.threads;
+  stations.run.seed = common.seed;
+  stations.run.threads = common.threads;
   stations.every_set = values.count("pairs") > 0;
   if (stations.every_set) {
     if (stations.choose) throw InputError({}, "--choose and --pairs cannot be combined", "one of them");
     stations.choose = 2;
   }
   const auto engine = engine_of(values, "stations");
-  const Problem problem = given_problem(single(positional, "PROBLEM"), values);
+  const Problem problem = designed_problem(single(positional, "PROBLEM"), values, stations_keys());
   const auto [ranks, was_interrupted] = watched(
       common, time_limit(values), [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); },
       engine.get());

@@ -29,6 +29,11 @@ class DocumentMarks : public YAML::EventHandler {
   void OnMapEnd() override {}
 };
 
+/// Place of a key of the mapping; of an edit its option.
+SourcePlace place_in(const Value& mapping, int line, int column) {
+  return line < 0 ? SourcePlace{mapping.name()} : SourcePlace{mapping.place().file, line, column};
+}
+
 }  // namespace
 
 Section::Section(const Value& value) : value_(value) {
@@ -43,13 +48,14 @@ void Section::read_entries() {
   std::map<std::string, int> first_line;
   entries_.reserve(value_.node_.size());
   for (const auto& pair : value_.node_) {
-    const int line = std::max(pair.first.Mark().line + 1, 0), column = std::max(pair.first.Mark().column + 1, 0);
+    const int line = value_.line_ < 0 ? value_.line_ : std::max(pair.first.Mark().line + 1, 0);
+    const int column = std::max(pair.first.Mark().column + 1, 0);
     const Value key(pair.first, line, "a key of " + (value_.name_.empty() ? "the file" : value_.name_), *value_.file_,
                     column);
     const std::string name = key.text();
     const auto [first, added] = first_line.emplace(name, key.line());
     if (!added)
-      throw InputError(key.place(), "duplicate key " + in_quotes(name),
+      throw InputError(place_in(value_, key.line(), key.place().column), "duplicate key " + in_quotes(name),
                        fmt::format("first given on line {}", first->second));
     entries_.push_back(
         {{name, key.line(), column}, Value(pair.second, key.line(), child_name(name), *value_.file_, column)});
@@ -62,11 +68,11 @@ std::string Section::child_name(const std::string& key) const {
   return value_.name_.empty() ? bare : value_.name_ + "." + bare;
 }
 
-void Section::allow(std::initializer_list<std::string_view> keys) const {
+void Section::allow(const std::vector<std::string_view>& keys) const {
   for (const Entry& entry : entries_)
     if (std::find(keys.begin(), keys.end(), entry.key.value) == keys.end())
       throw InputError(
-          {*value_.file_, entry.key.line, entry.key.column},
+          place_in(value_, entry.key.line, entry.key.column),
           "unknown key " + in_quotes(entry.key.value) + meant_instead(entry.key.value, {keys.begin(), keys.end()}),
           fmt::format("allowed: {}", fmt::join(keys, ", ")));
 }

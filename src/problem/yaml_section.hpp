@@ -22,7 +22,8 @@ enum class Sign { any, positive, not_negative };
 /// One value of the file together with its name (`measurement.device.noise`) and line.
 class Value {
  public:
-  /// `line` and `column` are those of the key or list entry; a scalar's own are taken where it has some.
+  /// `line` and `column` are those of the key or list entry; a scalar's own are taken where it has some. A negative
+  /// line stands for an edit (Problem::at), and all below it has the same.
   Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column = 0);
 
   int line() const { return line_; }
@@ -82,7 +83,7 @@ class Section {
   std::vector<Entry> entries() && { return std::move(entries_); }
   /// Throws at the first key that is not listed. Called before anything is read, so that a misspelt key is not
   /// reported as a missing one.
-  void allow(std::initializer_list<std::string_view> keys) const;
+  void allow(const std::vector<std::string_view>& keys) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
   /// Null if the key is absent.
   const Value* find(std::string_view key) const;

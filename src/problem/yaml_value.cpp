@@ -22,7 +22,8 @@ std::string kind(const YAML::Node& node) {
 Value::Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column)
     : node_(node), line_(line), column_(column), name_(std::move(name)), file_(&file) {
   // yaml-cpp marks an empty value where the next token begins and a block mapping at its first key.
-  if (node.IsScalar() && node.Mark().line >= 0) line_ = node.Mark().line + 1, column_ = node.Mark().column + 1;
+  if (line >= 0 && node.IsScalar() && node.Mark().line >= 0)
+    line_ = node.Mark().line + 1, column_ = node.Mark().column + 1;
 }
 
 void Value::fail(const std::string& what, const std::string& allowed) const {
@@ -100,7 +101,7 @@ std::vector<Value> Value::items(const std::string& expected) const {
   result.reserve(node_.size());
   for (const YAML::Node& item : node_) {
     const bool here = !item.IsNull();
-    const int line = here ? std::max(item.Mark().line + 1, 0) : line_;
+    const int line = here && line_ >= 0 ? std::max(item.Mark().line + 1, 0) : line_;
     const int column = here ? std::max(item.Mark().column + 1, 0) : column_;
     result.emplace_back(item, line, fmt::format("{}[{}]", name_, result.size() + 1), *file_, column);
   }

@@ -104,7 +104,7 @@ Json figures_json(const Comparison& c) {
 }  // namespace
 
 Json comparison_json(const Problem& problem, const CompareOptions& options, const Comparison& comparison) {
-  Json json = begin_document("posewright/comparison/1", problem, options.plan.seed);
+  Json json = begin_document("posewright/comparison/1", problem, options.run.seed);
   json.update(figures_json(comparison));
   return json;
 }

@@ -95,9 +95,9 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
     }
     list.push_back(json);
   }
-  Json json = begin_document("posewright/stations/1", problem, options.plan.seed);
-  json["variant"] = find_variant(problem, options.plan.variant).name;
-  json["criterion"] = options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
+  Json json = begin_document("posewright/stations/1", problem, options.run.seed);
+  json["variant"] = find_variant(problem, "").name;
+  json["criterion"] = problem.design.criterion.value;
   json["base"] = base_json(problem);
   json["obstacles"] = obstacles_json(problem);
   json["interrupted"] = !ended_early(ranks).empty();

@@ -17,9 +17,7 @@ namespace {
 // rounding.
 constexpr double imitated = 1e-12;
 
-SourcePlace place_of(const Problem& problem, const Settings& settings) {
-  return settings.truth.line > 0 ? problem.at(settings.truth.line) : SourcePlace{};
-}
+SourcePlace place_of(const Problem& problem, const Settings& settings) { return problem.at(settings.truth.line); }
 
 Effects checked_effects(const Problem& problem, const Study& study, const Settings& settings) {
   const Variant& fitted = study.first();

@@ -74,12 +74,11 @@ void fix_poses(Study& study, const PoseList& list, Repeats repeats) {
   }
 }
 
-std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings) {
-  const std::filesystem::path file = options.fixed ? "" : problem.design.fixed.value_or("");
-  if (!options.fixed && file.empty()) return {};
-  const PoseList list = options.fixed
-                            ? *options.fixed
-                            : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
+std::vector<std::string> take_fixed(const Problem& problem, const RunOptions& run, Settings& settings) {
+  const std::filesystem::path file = run.fixed ? "" : problem.design.fixed.value_or("");
+  if (!run.fixed && file.empty()) return {};
+  const PoseList list =
+      run.fixed ? *run.fixed : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
   if (list.configurations.empty()) return {};
   PoseList fixed = fixed_of(list);
   const std::size_t count = fixed.configurations.size();

@@ -12,94 +12,97 @@ constexpr int candidates_with_effect = 1000, restarts_with_effect = 2;
 /// Whether the criterion counts an effect that nobody stated.
 bool assumes_effect(const Settings& s) { return find_criterion(s.criterion)->needs_truth && s.truth.value.empty(); }
 
-std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, const PlanOptions& options, bool several) {
+std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, bool several) {
   const DesignSpec& design = problem.design;
-  if (!several) return {{{find_variant(problem, options.variant).name, 0}, 1.0}};
-  if (!options.variant.empty())
-    throw InputError({}, "--variant names one variant", "the criterion is over several: design: variants");
+  if (!several) return {{{find_variant(problem, "").name, 0}, 1.0}};
+  if (design.variant && design.variant->line < 0)
+    throw InputError(problem.at(design.variant->line), "names one variant",
+                     "the criterion is over several: design: variants");
   if (!design.variants.empty()) return design.variants;
   std::vector<DesignSpec::Weighted> all;
   for (const VariantSpec& variant : problem.variants) all.push_back({{variant.name, variant.line}, 1.0});
   return all;
 }
 
-Located<std::string> truth_of(const Problem& problem, const PlanOptions& options, const std::string& criterion) {
+Located<std::string> truth_of(const Problem& problem) {
   const DesignSpec& design = problem.design;
-  const Located<std::string> truth =
-      options.truth.empty() ? design.truth.value_or(Located<std::string>{}) : Located<std::string>{options.truth, 0};
-  const CriterionEntry& entry = *find_criterion(criterion);
-  const SourcePlace asked = options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{};
+  const Located<std::string> truth = design.truth.value_or(Located<std::string>{});
+  const CriterionEntry& entry = *find_criterion(design.criterion.value);
   // Without a truth, bias counts an effect that is assumed.
   if (entry.needs_residual && truth.value.empty())
-    throw InputError(asked, "criterion '" + criterion + "' needs an alternative model to test",
+    throw InputError(problem.at(design.criterion.line),
+                     "criterion '" + design.criterion.value + "' needs an alternative model to test",
                      "set design: truth or --truth");
   if (!truth.value.empty()) find_variant(problem, truth.value);
   if (entry.several_variants && !truth.value.empty())
-    throw InputError(truth.line > 0 ? problem.at(truth.line) : asked,
-                     "--truth needs a single fitted variant; criterion '" + criterion + "' is over several",
-                     "leave out the truth, or another criterion");
+    throw InputError(
+        problem.at(truth.line),
+        "--truth needs a single fitted variant; criterion '" + design.criterion.value + "' is over several",
+        "leave out the truth, or another criterion");
   return truth;
 }
 
 }  // namespace
 
-Settings settings_of(const Problem& problem, const PlanOptions& options) {
+void require_number_of_poses(const Problem& problem) {
   const DesignSpec& design = problem.design;
-  Settings s;
-  s.criterion = options.criterion.empty() ? design.criterion.value : options.criterion;
-  s.criterion_stated = !options.criterion.empty() || design.criterion.line > 0;
-  s.method = options.method.empty() ? design.method.value : options.method;
-  require_known(s.criterion, s.method, options.criterion.empty() ? problem.at(design.criterion.line) : SourcePlace{},
-                options.method.empty() ? problem.at(design.method.line) : SourcePlace{});
-  const bool smallest = options.poses ? false : options.smallest || design.smallest;
-  if (!options.poses && !design.poses && !smallest)
+  if (!design.poses && !design.smallest)
     throw InputError(problem.at(design.line), "has no number of poses", "set design: poses or --poses");
-  if (!smallest) s.poses = options.poses ? *options.poses : design.poses->value;
+  if (!design.smallest) return;
   const bool of_poses = design.require.accuracy || design.require.of_axes();
-  if (smallest && !of_poses && design.require.sigma.empty())
+  if (!of_poses && design.require.sigma.empty())
     throw InputError(problem.at(design.line), "poses: auto needs a requirement",
                      "set design: require: accuracy, position, rotation or sigma");
-  if (smallest && of_poses && !design.test_poses)
+  if (of_poses && !design.test_poses)
     throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
                      "set design: test_poses");
-  s.candidates = options.candidates.value_or(design.candidates.value);
-  s.candidates_from = options.candidates_from;
-  if (!s.candidates_from && !options.candidates) s.candidates_file = design.candidates_from.value_or("");
-  s.prior = options.prior.value_or(design.prior);
-  s.reserve = options.reserve || design.reserve;
-  s.repeats = options.repeats.value_or(design.repeats);
-  s.scaling = options.scaling.value_or(design.scaling);
-  s.variants = variants_of(problem, options, find_criterion(s.criterion)->several_variants);
-  s.truth = truth_of(problem, options, s.criterion);
+}
+
+Settings settings_of(const Problem& problem, const RunOptions& run) {
+  const DesignSpec& design = problem.design;
+  Settings s;
+  s.criterion = design.criterion.value;
+  s.criterion_stated = design.criterion.line != 0;
+  s.method = design.method.value;
+  require_known(s.criterion, s.method, problem.at(design.criterion.line), problem.at(design.method.line));
+  if (design.poses) s.poses = design.poses->value;
+  s.candidates = design.candidates.value;
+  s.candidates_from = run.candidates_from;
+  if (!s.candidates_from && design.candidates_from) s.candidates_file = design.candidates_from->value;
+  s.prior = design.prior;
+  s.reserve = design.reserve;
+  s.repeats = design.repeats;
+  s.scaling = design.scaling;
+  s.variants = variants_of(problem, find_criterion(s.criterion)->several_variants);
+  s.truth = truth_of(problem);
   // Candidates of a user's list are places that count, and so are those of a variant that lacks an effect.
   const bool places = design.test_poses || s.candidates_from || !s.candidates_file.empty() ||
                       find_variant(problem, s.variants.front().name.value).unmodelled;
   if (find_criterion(s.criterion)->needs_test_poses && !places)
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
-  s.measured = options.measured;
+  s.measured = run.measured;
   if (!s.measured) s.measured_file = design.measured.value_or("");
-  s.planner.restarts = options.restarts.value_or(design.restarts.value);
-  s.planner.restarts_stated = options.restarts || design.restarts.line > 0;
+  s.planner.restarts = design.restarts.value;
+  s.planner.restarts_stated = design.restarts.line != 0;
+  s.planner.seed = run.seed;
+  s.candidates_alone = run.candidates_alone;
+  s.same_robot = run.same_robot;
+  s.proof = run.proof;
+  s.planner.threads = run.threads;
   if (assumes_effect(s)) {
-    if (!options.candidates && design.candidates.line == 0) s.candidates = candidates_with_effect;
+    if (design.candidates.line == 0) s.candidates = candidates_with_effect;
     if (!s.planner.restarts_stated) s.planner.restarts = restarts_with_effect;
-    if (options.method.empty() && design.method.line == 0) s.method = "exchange";
+    if (design.method.line == 0) s.method = "exchange";
     s.planner.kicks = 0;
   }
-  s.planner.seed = options.seed;
-  s.candidates_alone = options.candidates_alone;
-  s.same_robot = options.same_robot;
-  s.proof = options.proof;
-  s.planner.threads = options.threads;
   return s;
 }
 
-void take_robust(const Problem& problem, const PlanOptions& options, Settings& settings) {
-  const std::optional<RobustSpec> robust = options.robust ? options.robust : problem.design.robust;
-  if (!robust || robust->draws == 0) return;
+void take_robust(const Problem& problem, Settings& settings) {
+  const std::optional<RobustSpec>& robust = problem.design.robust;
+  if (!robust) return;
   const auto refuse = [&](const std::string& why, const std::string& allowed) {
-    throw InputError(robust->line > 0 ? problem.at(robust->line) : SourcePlace{},
-                     "a plan over drawn robots (robust) " + why, allowed);
+    throw InputError(problem.at(robust->line), "a plan over drawn robots (robust) " + why, allowed);
   };
   if (find_criterion(settings.criterion)->several_variants)
     refuse("is for one variant, not for the several of criterion '" + settings.criterion + "'",

@@ -4,10 +4,9 @@
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/elastic_chain.hpp"
-#include "posewright/problem/design_words.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/support/repeats.hpp"
 #include "posewright/support/text_file.hpp"
 
 namespace posewright {
@@ -19,24 +18,24 @@ using Json = nlohmann::json;
   throw InputError({file.string(), 0}, "is not a plan of a robot", "plan.json as posewright plan writes it");
 }
 
-PlanOptions options_of(const Json& plan) {
-  PlanOptions options;
-  const Json& poses = plan.at("poses");
-  options.poses =
+void fill_design(WrittenPlan& plan, const Json& json) {
+  const auto say = [&](const char* key, const std::string& value) { plan.design.emplace_back(key, value); };
+  const Json& poses = json.at("poses");
+  plan.poses =
       int(std::count_if(poses.begin(), poses.end(), [](const Json& p) { return !p.value("measured", false); }));
-  const Json& criterion = plan.at("criterion");
-  options.criterion = criterion.at("name").get<std::string>();
-  if (plan.value("variants", Json::array()).empty()) options.variant = plan.at("variant").get<std::string>();
-  if (const auto test = plan.find("discrimination"); test != plan.end() && test->is_object())
-    options.truth = test->at("truth").get<std::string>();
-  options.reserve = criterion.value("reserve", false);
-  options.prior = criterion.at("prior").get<std::string>() == "tolerance";
-  options.scaling = scaling_of(criterion.at("scaling").get<std::string>()).value();
-  options.candidates = int(plan.at("statistics").at("candidates_feasible").get<long>());
-  options.seed = plan.at("seed").get<std::uint64_t>();
-  if (const Json& certificate = plan.at("certificate").at("candidates"); certificate.is_object())
-    options.repeats = repeats_of(certificate.at("repeats").get<std::string>()).value();
-  return options;
+  say("design.poses", std::to_string(plan.poses));
+  const Json& criterion = json.at("criterion");
+  say("design.criterion", criterion.at("name").get<std::string>());
+  if (json.value("variants", Json::array()).empty()) say("design.variant", json.at("variant").get<std::string>());
+  if (const auto test = json.find("discrimination"); test != json.end() && test->is_object())
+    say("design.truth", test->at("truth").get<std::string>());
+  if (criterion.value("reserve", false)) say("design.reserve", "yes");
+  say("design.prior", criterion.at("prior").get<std::string>());
+  say("design.scaling", criterion.at("scaling").get<std::string>());
+  say("design.candidates", std::to_string(json.at("statistics").at("candidates_feasible").get<long>()));
+  plan.seed = json.at("seed").get<std::uint64_t>();
+  if (const Json& certificate = json.at("certificate").at("candidates"); certificate.is_object())
+    say("design.repeats", certificate.at("repeats").get<std::string>());
 }
 
 }  // namespace
@@ -49,7 +48,7 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
     const Json json = parse_json(plan.text);
     if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())
       throw_no_plan(file);
-    plan.options = options_of(json);
+    fill_design(plan, json);
     for (const Json& parameter : json.at("parameters"))
       if (const auto name = parameter.at("name").get<std::string>(); is_numbered_place(name))
         throw InputError({file.string(), 0},
@@ -64,11 +63,15 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
     }
   } catch (const Json::exception&) {
     throw_no_plan(file);
-  } catch (const std::bad_optional_access&) {  // a word that is none
-    throw_no_plan(file);
   }
-  if (*plan.options.poses == 0) throw_no_plan(file);
+  if (plan.poses == 0) throw_no_plan(file);
   return plan;
+}
+
+Problem as_written(Problem problem, const WrittenPlan& plan) {
+  for (const auto& [key, value] : plan.design)
+    set(problem, key, value, plan.file.string() + ": " + design_key(key).name());
+  return problem;
 }
 
 }  // namespace posewright

@@ -12,19 +12,21 @@
 namespace posewright {
 
 Settings comparison_settings(const Problem& problem, const CompareOptions& options) {
-  PlanOptions plan = options.plan;
-  if (plan.method.empty()) plan.method = "exchange";
+  Problem compared = problem;
+  DesignSpec& design = compared.design;
+  // What the file states is for its own plan; an option is for the comparison.
+  if (design.method.line >= 0) design.method = {"exchange", 0};
   // Each variant is planned for alone.
-  if (const CriterionEntry* entry = find_criterion(problem.design.criterion.value);
-      plan.criterion.empty() && entry != nullptr && (entry->several_variants || entry->needs_truth))
-    plan.criterion = "o1";
+  if (const CriterionEntry* entry = find_criterion(design.criterion.value);
+      entry != nullptr && (entry->several_variants || entry->needs_truth))
+    design.criterion = {"o1", design.criterion.line};
   const bool given = !options.plans.empty();
-  if (given) plan.poses = 1;  // lists bring their own numbers
-  else if (!plan.poses && problem.design.smallest)
-    throw InputError(problem.at(problem.design.line), "poses: auto gives no number of poses for the comparison",
+  if (!given && design.smallest)
+    throw InputError(problem.at(design.line), "poses: auto gives no number of poses for the comparison",
                      "--poses N, or plans");
-  Settings settings = settings_of(problem, plan);
-  if (given) settings.poses = 0;
+  if (!given) require_number_of_poses(problem);
+  Settings settings = settings_of(compared, options.run);
+  if (given) settings.poses = 0;  // lists bring their own numbers
   settings.truth = {};
   std::vector<std::string> names = options.variants;
   if (names.empty())

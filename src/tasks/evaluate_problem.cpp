@@ -31,8 +31,9 @@ class ListEvaluation {
       : options_(options),
         monitor_(monitor),
         stated_distance_(problem.design.minimum_distance),
-        settings_(settings_of(problem, numbered(options.plan))) {
-    take_robust(problem, options.plan, settings_);
+        settings_(settings_of(problem, options.run)) {
+    settings_.poses = 1;  // any number, until the list is read
+    take_robust(problem, settings_);
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);
     if (monitor.should_stop()) throw CannotDo("stopped before all candidates for the comparison were drawn");
@@ -96,12 +97,6 @@ class ListEvaluation {
   }
 
  private:
-  /// The list brings the number of poses; until it is read any will do.
-  static PlanOptions numbered(PlanOptions options) {
-    options.poses = 1;
-    return options;
-  }
-
   void require_feasible(const std::vector<double>& q, std::size_t i, const PoseList& list) const {
     for (const Variant& variant : study_.variants)
       if (const int reason = variant.workspace->violation(q); reason >= 0)

@@ -4,6 +4,7 @@
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
@@ -15,22 +16,22 @@ constexpr const char* method = "exchange";
 // One pose is found by looking at all; of more, the better of two local optima.
 constexpr int starts = 2;
 
-PlanOptions options_of_search(const NextOptions& options, const PoseList& measured) {
-  PlanOptions plan;
-  plan.variant = options.variant;
-  plan.criterion = "o1";  // until it is chosen: what it needs is known then
-  plan.method = method;
-  plan.poses = options.poses;
-  plan.restarts = starts;
-  plan.candidates = options.candidates;
-  plan.candidates_from = options.candidates_from;
-  plan.prior = true;
-  plan.measured = measured;
-  plan.fixed = PoseList{};
-  plan.candidates_alone = true;
-  plan.seed = options.seed;
-  plan.threads = options.threads;
-  return plan;
+Settings settings_of_search(Problem problem, const NextOptions& options, PoseList measured) {
+  const auto state = [&](const char* key, const std::string& value) { set(problem, key, value, "next"); };
+  if (!options.variant.empty()) problem.design.variant = {options.variant, 0};
+  state("design.criterion", "o1");  // until it is chosen: what it needs is known then
+  state("design.method", method);
+  state("design.poses", std::to_string(options.poses));
+  state("design.restarts", std::to_string(starts));
+  if (options.candidates) state("design.candidates", std::to_string(*options.candidates));
+  state("design.prior", "tolerance");
+  RunOptions run;
+  run.candidates_from = options.candidates_from;
+  run.measured = std::move(measured);
+  run.candidates_alone = true;
+  run.seed = options.seed;
+  run.threads = options.threads;
+  return settings_of(problem, run);
 }
 
 }  // namespace
@@ -59,10 +60,9 @@ void KnownSoFar::settle() {
   PoseList measured;
   measured.name = options_.data.string();
   for (const MeasuredPose& pose : fit_.poses) measured.configurations.push_back(pose.q);
-  settings_ = settings_of(fit_.problem, options_of_search(options_, measured));
-  settings_.fixed.reset();
+  settings_ = settings_of_search(fit_.problem, options_, std::move(measured));
   const DesignSpec& design = nominal_.design;
-  settings_.criterion_stated = !options_.criterion.empty() || design.criterion.line > 0;
+  settings_.criterion_stated = !options_.criterion.empty() || design.criterion.line != 0;
   settings_.criterion = options_.criterion.empty() ? design.criterion.value : options_.criterion;
   require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
   const CriterionEntry& entry = *find_criterion(settings_.criterion);

@@ -10,6 +10,7 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -110,6 +111,24 @@ StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
   return rank;
 }
 
+/// Places are compared by what they are worth to the nominal robot.
+Problem planned_in_full(Problem problem) {
+  problem.design.robust.reset();
+  return problem;
+}
+
+/// With few candidates and one start, without ways: few poses are unreachable, and at every place the same.
+Problem planned_quickly(const Problem& full) {
+  Problem problem = without_roadmap(full);
+  const int candidates = std::min(quick_candidates, problem.design.candidates.value);
+  const std::pair<const char*, std::string> changes[] = {{"design.candidates", std::to_string(candidates)},
+                                                         {"design.restarts", std::to_string(quick_restarts)},
+                                                         {"design.method", "exchange"}};
+  problem.design.candidates_from.reset();
+  for (const auto& [key, value] : changes) set(problem, key, value, "quick plans");
+  return problem;
+}
+
 /// The robot alone: the problem's own station, which is none of the places, may stand anywhere.
 Problem without_sight(Problem problem) {
   problem.workspace.line_of_sight.reset();
@@ -120,18 +139,18 @@ class Ranking {
  public:
   Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
       : problem_(problem),
-        unconnected_(without_roadmap(problem)),
+        full_(planned_in_full(problem)),
+        quick_(planned_quickly(full_)),
         options_(options),
         monitor_(monitor),
         places_(problem.workspace.stations->list) {
-    const std::string criterion =
-        options.plan.criterion.empty() ? problem.design.criterion.value : options.plan.criterion;
+    const std::string& criterion = problem.design.criterion.value;
     const auto* entry = find_criterion(criterion);
     if (entry != nullptr && entry->several_variants)
       throw CannotDo("criterion " + criterion +
                      " compares plans with others of the same stations; choose one of one variant");
     determinant_ = entry != nullptr && entry->determinant;
-    if (problem.workspace.collision) robot_ = make_cell(without_sight(unconnected_));
+    if (problem.workspace.collision) robot_ = make_cell(without_sight(quick_));
   }
 
   std::vector<StationRank> rank() {
@@ -141,15 +160,14 @@ class Ranking {
                        "there are " + std::to_string(places_.size()) + " places to choose among");
     std::vector<StationRank> ranks = quick(choose);
     sort(ranks);
-    PlanOptions full = options_.plan;
+    RunOptions full = options_.run;
     full.proof.seconds = 0.0;  // places are held against each other, not against what is possible
     std::size_t in_full = 0;
     while (in_full < std::min(ranks.size(), std::size_t(std::max(options_.full, 0))) && ranks[in_full].why_not.empty())
       ++in_full;
     // One at a time in each process: the parts of a whole plan keep its threads busy.
     run_tasks(
-        {"full plans", in_full, 1},
-        [&](std::size_t i, int) { return bytes_of(judge(problem_, ranks[i].stations, full)); },
+        {"full plans", in_full, 1}, [&](std::size_t i, int) { return bytes_of(judge(full_, ranks[i].stations, full)); },
         [&](std::size_t i, std::string_view bytes) {
           StationRank found = rank_in(bytes, ranks[i].stations);
           // What was cut short is no better than the quick plan.
@@ -213,13 +231,10 @@ class Ranking {
   }
 
   std::vector<StationRank> quick_of(const std::vector<Set>& sets) {
-    PlanOptions quick = options_.plan;
-    quick.candidates = std::min(quick_candidates, quick.candidates.value_or(problem_.design.candidates.value));
-    quick.restarts = quick_restarts;
-    quick.method = "exchange";
+    RunOptions quick = options_.run;
     quick.candidates_alone = true;
     // Places side by side keep threads busier than the parts of one plan do.
-    const int threads = thread_count(options_.plan.threads), at_once = std::min(threads, int(sets.size()));
+    const int threads = thread_count(options_.run.threads), at_once = std::min(threads, int(sets.size()));
     quick.threads = std::max(1, threads / std::max(1, at_once));
     std::vector<StationRank> ranks(sets.size());
     const auto stations_at = [&](std::size_t s) {
@@ -234,25 +249,22 @@ class Ranking {
     }
     const bool stopped = run_tasks(
         {"places", sets.size(), at_once},
-        [&](std::size_t s, int) { return bytes_of(judge(unconnected_, stations_at(s), quick)); },
+        [&](std::size_t s, int) { return bytes_of(judge(quick_, stations_at(s), quick)); },
         [&](std::size_t s, std::string_view bytes) { ranks[s] = rank_in(bytes, stations_at(s)); }, monitor_);
     const bool none = std::all_of(ranks.begin(), ranks.end(), [](const StationRank& r) { return r.stopped; });
     if (stopped && (none || sets.front().size() < wanted_)) throw CannotDo("stopped before the first place was scored");
     return ranks;
   }
 
-  StationRank judge(const Problem& problem, const std::vector<StationSpec>& stations,
-                    const PlanOptions& plan_options) const {
+  StationRank judge(const Problem& problem, const std::vector<StationSpec>& stations, RunOptions run) const {
     StationRank rank;
     rank.stations = stations;
     Monitor quiet;  // its plan's own stages would hide how many places are done
     quiet.interrupted = monitor_.interrupted;
     quiet.deadline = monitor_.deadline;
     try {
-      PlanOptions nominal = plan_options;
-      nominal.same_robot = robot_;
-      nominal.robust = no_drawn_robots;  // places are compared by what they are worth to the nominal robot
-      const Plan plan = plan_problem(with_stations(problem, stations), nominal, quiet);
+      run.same_robot = robot_;
+      const Plan plan = plan_problem(with_stations(problem, stations), run, quiet);
       for (const PlannedParameter& p : plan.parameters)
         rank.parameters += p.sigma.has_value() && p.label.role == Role::interest;
       rank.criterion_value = plan.criterion_value;
@@ -291,7 +303,7 @@ class Ranking {
   static void sort(std::vector<StationRank>& ranks) { std::stable_sort(ranks.begin(), ranks.end(), better); }
 
   const Problem& problem_;
-  Problem unconnected_;  // of the quick plans: few poses are unreachable, and at every place the same
+  Problem full_, quick_;
   const StationOptions& options_;
   const Monitor& monitor_;
   const std::vector<StationSpec>& places_;

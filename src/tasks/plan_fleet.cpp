@@ -38,7 +38,7 @@ FleetPlan fleet_plan_in(std::string_view from) {
 
 }  // namespace
 
-std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const PlanOptions& options,
+std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const RunOptions& run,
                                   const std::function<std::string(const Plan&, std::size_t index)>& render,
                                   const Monitor& monitor) {
   std::vector<FleetPlan> fleet(problems.size());
@@ -49,7 +49,7 @@ std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const Pl
     quiet.interrupted = monitor.interrupted;
     quiet.deadline = monitor.deadline;
     try {
-      const Plan plan = plan_problem(problems[i], options, quiet);
+      const Plan plan = plan_problem(problems[i], run, quiet);
       result.variant = plan.variant;
       result.poses = int(plan.poses.size());
       result.log_det = plan.log_det;

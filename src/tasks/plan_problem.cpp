@@ -11,6 +11,7 @@
 #include "poses_at_risk.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/reliance.hpp"
 #include "posewright/study/spacing.hpp"
@@ -29,14 +30,14 @@ constexpr double axis_interval = 1.96;
 /// A prepared problem and plans of it.
 class PlanSearch {
  public:
-  PlanSearch(const Problem& problem, const PlanOptions& options, const Monitor& monitor)
+  PlanSearch(const Problem& problem, const RunOptions& run, const Monitor& monitor)
       : problem_(problem),
-        settings_(settings_of_plan(problem, options)),
-        list_notes_(take_fixed(problem, options, settings_)),
+        settings_(settings_of_plan(problem, run)),
+        list_notes_(take_fixed(problem, run, settings_)),
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
     study_.notes.insert(study_.notes.end(), list_notes_.begin(), list_notes_.end());
-    study_.first().everything_counts = options.everything_counts;
+    study_.first().everything_counts = run.everything_counts;
     if (study_.has_minimum_distance)
       minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.spacing);
     if (study_.usual_distance)
@@ -109,9 +110,10 @@ class PlanSearch {
   }
 
  private:
-  static Settings settings_of_plan(const Problem& problem, const PlanOptions& options) {
-    Settings settings = settings_of(problem, options);
-    take_robust(problem, options, settings);
+  static Settings settings_of_plan(const Problem& problem, const RunOptions& run) {
+    require_number_of_poses(problem);
+    Settings settings = settings_of(problem, run);
+    take_robust(problem, settings);
     return settings;
   }
 
@@ -253,26 +255,26 @@ class PlanSearch {
 
 }  // namespace
 
-Plan plan_problem(const Problem& problem, const PlanOptions& options, const Monitor& monitor) {
+Plan plan_problem(const Problem& problem, const RunOptions& run, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  PlanSearch planning(problem, options, monitor);
+  PlanSearch planning(problem, run, monitor);
   Plan plan = planning.settings().poses > 0 ? planning.plan(planning.settings().poses) : planning.smallest();
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }
 
-Plan plan_validation(const Problem& problem, PlanOptions options, const Plan& plan, int poses, const Monitor& monitor) {
-  const bool told_apart = !options.truth.empty() || problem.design.truth.has_value();
-  const bool effect = find_variant(problem, options.variant).unmodelled.has_value();
-  options.criterion = told_apart ? "discriminate" : effect ? "ds" : "o1";
+Plan plan_validation(Problem problem, RunOptions run, const Plan& plan, int poses, const Monitor& monitor) {
+  const bool told_apart = problem.design.truth.has_value();
+  const bool effect = find_variant(problem, "").unmodelled.has_value();
+  set(problem, "design.criterion", told_apart ? "discriminate" : effect ? "ds" : "o1", "validation");
+  set(problem, "design.poses", std::to_string(poses), "validation");
+  problem.design.reserve = false;
+  problem.design.robust.reset();
   // Of poses whose readings tell most of effect and parameters together, the plan tells least (maximum entropy).
-  options.everything_counts = effect && !told_apart;
-  options.poses = poses;
-  options.smallest = options.reserve = false;
-  options.robust = no_drawn_robots;
-  options.measured = poses_of(plan, pose_coordinates(problem, options.variant));
-  options.fixed = PoseList{};
-  return plan_problem(problem, options, monitor);
+  run.everything_counts = effect && !told_apart;
+  run.measured = poses_of(plan, pose_coordinates(problem));
+  run.fixed = PoseList{};
+  return plan_problem(problem, run, monitor);
 }
 
 }  // namespace posewright

@@ -28,16 +28,18 @@ void note_replaced(std::vector<SkippedPose>& replaced, const SkippedPose& lost, 
 
 Plan next_best(Problem problem, const PoseList& kept, int poses, std::uint64_t seed, const Monitor& monitor) {
   problem.workspace.motion.reachable = true;
-  PlanOptions options;
-  options.poses = poses;
-  if (!problem.design.candidates_from) options.candidates = std::min(problem.design.candidates.value, most_candidates);
-  options.measured = kept;
-  options.fixed = PoseList{};
-  options.robust = no_drawn_robots;
-  options.candidates_alone = true;
-  options.proof.seconds = 0;
-  options.seed = seed;
-  return plan_problem(problem, options, monitor);
+  DesignSpec& design = problem.design;
+  design.poses = {poses, design.line};
+  design.smallest = false;
+  if (!design.candidates_from) design.candidates.value = std::min(design.candidates.value, most_candidates);
+  design.robust.reset();
+  RunOptions run;
+  run.measured = kept;
+  run.fixed = PoseList{};
+  run.candidates_alone = true;
+  run.proof.seconds = 0;
+  run.seed = seed;
+  return plan_problem(problem, run, monitor);
 }
 
 }  // namespace

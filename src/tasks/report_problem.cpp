@@ -9,6 +9,7 @@
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
@@ -38,11 +39,13 @@ constexpr double same_log_det = 1e-6;
 
 /// As the plan was made, but with short searches that stay among the candidates.
 Settings report_settings(const Problem& problem, const WrittenPlan& plan, int threads) {
-  PlanOptions options = plan.options;
-  options.method = "exchange";
-  options.restarts = curve_restarts;
-  options.threads = threads;
-  return settings_of(problem, options);
+  Problem searched = as_written(problem, plan);
+  set(searched, "design.method", "exchange", "report");
+  set(searched, "design.restarts", std::to_string(curve_restarts), "report");
+  RunOptions run;
+  run.seed = plan.seed;
+  run.threads = threads;
+  return settings_of(searched, run);
 }
 
 /// A plan's text with the poses of its route in the place of those that they replace.

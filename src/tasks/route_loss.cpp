@@ -38,16 +38,14 @@ std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList&
   };
   const PoseList kept = subset(routed, on_route);
   const PoseList all = subset(plan, [&](std::size_t i, int) { return !measured(i); });
-  PlanOptions options;
-  options.candidates_from = kept;
-  options.poses = int(kept.configurations.size());
-  options.fixed = PoseList{};
+  RunOptions run;
+  run.candidates_from = kept;
   if (std::find(plan.measured.begin(), plan.measured.end(), true) != plan.measured.end())
-    options.measured = subset(plan, [&](std::size_t i, int) { return measured(i); });
+    run.measured = subset(plan, [&](std::size_t i, int) { return measured(i); });
   try {
     const Problem free = without_roadmap(problem);
-    Settings settings = settings_of(free, options);
-    settings.fixed.reset();
+    Settings settings = settings_of(free, run);
+    settings.poses = int(kept.configurations.size());
     const Study study = make_study(free, settings, monitor);
     const std::size_t dimension = study.first().workspace->coordinates().size();
     const Judgement left = judge(study, configurations_of(kept, dimension), settings);

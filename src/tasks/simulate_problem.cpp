@@ -159,7 +159,7 @@ class SimulationRun {
     accuracy.predicted = predicted_error(places_->points, covariance_, each);
     if (!(accuracy.predicted > 0)) return;
     accuracy.places = int(each.size());
-    accuracy.test_poses = problem_.design.test_poses->line > 0;
+    accuracy.test_poses = problem_.design.test_poses->line != 0;
     result_.accuracy = accuracy;
     experiment_.places = places_->places;
   }

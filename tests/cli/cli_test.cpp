@@ -115,11 +115,11 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"plan", telescope, "--time-limit", "soon"}, 2, "--time-limit soon"},
       {{"plan", telescope, "--variant", "none"},
        2,
-       "has no variant 'none'; variants: rigid, rigid_6, linear, linear_common, matrix, all_free, kappa_and_ux, "
+       "--variant is 'none'; allowed: rigid, rigid_6, linear, linear_common, matrix, all_free, kappa_and_ux, "
        "row_of_K"},
       {{"plan", telescope, "--criterion", "o9"}, 2, "unknown criterion 'o9'; available: o1"},
       {{"plan", telescope, "--method", "magic"}, 2, "unknown method 'magic'; available: auto, exchange"},
-      {{"plan", telescope, "--repeats", "maybe"}, 2, "--repeats maybe; allowed: allow, forbid"},
+      {{"plan", telescope, "--repeats", "maybe"}, 2, "--repeats is 'maybe'; allowed: allow, forbid"},
       {{"plan", "missing.yaml"}, 2, "missing.yaml"},
       {{"plan", broken}, 2, "broken.yaml:2: "},
       {{"plan", kr270, "--poses", "4", "--candidates", "200"}, 1, "at least 5 poses are needed"},

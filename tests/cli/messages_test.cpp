@@ -134,8 +134,8 @@ TEST(Messages, CommandsOptionsAndTheirWordsAreSuggestedIfTheyAreNear) {
       {{"plan", "p.yaml", "--criterium", "o1"}, "(did you mean '--criterion'?)"},
       {{"plan", "p.yaml", "--cand", "5"}, "(did you mean '--candidates'?)"},
       {{"plan", "p.yaml", "--criterion", "test_psoe"}, "unknown criterion 'test_psoe' (did you mean 'test_pose'?)"},
-      {{"plan", "p.yaml", "--scaling", "nrom"}, "--scaling nrom (did you mean 'norm'?)"},
-      {{"plan", "p.yaml", "--variant", "al"}, "has no variant 'al'"},
+      {{"plan", "p.yaml", "--scaling", "nrom"}, "--scaling is 'nrom' (did you mean 'norm'?)"},
+      {{"plan", "p.yaml", "--variant", "al"}, "--variant is 'al'"},
       {{"export", "p.yaml", "--to", "moveti"}, "is not a format that is written (did you mean 'moveit'?)"},
       {{"export", "p.yaml", "--to", "kuka_krl"}, "(did you mean 'kuka-krl'?)"},
   };

@@ -195,7 +195,7 @@ const BadFile requirements[] = {
     {"RotationInMillimetres", arm, "restarts: 7", "require: {rotation: \"1 mm\"}", 37, "wrong unit"},
     {"PositionOfNoAxis", arm, "restarts: 7", "require: {position: {}}", 37, "is empty"},
     {"PositionNegative", arm, "restarts: 7", "require: {position: \"-1 mm\"}", 37, "> 0"},
-    {"RequireNothing", arm, "restarts: 7", "require: {}", 37, "is empty; allowed: accuracy, sigma, position, rotation"},
+    {"RequireNothing", arm, "restarts: 7", "require: {}", 37, "is empty; allowed: accuracy, position, rotation, sigma"},
 };
 INSTANTIATE_TEST_SUITE_P(Require, BadProblem, testing::ValuesIn(requirements), test_name);
 
@@ -206,7 +206,7 @@ TEST(ReadProblem, UnknownKeyNamesLineAndAllowedKeys) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "bad.yaml:36: unknown key 'candidate' (did you mean 'candidates'?); allowed: variant, variants, truth, "
+        "bad.yaml:36: unknown key 'candidate' (did you mean 'candidates'?); allowed: variant, truth, variants, "
         "criterion, method, poses, "
         "require, candidates, candidates_from, restarts, repeats, minimum_distance, scaling, prior, reserve, robust, "
         "measured, fixed, test_poses");

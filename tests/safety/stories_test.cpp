@@ -18,6 +18,7 @@
 #include "posewright/tasks/check_sequence.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
@@ -89,12 +90,12 @@ TEST_P(Stories, LeadFromTheProblemToAProgramThatKeepsItsCellAndSaysHowNearThings
   const Story& story = GetParam();
   const TemporaryFolder folder;
   const Problem problem = this->problem(folder);
-  PlanOptions options;
-  options.poses = 8;
-  options.candidates = 120;
-  options.method = "exchange";
-  options.restarts = 1;
-  const Plan plan = plan_problem(problem, options, Monitor{});
+  DesignEdits options;
+  options.edit("poses", 8);
+  options.edit("candidates", 120);
+  options.edit("method", "exchange");
+  options.edit("restarts", 1);
+  const Plan plan = planned(problem, options);
   ASSERT_EQ(plan.poses.size(), 8U);
   long rejected = 0;
   for (const auto& [reason, count] : plan.statistics.rejected) rejected += count;

@@ -19,8 +19,13 @@ def readers():
 
 
 def allowed_keys():
-    """One set of keys for every allow({…}) of the readers; a name in place of a literal stands for either of its values."""
-    found = set()
+    """One set of keys for every allow({…}) of the readers and every mapping of the table of the design's keys; a name in
+    place of a literal stands for either of its values."""
+    below = {}
+    for path in re.findall(r'\{"(design\.[a-z_.]+)"', readers()["design_keys.cpp"]):
+        mapping, _, key = path.rpartition(".")
+        below.setdefault(mapping, set()).add(key)
+    found = {frozenset(keys) for keys in below.values()}
     for text in readers().values():
         for arguments in re.findall(r"\.allow\(\s*\{(.*?)\}\s*\)", text, re.S):
             keys = set(texts(arguments))

@@ -18,6 +18,7 @@
 #include "posewright/tasks/check_sequence.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -43,9 +44,9 @@ Problem loose_and_warm(const std::string& effects =
 }
 
 Plan quick_plan(const Problem& problem) {
-  PlanOptions options;
-  options.method = "greedy";
-  return plan_problem(problem, options, Monitor{});
+  DesignEdits options;
+  options.edit("method", "greedy");
+  return planned(problem, options);
 }
 
 double sigma_of(const Plan& plan, const std::string& name) {

@@ -16,6 +16,7 @@
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
@@ -118,12 +119,12 @@ Problem example_cell() {
   return read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/cell/problem.yaml");
 }
 
-PlanOptions quick_cell(int threads) {
-  PlanOptions options;
-  options.poses = 12;
-  options.candidates = 100;
-  options.restarts = 1;
-  options.method = "exchange";
+DesignEdits quick_cell(int threads) {
+  DesignEdits options;
+  options.edit("poses", 12);
+  options.edit("candidates", 100);
+  options.edit("restarts", 1);
+  options.edit("method", "exchange");
   options.threads = threads;
   return options;
 }
@@ -132,7 +133,7 @@ TEST(ExampleCell, PlanAndRouteAreTheSameOnAnyNumberOfThreadsAndShorterThanThePla
   Problem problem = example_cell();
   // What OMPL's roadmap says is tested by the route below; here it would take the most time.
   problem.workspace.motion.reachable = false;
-  Plan one = plan_problem(problem, quick_cell(1), Monitor{}), two = plan_problem(problem, quick_cell(2), Monitor{});
+  Plan one = planned(problem, quick_cell(1)), two = planned(problem, quick_cell(2));
   one.statistics.seconds = two.statistics.seconds = 0;
   for (Plan* plan : {&one, &two})
     for (PlanStage& stage : plan->statistics.stages) stage.seconds = 0;
@@ -161,7 +162,7 @@ TEST(ExampleCell, ReadingTakesItsTimeForEveryTargetThatATrackerSees) {
   problem.workspace.motion.reachable = false;
   problem.measurement.repeats = 3;
   const TemporaryFolder folder;
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_cell(0), Monitor{})));
+  const auto file = folder.write("plan.json", plan_json(planned(problem, quick_cell(0))));
   RouteOptions options;
   const Route quick = route_problem(problem, poses_in(problem, file), options, Monitor{});
   options.reading = 2;
@@ -185,7 +186,7 @@ TEST(ExampleCell, HomeInCollisionIsSaidWithWhatCollides) {
   Problem problem = example_cell();
   problem.workspace.motion.reachable = false;
   const TemporaryFolder folder;
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_cell(0), Monitor{})));
+  const auto file = folder.write("plan.json", plan_json(planned(problem, quick_cell(0))));
   // Stretched out over the fixture and down into it.
   problem.workspace.motion.home = {{{"joint_a2", 1}, {-0.1, Quantity::angle}},
                                    {{"joint_a3", 1}, {0.4, Quantity::angle}}};
@@ -204,7 +205,7 @@ TEST(ExampleCell, APoseThatIsNoLongerFreeIsLeftOutAndNamed) {
   Problem problem = example_cell();
   problem.workspace.motion.reachable = false;
   const TemporaryFolder folder;
-  const Plan plan = plan_problem(problem, quick_cell(0), Monitor{});
+  const Plan plan = planned(problem, quick_cell(0));
   const auto file = folder.write("plan.json", plan_json(plan));
   // A new obstacle where the tip of pose 3 is.
   const Eigen::Vector3d p = plan.poses[2].tool_pose->translation();
@@ -225,10 +226,7 @@ TEST(ExampleCell, APoseThatIsNoLongerFreeIsLeftOutAndNamed) {
   for (std::size_t i = 0; i < all.configurations.size(); ++i)
     if (std::any_of(route.poses.begin(), route.poses.end(), [&](const PlannedPose& p) { return p.id == all.ids[i]; }))
       kept.configurations.push_back(all.configurations[i]);
-  EvaluateOptions options;
-  options.plan = quick_cell(0);
-  options.plan.poses.reset();
-  const Plan left = evaluate_problem(problem, kept, options, Monitor{}).plan;
+  const Plan left = evaluate_problem(quick_cell(0).of(problem), kept, {}, Monitor{}).plan;
   ASSERT_TRUE(route.worth.has_value());
   const double interest = std::count_if(left.parameters.begin(), left.parameters.end(), [](const auto& p) {
     return p.label.role == Role::interest && p.dropped_because.empty();
@@ -250,13 +248,12 @@ TEST(Stations, ThatSeesTheReflectorsIsRankedAboveTheOneBehindTheWall) {
                                       {"front", {{3.6, -1.4, 0.5}, Eigen::Vector3d::Zero()}},
                                       {"in_the_fixture", {{1.9, 0.2, -0.4}, Eigen::Vector3d::Zero()}}};
   StationOptions options;
-  options.plan = quick_cell(0);
   options.full = 1;
-  const std::vector<StationRank> ranks = place_stations(problem, options, Monitor{});
+  const std::vector<StationRank> ranks = place_stations(quick_cell(0).of(problem), options, Monitor{});
   ASSERT_EQ(ranks.size(), 3U);
   EXPECT_EQ(ranks[0].stations.front().name, "front");
   EXPECT_TRUE(ranks[0].in_full);
-  EXPECT_DOUBLE_EQ(ranks[0].phi, plan_problem(problem, quick_cell(0), Monitor{}).log_det);
+  EXPECT_DOUBLE_EQ(ranks[0].phi, planned(problem, quick_cell(0)).log_det);
   for (std::size_t i = 1; i < 3; ++i) EXPECT_NE(ranks[i].why_not, "") << ranks[i].stations.front().name;
 }
 

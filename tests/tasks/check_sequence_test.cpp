@@ -18,6 +18,7 @@
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/workspace/workspace.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/urdf_text.hpp"
 
@@ -158,7 +159,7 @@ TEST(ControllerRanges, AreKeptByEveryCandidateAsTheControllerCountsThem) {
                                                  {-100, 400}, {-50, 40}, {-130, 150}};
   const auto count_outside = [&](const std::string& joints) {
     const Problem problem = read_problem(folder.write("p.yaml", text(joints.c_str())));
-    const Plan plan = plan_problem(problem, PlanOptions{}, Monitor{});
+    const Plan plan = planned(problem, DesignEdits{});
     int outside = 0;
     for (const PlannedPose& pose : plan.poses) {
       std::vector<double> q;

@@ -13,6 +13,7 @@
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/workspace/candidates.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
 
@@ -21,19 +22,24 @@ namespace {
 
 using testing::HasSubstr;
 
-CompareOptions quick(std::vector<std::string> variants, int poses) {
+/// The problem with few candidates and one start, and so many poses.
+Problem quick(Problem problem, int poses = 0) {
+  DesignEdits edits;
+  edits.edit("candidates", 200);
+  edits.edit("restarts", 1);
+  if (poses > 0) edits.edit("poses", poses);
+  return edits.of(std::move(problem));
+}
+
+CompareOptions all_of(std::vector<std::string> variants) {
   CompareOptions options;
   options.variants = std::move(variants);
-  options.plan.candidates = 200;
-  options.plan.restarts = 1;
-  options.plan.poses = poses;
   return options;
 }
 
 CompareOptions given(const Problem& problem, std::vector<std::string> variants,
                      const std::vector<std::vector<double>>& list) {
-  CompareOptions options = quick(std::move(variants), 0);
-  options.plan.poses.reset();
+  CompareOptions options = all_of(std::move(variants));
   options.plans.push_back({"mine", given_poses(problem, list)});
   return options;
 }
@@ -62,7 +68,8 @@ VariantSpec copy_of(const Problem& problem, const std::string& variant, const st
 PatternValue value(const std::string& pattern, double si) { return {{pattern, 0}, si, Quantity::number}; }
 
 TEST(Compare, EachVariantsOwnPlanServesItBestOnTheTelescope) {
-  const Comparison c = compare_problem(example("telescope/problem.yaml"), quick({"rigid", "linear", "matrix"}, 20), {});
+  const Comparison c =
+      compare_problem(quick(example("telescope/problem.yaml"), 20), all_of({"rigid", "linear", "matrix"}), {});
   ASSERT_EQ(c.plans.size(), 3U);
   ASSERT_EQ(c.scores.size(), 9U);
   for (std::size_t v = 0; v < 3; ++v) {
@@ -83,7 +90,7 @@ TEST(Compare, EachVariantsOwnPlanServesItBestOnTheTelescope) {
 }
 
 TEST(Compare, PublishedMatrixLeavesMillimetresInTheRigidFit) {
-  const Comparison c = compare_problem(example("telescope/problem.yaml"), quick({"rigid", "matrix"}, 20), {});
+  const Comparison c = compare_problem(quick(example("telescope/problem.yaml"), 20), all_of({"rigid", "matrix"}), {});
   const VariantAlias& alias = alias_of(c, "rigid", "matrix");
   EXPECT_EQ(alias.sources.size(), 33U) << "three of the 36 elements are zero";
   double largest = 0;
@@ -131,14 +138,14 @@ void expect_table_two(const VariantAlias& rigid, const VariantAlias& linear) {
 
 TEST(Compare, FirstOrderBiasIsThatOfTheWholeFitWhereTheEffectIsSmall) {
   Problem problem = example("telescope/problem.yaml");
-  const CompareOptions options = quick({"rigid", "linear", "matrix", "rigid_6"}, 40);
-  const Comparison published = compare_problem(problem, options, Monitor{});
+  const CompareOptions options = all_of({"rigid", "linear", "matrix", "rigid_6"});
+  const Comparison published = compare_problem(quick(problem, 40), options, Monitor{});
   expect_table_two(alias_of(published, "rigid_6", "matrix"), alias_of(published, "linear", "matrix"));
   for (const char* fitted : {"rigid", "linear"})
     EXPECT_LT(first_order_off(alias_of(published, fitted, "matrix")).first, 0.05) << fitted;
   for (VariantSpec& variant : problem.variants)
     for (PatternValue& value : variant.nominal) value.value *= 0.05;
-  const Comparison small = compare_problem(problem, options, Monitor{});
+  const Comparison small = compare_problem(quick(problem, 40), options, Monitor{});
   for (const char* fitted : {"rigid", "linear"}) {
     const auto [all, worst] = first_order_off(alias_of(small, fitted, "matrix"));
     EXPECT_LT(all, 0.005) << fitted;
@@ -149,7 +156,7 @@ TEST(Compare, FirstOrderBiasIsThatOfTheWholeFitWhereTheEffectIsSmall) {
 TEST(Compare, BiasIsTheLeastSquaresAnswerToTheDifferenceOfTheReadings) {
   const Problem problem = example("telescope/problem.yaml");
   const auto list = list_of(problem, 25);
-  const Comparison c = compare_problem(problem, given(problem, {"rigid", "matrix"}, list), {});
+  const Comparison c = compare_problem(quick(problem), given(problem, {"rigid", "matrix"}, list), {});
   const VariantAlias& alias = alias_of(c, "rigid", "matrix");
   ASSERT_EQ(c.scores.size(), 2U);
   EXPECT_EQ(c.scores[0].infeasible, 0);
@@ -189,7 +196,7 @@ TEST(Compare, NothingIsAliasedByTheSameVariantAndTwiceTheDifferenceIsTwiceTheBia
     problem.variants.back().nominal.push_back(value("leg_1.az", 2e-4 * times));
   }
   const Comparison c =
-      compare_problem(problem, given(problem, {"rigid", "same", "once", "twice"}, list_of(problem, 20)), {});
+      compare_problem(quick(problem), given(problem, {"rigid", "same", "once", "twice"}, list_of(problem, 20)), {});
   EXPECT_TRUE(alias_of(c, "rigid", "same").sources.empty());
   for (const AliasedParameter& p : alias_of(c, "rigid", "same").parameters) {
     EXPECT_EQ(p.shift, 0);
@@ -212,7 +219,7 @@ TEST(Compare, AVariantThatCannotBeIdentifiedSaysWhyAndTheOthersAreCompared) {
   // All diagonal elements together are kappa.
   problem.variants.push_back(copy_of(problem, "matrix", "both"));
   problem.variants.back().parameters.push_back({"kappa", 0});
-  const Comparison c = compare_problem(problem, quick({"rigid", "both"}, 16), {});
+  const Comparison c = compare_problem(quick(problem, 16), all_of({"rigid", "both"}), {});
   EXPECT_EQ(c.variants[0].why_not, "");
   EXPECT_THAT(c.variants[1].why_not, HasSubstr("cannot be identified separately"));
   ASSERT_EQ(c.plans.size(), 1U);
@@ -234,11 +241,10 @@ class Arm : public testing::Test {
 TEST_F(Arm, AListIsScoredAsEvaluateScoresIt) {
   const auto list = list_of(problem_, 9);
   const CompareOptions options = given(problem_, {"geometric"}, list);
-  const Comparison c = compare_problem(problem_, options, {});
-  EvaluateOptions evaluate;
-  evaluate.plan = options.plan;
-  evaluate.plan.variant = "geometric";
-  const PoseListEvaluation e = evaluate_problem(problem_, given_poses(problem_, list), evaluate, {});
+  const Comparison c = compare_problem(quick(problem_), options, {});
+  Problem one = quick(problem_);
+  one.design.variant = Located<std::string>{"geometric", 0};
+  const PoseListEvaluation e = evaluate_problem(one, given_poses(problem_, list), {}, {});
   ASSERT_EQ(c.scores.size(), 1U);
   EXPECT_EQ(c.scores[0].log_det, e.plan.log_det);
   EXPECT_EQ(c.scores[0].rho0, e.plan.rho0);
@@ -252,7 +258,8 @@ TEST_F(Arm, WhatAnEqualParameterTakesUpIsWholeAndLeavesNoErrorOfTheRobot) {
   for (auto& pattern : problem_.variants.back().parameters)
     if (pattern.value == "py1") pattern.value = "joint_a3.y";
   problem_.variants.back().tolerance.push_back(value("joint_a3.y", 3e-3));
-  const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "swapped"}, list_of(problem_, 9)), {});
+  const Comparison c =
+      compare_problem(quick(problem_), given(problem_, {"geometric", "swapped"}, list_of(problem_, 9)), {});
   const VariantAlias& alias = alias_of(c, "geometric", "swapped");
   ASSERT_EQ(alias.sources.size(), 1U);
   EXPECT_EQ(alias.sources[0].spread, 3e-3);
@@ -268,7 +275,7 @@ TEST_F(Arm, AParameterPaysWhereItsToleranceIsWideAndNotWhereItIsNarrow) {
   problem_.variants.back().fixed.push_back({"px2", 0});
   for (const double tolerance : {5e-3, 1e-8}) {
     problem_.variants.front().tolerance = {value("px2", tolerance)};
-    const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "few"}, list), {});
+    const Comparison c = compare_problem(quick(problem_), given(problem_, {"geometric", "few"}, list), {});
     const ExtraWorth& worth = worth_of(c, "geometric", "few");
     EXPECT_EQ(worth.measure, ExtraWorth::Measure::test_poses);
     EXPECT_THAT(worth.extra, testing::ElementsAre("px2"));
@@ -277,7 +284,7 @@ TEST_F(Arm, AParameterPaysWhereItsToleranceIsWideAndNotWhereItIsNarrow) {
   }
   problem_.design.test_poses.reset();
   problem_.variants.front().tolerance = {value("px2", 5e-3)};
-  const Comparison c = compare_problem(problem_, given(problem_, {"geometric", "few"}, list), {});
+  const Comparison c = compare_problem(quick(problem_), given(problem_, {"geometric", "few"}, list), {});
   EXPECT_EQ(worth_of(c, "geometric", "few").measure, ExtraWorth::Measure::shared_parameters);
   EXPECT_TRUE(worth_of(c, "geometric", "few").worth().value());
 }
@@ -287,19 +294,19 @@ TEST_F(Arm, ToleranceThatCountsAsKnowledgeKeepsBiasSmaller) {
   problem_.variants.back().fixed.push_back({"px2", 0});
   CompareOptions options = given(problem_, {"geometric", "few"}, list_of(problem_, 9));
   const auto largest = [&] {
-    const Comparison c = compare_problem(problem_, options, {});
+    const Comparison c = compare_problem(quick(problem_), options, {});
     double size = 0;
     for (const AliasedParameter& p : alias_of(c, "few", "geometric").parameters)
       size = std::max(size, p.spread / p.label.tolerance);
     return size;
   };
   const double without = largest();
-  options.plan.prior = true;
+  problem_.design.prior = true;
   EXPECT_LT(largest(), without);
 }
 
 TEST_F(Arm, ConventionsShareNoCatalogueAndTheNoiseIsToldAllTheSame) {
-  const Comparison c = compare_problem(problem_, quick({"geometric", "denavit_hartenberg"}, 8), {});
+  const Comparison c = compare_problem(quick(problem_, 8), all_of({"geometric", "denavit_hartenberg"}), {});
   EXPECT_THAT(alias_of(c, "geometric", "denavit_hartenberg").why_not, HasSubstr("different kinds of parameters"));
   const ExtraWorth& worth = worth_of(c, "denavit_hartenberg", "geometric");
   EXPECT_FALSE(worth.worth());
@@ -311,21 +318,19 @@ TEST_F(Arm, TooFewPosesAreAReasonNotAnEnd) {
   const auto list = list_of(problem_, 9);
   CompareOptions options = given(problem_, {"geometric"}, {list[0], list[1]});
   options.plans.push_back({"longer", given_poses(problem_, list)});
-  const Comparison c = compare_problem(problem_, options, {});
+  const Comparison c = compare_problem(quick(problem_), options, {});
   EXPECT_THAT(c.scores[0].why_not, HasSubstr("2 poses give"));
   EXPECT_EQ(c.scores[1].why_not, "");
 }
 
 TEST_F(Arm, BadRequestsAreRefused) {
-  EXPECT_THROW(compare_problem(problem_, quick({"geometric", "geometric"}, 8), {}), InputError);
-  EXPECT_THROW(compare_problem(problem_, quick({"none"}, 8), {}), InputError);
-  CompareOptions options = quick({"geometric"}, 8);
+  EXPECT_THROW(compare_problem(quick(problem_, 8), all_of({"geometric", "geometric"}), {}), InputError);
+  EXPECT_THROW(compare_problem(quick(problem_, 8), all_of({"none"}), {}), InputError);
+  CompareOptions options = all_of({"geometric"});
   options.truth = "none";
-  EXPECT_THROW(compare_problem(problem_, options, {}), InputError);
+  EXPECT_THROW(compare_problem(quick(problem_, 8), options, {}), InputError);
   problem_.design.smallest = true;
-  options = quick({"geometric"}, 8);
-  options.plan.poses.reset();
-  EXPECT_THROW(compare_problem(problem_, options, {}), InputError);
+  EXPECT_THROW(compare_problem(problem_, all_of({"geometric"}), {}), InputError);
 }
 
 }  // namespace

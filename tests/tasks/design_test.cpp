@@ -14,6 +14,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/recompute.hpp"
@@ -55,9 +56,9 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
   folder.write("planar.urdf", planar_urdf(n));
   const Problem problem =
       read_problem(folder.write("p.yaml", planar_problem(n, "{poses: 6, candidates: 4000, method: auto}")));
-  PlanOptions options;
+  DesignEdits options;
   options.proof.gap = 5e-5;
-  const Plan plan = plan_problem(problem, options, Monitor{});
+  const Plan plan = planned(problem, options);
   // log det M ≤ 2n ln N + 2 Σ ln l_i.
   const double optimum = 2 * n * std::log(poses) + 2 * ((n - 1) * std::log(1.2) + std::log(0.8));
   EXPECT_NEAR(plan.log_det, optimum, 1e-6);
@@ -69,20 +70,20 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
 
 INSTANTIATE_TEST_SUITE_P(Links, PlanarChain, testing::Values(2, 3));
 
-PlanOptions quick(int candidates = 400) {
-  PlanOptions options;
-  options.candidates = candidates;
-  options.restarts = 2;
-  options.method = "exchange";
+DesignEdits quick(int candidates = 400) {
+  DesignEdits options;
+  options.edit("candidates", candidates);
+  options.edit("restarts", 2);
+  options.edit("method", "exchange");
   return options;
 }
 
 TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
   const Problem problem = example("telescope/problem.yaml");
-  PlanOptions options = quick(500);
-  const Plan exchange = plan_problem(problem, options, Monitor{});
-  options.method = "auto";
-  const Plan best = plan_problem(problem, options, Monitor{});
+  DesignEdits options = quick(500);
+  const Plan exchange = planned(problem, options);
+  options.edit("method", "auto");
+  const Plan best = planned(problem, options);
   EXPECT_GT(best.certificate.workspace->efficiency, exchange.certificate.workspace->efficiency + 0.1);
   ASSERT_EQ(best.statistics.stages.size(), 4U);
   for (std::size_t i = 1; i < 4; ++i)
@@ -92,12 +93,12 @@ TEST(Design, AutoBeatsExchangeOnTheTelescopeByTheCertificateOfTheWorkspace) {
 TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
   const TemporaryFolder folder;
   const Problem problem = example("telescope/problem.yaml");
-  PlanOptions options = quick();
-  options.poses = 20;
-  const Plan first = plan_problem(problem, options, Monitor{});
+  DesignEdits options = quick();
+  options.edit("poses", 20);
+  const Plan first = planned(problem, options);
   options.measured = poses_in(problem, folder.write("measured.csv", poses_csv(first)));
-  options.poses = 6;
-  const Plan more = plan_problem(problem, options, Monitor{});
+  options.edit("poses", 6);
+  const Plan more = planned(problem, options);
   ASSERT_EQ(more.poses.size(), 26U);
   EXPECT_EQ(std::count_if(more.poses.begin(), more.poses.end(), [](const auto& p) { return p.measured; }), 20);
   EXPECT_NEAR(recomputed_log_det(problem, "", configurations_of(problem, more)), more.log_det, 1e-7);
@@ -111,16 +112,16 @@ TEST(Design, AugmentCountsWhatIsMeasuredAlready) {
 
 TEST(Design, ReservePlanLosesLessWithItsWorstPose) {
   const Problem problem = example("delta/problem.yaml");
-  PlanOptions options = quick(200);
-  options.poses = 12;
+  DesignEdits options = quick(200);
+  options.edit("poses", 12);
   const auto least = [](const Plan& plan) {
     double value = 1.0;
     for (const PlannedPose& pose : plan.poses) value = std::min(value, pose.without);
     return plan.log_det + double(plan.parameters.size()) * std::log(value);
   };
-  const Plan plain = plan_problem(problem, options, Monitor{});
-  options.reserve = true;
-  const Plan reserve = plan_problem(problem, options, Monitor{});
+  const Plan plain = planned(problem, options);
+  options.edit("reserve", "yes");
+  const Plan reserve = planned(problem, options);
   EXPECT_TRUE(reserve.reserve);
   EXPECT_GE(least(reserve), least(plain) - 1e-9);
   EXPECT_LE(reserve.log_det, reserve.certificate.bound);
@@ -130,11 +131,11 @@ TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
   Problem problem = example("kr270/problem.yaml");
   problem.design.minimum_distance = DesignSpec::MinimumDistance{40 * std::numbers::pi / 180, 0.0};
   for (const char* method : {"exchange", "auto"}) {
-    PlanOptions options = quick(60);
-    options.restarts = 1;
-    options.poses = 8;
-    options.method = method;
-    const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));
+    DesignEdits options = quick(60);
+    options.edit("restarts", 1);
+    options.edit("poses", 8);
+    options.edit("method", method);
+    const auto poses = configurations_of(problem, planned(problem, options));
     for (std::size_t i = 0; i < poses.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         double most = 0;
@@ -143,7 +144,7 @@ TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
       }
   }
   problem.design.minimum_distance = DesignSpec::MinimumDistance{100.0, 0.0};
-  EXPECT_THROW(plan_problem(problem, quick(), Monitor{}), CannotDo);
+  EXPECT_THROW(planned(problem, quick()), CannotDo);
 
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));
@@ -220,26 +221,26 @@ TEST(Design, AProvedOptimumIsOneOfThePlansThatKeepTheirPosesApart) {
 TEST(Design, KeepingPosesApartNeverMakesAPlanFail) {
   // Nearly all candidates are taken: the default distance yields, a stated one does not.
   Problem problem = example("five_bar/problem.yaml");
-  PlanOptions options = quick(45);
-  options.poses = 44;
-  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 44U);
+  DesignEdits options = quick(45);
+  options.edit("poses", 44);
+  EXPECT_EQ(planned(problem, options).poses.size(), 44U);
   // What is measured already fills the workspace: the default yields, candidates stay.
   const TemporaryFolder folder;
   options = quick(300);
-  options.poses = 200;
-  options.method = "greedy";
-  const auto measured = folder.write("measured.json", plan_json(plan_problem(problem, options, Monitor{})));
+  options.edit("poses", 200);
+  options.edit("method", "greedy");
+  const auto measured = folder.write("measured.json", plan_json(planned(problem, options)));
   options = quick(400);
   options.seed = 3;
-  options.poses = 40;
+  options.edit("poses", 40);
   options.measured = poses_in(problem, measured);
-  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 240U);
+  EXPECT_EQ(planned(problem, options).poses.size(), 240U);
   // The promising candidates lie in a few places that cannot hold twelve at a distance; others can.
   options = quick(3000);
-  options.poses = 12;
-  options.method = "auto";
+  options.edit("poses", 12);
+  options.edit("method", "auto");
   problem.design.minimum_distance = DesignSpec::MinimumDistance{0.0, 0.02};
-  EXPECT_EQ(plan_problem(problem, options, Monitor{}).poses.size(), 12U);
+  EXPECT_EQ(planned(problem, options).poses.size(), 12U);
 }
 
 TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
@@ -288,12 +289,12 @@ TEST(Design, SmallestNumberOfPosesReachesWhatIsRequiredAndOneLessDoesNot) {
 TEST(Design, PlansForSeveralVariantsServeEachAndMaximinTheWorstBest) {
   Problem problem = example("telescope/problem.yaml");
   problem.design.variants = {{{"rigid", 0}, 1.0}, {{"linear", 0}, 1.0}};
-  PlanOptions options = quick(60);
-  options.poses = 16;
+  DesignEdits options = quick(60);
+  options.edit("poses", 16);
   std::map<std::string, Plan> plans;
   for (const char* criterion : {"compound", "maximin"}) {
-    options.criterion = criterion;
-    plans[criterion] = plan_problem(problem, options, Monitor{});
+    options.edit("criterion", criterion);
+    plans[criterion] = planned(problem, options);
     const Plan& plan = plans[criterion];
     ASSERT_EQ(plan.variants.size(), 2U);
     for (const VariantResult& v : plan.variants) {
@@ -320,14 +321,14 @@ TEST(Design, ValuesOfTargetsStandBesideTestPosesAndDoNotMoveTheRobotThere) {
   Problem problem = example("kr270/problem.yaml");
   problem.design.test_poses = TestPosesSpec{};
   problem.design.test_poses->random = 5;
-  PlanOptions options = quick(60);
-  options.poses = 12;
-  const Plan plain = plan_problem(problem, options, Monitor{});
+  DesignEdits options = quick(60);
+  options.edit("poses", 12);
+  const Plan plain = planned(problem, options);
   // A variant that is linearised at another place of a target, and a user's name for one.
   problem.variants.front().nominal = {{{"target.P1.x", 1}, 0.2773, Quantity::length}};
   std::get<SerialArmSpec>(problem.robot)
       .parameter_names.emplace_back("reflector", Located<std::string>{"target.P2.y", 1});
-  const Plan moved = plan_problem(problem, options, Monitor{});
+  const Plan moved = planned(problem, options);
   ASSERT_TRUE(moved.rho0 && moved.turn);
   EXPECT_NEAR(*moved.rho0 / *plain.rho0, 1, 0.02);
   EXPECT_NEAR(*moved.turn / *plain.turn, 1, 0.02);
@@ -369,13 +370,12 @@ TEST(Design, TestPosesFromAFileAreThoseWrittenInTheProblem) {
 TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
   const TemporaryFolder folder;
   const Problem problem = example("telescope/problem.yaml");
-  const Plan plan = plan_problem(problem, quick(80), Monitor{});
+  const Plan plan = planned(problem, quick(80));
   EvaluateOptions options;
-  options.plan = quick(80);
   options.drop = 2;
   options.add = 3;
   for (const auto& file : {folder.write("p.csv", poses_csv(plan)), folder.write("p.json", plan_json(plan))}) {
-    const PoseListEvaluation e = evaluate_problem(problem, poses_in(problem, file), options, Monitor{});
+    const PoseListEvaluation e = evaluate_problem(quick(80).of(problem), poses_in(problem, file), options, Monitor{});
     EXPECT_NEAR(e.plan.log_det, plan.log_det, 1e-9);
     EXPECT_NEAR(e.plan.certificate.efficiency, plan.certificate.efficiency, 1e-6);
     for (std::size_t i = 0; i < plan.poses.size(); ++i) {
@@ -401,35 +401,35 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
 TEST(Evaluate, ListsThatCannotBeShortenedAndCriteriaWithoutTestPosesAreToldAtOnce) {
   const TemporaryFolder folder;
   const Problem problem = example("five_bar/problem.yaml");
-  EvaluateOptions options;
-  options.plan = quick(200);
+  DesignEdits edits = quick(200);
   const auto file = folder.write("four.csv", "x [mm],y [mm]\n0,300\n100,300\n-100,300\n0,400\n");
-  options.plan.criterion = "test_pose";
-  EXPECT_THROW(evaluate_problem(problem, poses_in(problem, file), options, Monitor{}), CannotDo);
-  options.plan.criterion = "o1";
+  edits.edit("criterion", "test_pose");
+  EXPECT_THROW(evaluate_problem(edits.of(problem), poses_in(problem, file), {}, Monitor{}), CannotDo);
+  edits.edit("criterion", "o1");
+  EvaluateOptions options;
   options.drop = 1;  // three poses of two rows leave eight parameters open
-  EXPECT_THROW(evaluate_problem(problem, poses_in(problem, file), options, Monitor{}), CannotDo);
+  EXPECT_THROW(evaluate_problem(edits.of(problem), poses_in(problem, file), options, Monitor{}), CannotDo);
 }
 
 TEST(Design, NewPosesNeverRepeatMeasuredOnesAndALimitedRepeatIsKeptByAuto) {
   const TemporaryFolder folder;
   const Problem problem = example("five_bar/problem.yaml");
-  PlanOptions options = quick(200);
-  options.poses = 10;
-  const Plan first = plan_problem(problem, options, Monitor{});
+  DesignEdits options = quick(200);
+  options.edit("poses", 10);
+  const Plan first = planned(problem, options);
   options.measured = poses_in(problem, folder.write("measured.csv", poses_csv(first)));
   for (const char* method : {"exchange", "auto"}) {
-    options.method = method;
-    const auto poses = configurations_of(problem, plan_problem(problem, options, Monitor{}));
+    options.edit("method", method);
+    const auto poses = configurations_of(problem, planned(problem, options));
     for (std::size_t i = 0; i < poses.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) EXPECT_NE(poses[i], poses[j]) << method;
   }
   options = quick(200);
-  options.method = "auto";
-  options.poses = 16;
-  options.repeats = Repeats{2};
+  options.edit("method", "auto");
+  options.edit("poses", 16);
+  options.edit("repeats", 2);
   std::map<std::vector<double>, int> used;
-  for (const auto& q : configurations_of(problem, plan_problem(problem, options, Monitor{}))) ++used[q];
+  for (const auto& q : configurations_of(problem, planned(problem, options))) ++used[q];
   for (const auto& [q, times] : used) EXPECT_LE(times, 2);
 }
 

@@ -13,6 +13,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -43,10 +44,10 @@ class Discrepancies : public testing::Test {
     return read_problem(folder_.write("p.yaml", arm(design, more)));
   }
   static Plan plan(const Problem& problem, const std::string& criterion, const std::string& truth) {
-    PlanOptions options;
-    options.criterion = criterion;
-    options.truth = truth;
-    return plan_problem(problem, options, Monitor{});
+    DesignEdits options;
+    options.edit("criterion", criterion);
+    options.edit("truth", truth);
+    return planned(problem, options);
   }
   TemporaryFolder folder_;
 };
@@ -101,10 +102,11 @@ TEST_F(Discrepancies, TheEvaluationOfAPlanRepeatsItsFigures) {
   const Problem p = problem(six);
   for (const char* criterion : {"discriminate", "bias"}) {
     const Plan made = plan(p, criterion, "both");
-    EvaluateOptions options;
-    options.plan.criterion = criterion;
-    options.plan.truth = "both";
-    const PoseListEvaluation again = evaluate_problem(p, given_poses(p, configurations_of(made)), options, Monitor{});
+    DesignEdits options;
+    options.edit("criterion", criterion);
+    options.edit("truth", "both");
+    const PoseListEvaluation again =
+        evaluate_problem(options.of(p), given_poses(p, configurations_of(made)), {}, Monitor{});
     EXPECT_NEAR(again.plan.criterion_value, made.criterion_value, 1e-9 * std::abs(made.criterion_value));
     EXPECT_NEAR(again.plan.discrimination->noncentrality(), made.discrimination->noncentrality(), 1e-9);
     const auto scored = [&](const std::string& name) {
@@ -122,9 +124,10 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
     CompareOptions compare;
     compare.variants = {"plain", "both"};
     compare.truth = "both";
-    compare.plan.candidates = 100;
     compare.plans.push_back({"mine", given_poses(p, configurations_of(made))});
-    const Comparison c = compare_problem(p, compare, Monitor{});
+    DesignEdits few;
+    few.edit("candidates", 100);
+    const Comparison c = compare_problem(few.of(p), compare, Monitor{});
     ASSERT_EQ(c.aliases.size(), 1U);
     const VariantAlias& alias = c.aliases.front();
     double expected = 0;
@@ -145,10 +148,11 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
 TEST_F(Discrepancies, BiasPlansErrLessThanPlansThatKnowOfNoiseAlone) {
   const Problem p = problem(six);
   EXPECT_GT(plan(p, "bias", "longer").criterion_value, [&] {
-    EvaluateOptions options;
-    options.plan.criterion = "bias";
-    options.plan.truth = "longer";
-    return evaluate_problem(p, given_poses(p, configurations_of(plan(p, "test_pose", "longer"))), options, Monitor{})
+    DesignEdits options;
+    options.edit("criterion", "bias");
+    options.edit("truth", "longer");
+    return evaluate_problem(options.of(p), given_poses(p, configurations_of(plan(p, "test_pose", "longer"))), {},
+                            Monitor{})
         .plan.criterion_value;
   }());
 }
@@ -158,13 +162,13 @@ TEST_F(Discrepancies, MeasuredPosesAndPriorsCountInBothCriteria) {
   const Plan first = plan(p, "discriminate", "both");
   for (const char* criterion : {"discriminate", "bias"})
     for (const bool prior : {false, true}) {
-      PlanOptions options;
-      options.criterion = criterion;
-      options.truth = "both";
-      options.poses = 4;
-      options.prior = prior;
+      DesignEdits options;
+      options.edit("criterion", criterion);
+      options.edit("truth", "both");
+      options.edit("poses", 4);
+      options.edit("prior", prior ? "tolerance" : "none");
       options.measured = given_poses(p, configurations_of(first));
-      const Plan more = plan_problem(p, options, Monitor{});
+      const Plan more = planned(p, options);
       EXPECT_EQ(more.discrimination->readings, 20 + (prior ? 3 : 0));
       // More readings of the same effects leave more of them unexplained.
       if (!prior) {
@@ -190,9 +194,9 @@ TEST_F(Discrepancies, ThePlanFileSaysIt) {
 }
 
 template <class Error>
-std::string message(const Problem& problem, const PlanOptions& options = {}) {
+std::string message(const Problem& problem, const DesignEdits& options = {}) {
   try {
-    plan_problem(problem, options, Monitor{});
+    planned(problem, options);
   } catch (const Error& error) {
     return error.what();
   }
@@ -211,23 +215,23 @@ TEST_F(Discrepancies, WhatCannotBeToldIsSaidWithItsPlace) {
   EXPECT_THAT(said("truth: same, "), HasSubstr("p.yaml:11: truth 'same' has no effect that 'plain' does not estimate"));
   EXPECT_THAT(said("truth: denavit, "), HasSubstr("use different kinds of parameters"));
   EXPECT_THAT(said("truth: geared, criterion: compound, "), HasSubstr("needs a single fitted variant"));
-  PlanOptions unknown;
-  unknown.truth = "nobody";
+  DesignEdits unknown;
+  unknown.edit("truth", "nobody");
   EXPECT_THAT(message<InputError>(problem(six), unknown), HasSubstr("nobody"));
   EXPECT_THROW(problem("{truth: nobody, " + rest), InputError);
 }
 
 TEST_F(Discrepancies, TooFewPosesForATestNameTheShortfall) {
-  PlanOptions options;
-  options.poses = 2;
-  options.truth = "geared";
-  options.criterion = "discriminate";
+  DesignEdits options;
+  options.edit("poses", 2);
+  options.edit("truth", "geared");
+  options.edit("criterion", "discriminate");
   const Problem wider = problem("{variant: four, poses: 6, candidates: 100}",
                                 "  four: {parameters: [q1.offset, q2.offset, tool.x, q2.x]}\n");
   EXPECT_THAT(message<CannotDo>(wider, options),
               HasSubstr("2 poses give 4 equations for 4 parameters: no degree of freedom is left to distinguish 'four' "
                         "from 'geared'; at least 3 poses are needed"));
-  options.poses = 1;
+  options.edit("poses", 1);
   EXPECT_THAT(message<CannotDo>(wider, options), HasSubstr("1 poses determine 2 of 4 parameters"));
 }
 

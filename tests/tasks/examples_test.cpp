@@ -13,6 +13,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/recompute.hpp"
 
@@ -32,12 +33,12 @@ bool is_moved(const std::string& file) {
 
 TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
   const Problem problem = example(GetParam());
-  PlanOptions options;
-  options.candidates = 100;
-  if (problem.workspace.motion.reachable) options.candidates = 40;  // a way to every one of them is sought
-  options.restarts = 1;
-  if (!is_moved(GetParam())) options.method = "exchange";
-  const Plan plan = plan_problem(problem, options, Monitor{});
+  DesignEdits options;
+  options.edit("candidates", 100);
+  if (problem.workspace.motion.reachable) options.edit("candidates", 40);  // a way to every one of them is sought
+  options.edit("restarts", 1);
+  if (!is_moved(GetParam())) options.edit("method", "exchange");
+  const Plan plan = planned(problem, options);
   EXPECT_EQ(int(plan.poses.size()), problem.design.poses->value);
   EXPECT_LE(plan.certificate.efficiency, 1.0);
   // The bounds of other criteria are on their own scale, and with hardly more poses than needed they are far off.
@@ -155,10 +156,10 @@ TEST(Telescope, SevenParametersALegNeedSevenPoses) {
 std::string refusal(const std::string& file, const std::function<void(Problem&)>& change) {
   Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file);
   change(problem);
-  PlanOptions options;
-  options.candidates = 100;
+  DesignEdits options;
+  options.edit("candidates", 100);
   try {
-    plan_problem(problem, options, Monitor{});
+    planned(problem, options);
     return "accepted";
   } catch (const std::runtime_error& error) {
     return error.what();
@@ -208,10 +209,10 @@ TEST(Refusals, EachSaysWhatDoesNotFit) {
 TEST(ListedPositions, OnePoseForEachSuffices) {
   // Five positions of one joint, nine parameters, nine rows: one pose at each position determines everything.
   EXPECT_EQ(observed("kr270/elastostatic.yaml", "compliances").smallest_poses, 5);
-  PlanOptions options;
-  options.candidates = 1000;
-  options.poses = 5;
-  const Plan plan = plan_problem(example("kr270/elastostatic.yaml"), options, Monitor{});
+  DesignEdits options;
+  options.edit("candidates", 1000);
+  options.edit("poses", 5);
+  const Plan plan = planned(example("kr270/elastostatic.yaml"), options);
   std::vector<double> second;
   for (const PlannedPose& pose : plan.poses) second.push_back(pose.configuration[1].value);
   std::sort(second.begin(), second.end());
@@ -287,11 +288,11 @@ TEST(BallBar, BothEndsCarryTheSameLoad) {
   light.name = "light", heavy.name = "heavy", heavy.mass = 100;
   springs.loads = {light, heavy};
   std::get<SerialArmSpec>(problem.robot).elastostatic = springs;
-  PlanOptions options;
-  options.method = "exchange";
-  options.candidates = 150;
-  options.restarts = 1;
-  const Plan plan = plan_problem(problem, options, Monitor{});
+  DesignEdits options;
+  options.edit("method", "exchange");
+  options.edit("candidates", 150);
+  options.edit("restarts", 1);
+  const Plan plan = planned(problem, options);
   for (const PlannedPose& pose : plan.poses) {
     EXPECT_EQ(pose.configuration.size(), 12U);
     EXPECT_TRUE(pose.load_case == "light" || pose.load_case == "heavy");

@@ -16,6 +16,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -127,9 +128,9 @@ TEST_F(FixedPoses, PoseThatWasMeasuredBeyondALimitIsAMeasuredOne) {
   const auto coordinates = pose_coordinates(problem);
   const auto file = folder_.write("measured.csv", csv({{3.0002, 1}}));
   EXPECT_THROW(read_poses(file, coordinates), InputError) << "a pose to go to keeps the limits";
-  PlanOptions options;
+  DesignEdits options;
   options.measured = read_poses(file, without_limits(coordinates));
-  const Plan found = plan_problem(problem, options, Monitor{});
+  const Plan found = planned(problem, options);
   ASSERT_EQ(found.poses.size(), 7U);
   EXPECT_EQ(found.poses[0].configuration[0].value, 3.0002);
   const auto written = folder_.write("plan.json", plan_json(found));
@@ -139,11 +140,11 @@ TEST_F(FixedPoses, PoseThatWasMeasuredBeyondALimitIsAMeasuredOne) {
 
 TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
   const Problem problem = this->problem("poses: 6, candidates: 60");
-  PlanOptions options;
+  DesignEdits options;
   const auto coordinates = pose_coordinates(problem);
   options.fixed = read_poses(folder_.write("fixed.csv", csv({{0.2, 0.3}, {0.1, 0.4}})), coordinates);
   options.measured = read_poses(folder_.write("measured.csv", csv({{-1, 1}})), coordinates);
-  const Plan found = plan_problem(problem, options, Monitor{});
+  const Plan found = planned(problem, options);
   ASSERT_EQ(found.poses.size(), 7U) << "six, and the measured one";
   EXPECT_TRUE(found.poses[0].measured && found.poses[1].fixed && found.poses[2].fixed && !found.poses[3].fixed);
   const auto file = folder_.write("plan.json", plan_json(found));

@@ -12,6 +12,7 @@
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -114,16 +115,16 @@ TEST(KnownAnswers, EveryCriterionIsBestUnderItsOwnPlan) {
   Problem problem = example("delta/problem.yaml");
   problem.design.test_poses = TestPosesSpec{};
   problem.design.test_poses->random = 20;
-  PlanOptions options;
-  options.candidates = 60;
-  options.restarts = 4;
+  DesignEdits options;
+  options.edit("candidates", 60);
+  options.edit("restarts", 4);
   // Compared over the same candidates: poses between them would be local optima of their own.
-  options.method = "exchange";
-  options.poses = 14;
+  options.edit("method", "exchange");
+  options.edit("poses", 14);
   std::map<std::string, Plan> plans;
   for (const char* criterion : {"o1", "a", "o2", "o3", "o5", "test_pose", "test_pose_max"}) {
-    options.criterion = criterion;
-    plans[criterion] = plan_problem(problem, options, Monitor{});
+    options.edit("criterion", criterion);
+    plans[criterion] = planned(problem, options);
   }
   const auto worst = [](const Plan& p) { return *std::max_element(p.test_errors.begin(), p.test_errors.end()); };
   for (const auto& [name, other] : plans) {
@@ -151,11 +152,11 @@ TEST(KnownAnswers, Kr270PlanOf18Among1500ReachesTheKnownEfficiency) {
   VariantSpec& variant = problem.variants.front();
   variant.parameters.insert(variant.parameters.end(), variant.nuisance.begin(), variant.nuisance.end());
   variant.nuisance.clear();
-  PlanOptions options;
-  options.candidates = 1500;
-  options.restarts = 1;
-  options.method = "exchange";
-  const Plan plan = plan_problem(problem, options, Monitor{});
+  DesignEdits options;
+  options.edit("candidates", 1500);
+  options.edit("restarts", 1);
+  options.edit("method", "exchange");
+  const Plan plan = planned(problem, options);
   EXPECT_EQ(plan.poses.size(), 18U);
   EXPECT_GE(plan.certificate.efficiency, 0.95);
 }
@@ -185,11 +186,11 @@ TEST(KnownAnswers, TelescopeReportsHeightsAndLengthAsDependent) {
 TEST(KnownAnswers, StatedLogDetIsRecomputedFromTheWrittenPosesAlone) {
   for (const std::string name : {"telescope", "kr270"}) {
     const Problem problem = example(name + "/problem.yaml");
-    PlanOptions options;
-    options.candidates = 200;
-    options.restarts = 1;
-    options.method = "exchange";
-    const Plan plan = plan_problem(problem, options, Monitor{});
+    DesignEdits options;
+    options.edit("candidates", 200);
+    options.edit("restarts", 1);
+    options.edit("method", "exchange");
+    const Plan plan = planned(problem, options);
     const PlanFile written = read_back(plan_json(plan));
     EXPECT_NEAR(recomputed_log_det(problem, written.variant, written.poses), written.log_det, 1e-9) << name;
     EXPECT_LE(written.log_det, written.log_det_bound) << name;
@@ -199,24 +200,24 @@ TEST(KnownAnswers, StatedLogDetIsRecomputedFromTheWrittenPosesAlone) {
 
 TEST(KnownAnswers, SameProblemAndSeedGiveTheSamePlanOnAnyNumberOfThreads) {
   const Problem problem = example("delta/problem.yaml");
-  PlanOptions options;
-  options.candidates = 100;
-  options.restarts = 3;
+  DesignEdits options;
+  options.edit("candidates", 100);
+  options.edit("restarts", 3);
   options.threads = 1;
-  const std::string one = poses_csv(plan_problem(problem, options, Monitor{}));
+  const std::string one = poses_csv(planned(problem, options));
   options.threads = 3;
-  EXPECT_EQ(poses_csv(plan_problem(problem, options, Monitor{})), one);
+  EXPECT_EQ(poses_csv(planned(problem, options)), one);
   options.seed = 1;
-  EXPECT_NE(poses_csv(plan_problem(problem, options, Monitor{})), one);
+  EXPECT_NE(poses_csv(planned(problem, options)), one);
 }
 
 TEST(KnownAnswers, TooFewPosesNameTheShortfallAndTheParameters) {
   const Problem problem = example("kr270/problem.yaml");
-  PlanOptions options;
-  options.candidates = 500;
-  options.poses = 4;
+  DesignEdits options;
+  options.edit("candidates", 500);
+  options.edit("poses", 4);
   try {
-    plan_problem(problem, options, Monitor{});
+    planned(problem, options);
     FAIL() << "accepted";
   } catch (const CannotDo& error) {
     // Six equations a pose and three more once: 27 of 33 with four poses, five poses needed.

@@ -18,6 +18,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -30,12 +31,12 @@ using testing::HasSubstr;
 const std::filesystem::path examples = std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples";
 
 Plan quick_plan(const Problem& problem) {
-  PlanOptions options;
-  options.candidates = 200;
-  options.restarts = 1;
-  options.method = "exchange";
+  DesignEdits options;
+  options.edit("candidates", 200);
+  options.edit("restarts", 1);
+  options.edit("method", "exchange");
   options.threads = 1;
-  return plan_problem(problem, options, Monitor{});
+  return planned(problem, options);
 }
 
 TEST(ParametersFile, ReadBackGivesTheVerySameModel) {
@@ -125,13 +126,16 @@ TEST_F(PlannedAtParameters, ReportAndEvaluationAgreeAtTheParametersAndSaySoElsew
   ASSERT_EQ(elsewhere.notes.size(), 1U);
   EXPECT_THAT(elsewhere.notes.front(), HasSubstr("The plan was made at the parameters of " + file.string()));
 
-  EvaluateOptions options;
-  options.plan.candidates = 200;
-  const PoseListEvaluation same = evaluate_problem(calibrated, poses_in(calibrated, plan_file), options, Monitor{});
+  DesignEdits few;
+  few.edit("candidates", 200);
+  const auto judged = [&](const Problem& problem) {
+    return evaluate_problem(few.of(problem), poses_in(problem, plan_file), {}, Monitor{});
+  };
+  const PoseListEvaluation same = judged(calibrated);
   EXPECT_TRUE(same.notes.empty());
   EXPECT_NEAR(same.plan.log_det, plan.log_det, 1e-9 * std::abs(plan.log_det));
   EXPECT_EQ(same.plan.parameters_file.sha256, calibrated.parameters->sha256);
-  const PoseListEvaluation other = evaluate_problem(nominal, poses_in(nominal, plan_file), options, Monitor{});
+  const PoseListEvaluation other = judged(nominal);
   ASSERT_EQ(other.notes.size(), 1U);
   EXPECT_THAT(other.notes.front(), HasSubstr("this run uses nominal ones (--parameters "));
 }

@@ -9,6 +9,7 @@
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/select_blocks.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -53,10 +54,10 @@ class RegisteredCriteria : public testing::Test {
  protected:
   RegisteredCriteria() { own_rows(); }
   Plan plan(const std::string& criterion) const {
-    PlanOptions options;
-    options.criterion = criterion;
-    if (find_criterion(criterion)->needs_truth) options.truth = "links_and_offsets";
-    return plan_problem(problem_, options, Monitor{});
+    DesignEdits options;
+    options.edit("criterion", criterion);
+    if (find_criterion(criterion)->needs_truth) options.edit("truth", "links_and_offsets");
+    return planned(problem_, options);
   }
   Problem problem_ = five_bar();
 };
@@ -76,10 +77,10 @@ TEST_F(RegisteredCriteria, OfAnyNameGiveThePlanValueBoundAndEfficiencyOfTheirOwn
 TEST_F(RegisteredCriteria, OfAnyNameAreScoredAlikeInAListThatIsGiven) {
   const Plan made = plan("o1");
   for (const CriterionEntry& entry : own_rows()) another_name(entry);
-  EvaluateOptions options;
-  options.plan.criterion = "registered_a";
-  options.plan.truth = "links_and_offsets";
-  const PoseListEvaluation e = evaluate_problem(problem_, planned_poses(problem_, made), options, Monitor{});
+  DesignEdits options;
+  options.edit("criterion", "registered_a");
+  options.edit("truth", "links_and_offsets");
+  const PoseListEvaluation e = evaluate_problem(options.of(problem_), planned_poses(problem_, made), {}, Monitor{});
   const auto score = [&](const std::string& name) {
     for (const CriterionScore& s : e.scores)
       if (s.name == name) return s;

@@ -17,6 +17,7 @@
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -77,17 +78,17 @@ Eigen::MatrixXd unpacked(const json& packed, Eigen::Index m) {
 struct Made {
   Plan plan;
   json report;
-  PlanOptions options;
+  DesignEdits options;
   std::filesystem::path file;
 };
 
 Made make(const Problem& problem, int poses, int candidates, const TemporaryFolder& folder) {
   Made made;
-  made.options.poses = poses;
-  made.options.candidates = candidates;
-  made.options.restarts = 1;
-  made.options.method = "exchange";
-  made.plan = plan_problem(problem, made.options, Monitor{});
+  made.options.edit("poses", poses);
+  made.options.edit("candidates", candidates);
+  made.options.edit("restarts", 1);
+  made.options.edit("method", "exchange");
+  made.plan = planned(problem, made.options);
   made.file = folder.write("plan.json", plan_json(made.plan));
   ReportOptions options;
   options.sizes = options.candidates = false;
@@ -117,7 +118,7 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
   const Made made = make(problem, poses, candidates, folder);
   const json& n = made.report["neighbours"];
   ASSERT_FALSE(n.is_null()) << made.report["why_no_neighbours"];
-  const Settings settings = settings_of(problem, made.options);
+  const Settings settings = settings_of(made.options.of(problem), made.options);
   const Study study = make_study(problem, settings, Monitor{});
   const auto m = Eigen::Index(made.report["columns"].size());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
@@ -192,7 +193,7 @@ TEST(ReportMoves, EvaluateAcceptsAMovedListExactlyWhereThePageSaysThatItIsFeasib
   Problem problem = read_problem(examples / "cell" / "problem.yaml");
   problem.workspace.motion.reachable = false;
   const Made made = make(problem, 14, 100, folder);
-  const Study study = make_study(problem, settings_of(problem, made.options), Monitor{});
+  const Study study = make_study(problem, settings_of(made.options.of(problem), made.options), Monitor{});
   const json& n = made.report["neighbours"];
   std::vector<std::pair<std::size_t, std::size_t>> looks;  // two of each verdict
   for (const bool wanted : {true, false})
@@ -204,8 +205,6 @@ TEST(ReportMoves, EvaluateAcceptsAMovedListExactlyWhereThePageSaysThatItIsFeasib
           break;
         }
   ASSERT_EQ(looks.size(), 4U);
-  EvaluateOptions options;
-  options.plan = made.options;
   for (const auto& [i, p] : looks) {
     const std::vector<int> k = n["places"][p];
     const Configurations list = moved_list(study, made, i, k);
@@ -213,8 +212,8 @@ TEST(ReportMoves, EvaluateAcceptsAMovedListExactlyWhereThePageSaysThatItIsFeasib
     for (std::size_t row = 0; row < list.count(); ++row) rows.emplace_back(list[row].begin(), list[row].end());
     const int verdict = n["poses"][i]["verdicts"][p];
     try {
-      const auto judged =
-          evaluate_problem(problem, poses_given(rows, study.first().workspace->coordinates()), options, Monitor{});
+      const auto judged = evaluate_problem(made.options.of(problem),
+                                           poses_given(rows, study.first().workspace->coordinates()), {}, Monitor{});
       EXPECT_LT(verdict, 0);
       EXPECT_NEAR(judged.plan.poses[i].nearest->distance, n["poses"][i]["clearance"][p].get<double>() * 1e-4, 0.51e-4);
     } catch (const InputError& error) {
@@ -230,7 +229,7 @@ TEST(ReportMoves, ARobotWithoutAChainIsDrawnAtWholeSteps) {
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
   const Made made = make(problem, 12, 60, folder);
   EXPECT_TRUE(made.report["chain"].is_null());
-  const Study study = make_study(problem, settings_of(problem, made.options), Monitor{});
+  const Study study = make_study(problem, settings_of(made.options.of(problem), made.options), Monitor{});
   const json& n = made.report["neighbours"];
   const int reach = n["reach"];
   for (std::size_t j = 0; j < n["coordinates"].size(); ++j) {

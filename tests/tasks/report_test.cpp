@@ -15,6 +15,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -58,20 +59,20 @@ struct Made {
   json report;
 };
 
-Made make_report(const Problem& problem, const PlanOptions& options, const TemporaryFolder& folder,
+Made make_report(const Problem& problem, const DesignEdits& options, const TemporaryFolder& folder,
                  const ReportOptions& report_options) {
-  Made made{plan_problem(problem, options, Monitor{}), {}};
+  Made made{planned(problem, options), {}};
   const auto file = folder.write("plan.json", plan_json(made.plan));
   made.report = json::parse(report_json(report_problem(problem, file, report_options, Monitor{})));
   return made;
 }
 
-PlanOptions quick_report(int poses, int candidates) {
-  PlanOptions options;
-  options.poses = poses;
-  options.candidates = candidates;
-  options.restarts = 1;
-  options.method = "exchange";
+DesignEdits quick_report(int poses, int candidates) {
+  DesignEdits options;
+  options.edit("poses", poses);
+  options.edit("candidates", candidates);
+  options.edit("restarts", 1);
+  options.edit("method", "exchange");
   return options;
 }
 
@@ -139,7 +140,7 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   const TemporaryFolder folder;
   Problem problem = read_problem(examples / "cell" / "problem.yaml");
   problem.workspace.motion.reachable = false;  // the route finds out, and the test is quick_report
-  const Plan plan = plan_problem(problem, quick_report(14, 200), Monitor{});
+  const Plan plan = planned(problem, quick_report(14, 200));
   const auto file = folder.write("plan.json", plan_json(plan));
   RouteOptions route_options;
   route_options.from_home = route_options.closed = true;
@@ -183,10 +184,10 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
 TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "kr270" / "problem.yaml");
-  PlanOptions options = quick_report(12, 100);
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, options, Monitor{})));
+  DesignEdits options = quick_report(12, 100);
+  const auto file = folder.write("plan.json", plan_json(planned(problem, options)));
   options.seed = 5;
-  const auto other = folder.write("other.json", plan_json(plan_problem(problem, options, Monitor{})));
+  const auto other = folder.write("other.json", plan_json(planned(problem, options)));
   RouteOptions closed;
   closed.closed = true;
   Route route = route_problem(problem, poses_in(problem, file), closed, Monitor{});
@@ -207,7 +208,7 @@ TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
 TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
-  json plan = json::parse(plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
+  json plan = json::parse(plan_json(planned(problem, quick_report(12, 60))));
   plan["poses"].erase(1);
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
@@ -221,7 +222,7 @@ TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
 TEST(Report, ATimeLimitShortensTheCurveAndNothingElse) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
-  const auto file = folder.write("plan.json", plan_json(plan_problem(problem, quick_report(12, 60), Monitor{})));
+  const auto file = folder.write("plan.json", plan_json(planned(problem, quick_report(12, 60))));
   Monitor late;
   late.on_progress = [&](const Progress& progress) {
     if (progress.stage == "other numbers of poses") late.deadline = Monitor::Clock::now();
@@ -247,7 +248,7 @@ TEST(Report, PositionErrorsOverTheWorkspaceAreThoseOfTestPosesThere) {
   const Problem problem = read_problem(file);
   const json report = make_report(problem, quick_report(18, 60), folder, brief).report;
   // The same configurations, written into the problem as test poses.
-  Settings settings = settings_of(problem, quick_report(18, 60));
+  const Settings settings = settings_of(quick_report(18, 60).of(problem), {});
   const Study study = make_study(problem, settings, Monitor{});
   std::string at;
   for (std::size_t i = 0; i < study.configurations.count(); ++i) {
@@ -259,7 +260,7 @@ TEST(Report, PositionErrorsOverTheWorkspaceAreThoseOfTestPosesThere) {
   const std::string design = "design:\n";
   ASSERT_NE(text.find(design), std::string::npos);
   text.insert(text.find(design) + design.size(), "  test_poses: {at: [" + at + "]}\n");
-  const Plan plan = plan_problem(read_problem(folder.write("tested.yaml", text)), quick_report(18, 60), Monitor{});
+  const Plan plan = planned(read_problem(folder.write("tested.yaml", text)), quick_report(18, 60));
   ASSERT_EQ(plan.test_errors.size(), 60U);
   ASSERT_EQ(report["position_errors"].size(), 60U);
   for (std::size_t i = 0; i < 60; ++i)

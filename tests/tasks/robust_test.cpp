@@ -20,6 +20,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -246,9 +247,9 @@ TEST_F(DrawnRobotsOfProblems, SmallTolerancesAreNotWorthAPlanOfTheirOwn) {
 
 TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRobotSettles) {
   const Problem problem = example("telescope/problem.yaml");
-  PlanOptions options;
-  options.candidates = 30;
-  const Study study = make_study(problem, settings_of(problem, options), Monitor());
+  DesignEdits options;
+  options.edit("candidates", 30);
+  const Study study = make_study(problem, settings_of(options.of(problem), options), Monitor());
   const DrawnRobots robots(problem, study, study.configurations, 1, 1, Monitor());
   const std::vector<double> correction = robots.correction(0);
   // A second robot whose nominal values are those of the drawn one; its platform is found from the actuators.

@@ -16,6 +16,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
@@ -48,10 +49,10 @@ class UnmodelledEffects : public testing::Test {
     return read_problem(folder_.write("p.yaml", arm(unmodelled.empty() ? "" : ", unmodelled: " + unmodelled, design)));
   }
   static Plan judged(const Problem& problem, const List& list, const std::string& criterion = "o1") {
-    EvaluateOptions options;
-    options.plan.criterion = criterion;
-    options.plan.candidates = 200;
-    return evaluate_problem(problem, given_poses(problem, list), options, Monitor{}).plan;
+    DesignEdits options;
+    options.edit("criterion", criterion);
+    options.edit("candidates", 200);
+    return evaluate_problem(options.of(problem), given_poses(problem, list), {}, Monitor{}).plan;
   }
   TemporaryFolder folder_;
 };
@@ -255,14 +256,14 @@ TEST_F(UnmodelledEffects, BoundHoldsForEverySetOfCandidates) {
   List ten = eight;
   ten.push_back({-0.2, -1.5});
   ten.push_back({1.9, 0.3});
-  PlanOptions options;
+  DesignEdits options;
   options.candidates_from = given_poses(p, ten);
   for (const char* criterion : {"o1", "test_pose"}) {
-    options.criterion = criterion;
-    options.method = "branch_and_bound";
-    const Plan best = plan_problem(p, options, Monitor{});
-    options.method = "auto";
-    const Plan found = plan_problem(p, options, Monitor{});
+    options.edit("criterion", criterion);
+    options.edit("method", "branch_and_bound");
+    const Plan best = planned(p, options);
+    options.edit("method", "auto");
+    const Plan found = planned(p, options);
     EXPECT_TRUE(best.proved_optimal) << criterion;
     EXPECT_NEAR(found.criterion_value / best.criterion_value, 1, 1e-6) << criterion;
     EXPECT_TRUE(found.certificate.proved);
@@ -280,9 +281,9 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthIsTheErrorOfAPlainFitAtTheCandidates)
   }
   folder_.write("places.csv", file);
   const Problem p = problem("{size: 0.2 mm}", "{variant: short, poses: 8, candidates_from: places.csv}");
-  EvaluateOptions options;
-  options.plan.criterion = "bias";
-  const Plan plan = evaluate_problem(p, given_poses(p, eight), options, Monitor{}).plan;
+  DesignEdits bias;
+  bias.edit("criterion", "bias");
+  const Plan plan = evaluate_problem(bias.of(p), given_poses(p, eight), {}, Monitor{}).plan;
 
   constexpr double size = 2e-4;
   Eigen::MatrixXd J(16, 3), K(16, 16), at(16, 2);
@@ -311,18 +312,18 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthIsTheErrorOfAPlainFitAtTheCandidates)
 
 TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
   const Problem p = problem("", "{variant: plain, poses: 8, candidates: 200}");
-  const auto planned = [&](const std::string& criterion) {
-    PlanOptions options;
-    options.criterion = criterion;
+  const auto best_by = [&](const std::string& criterion) {
+    DesignEdits options;
+    options.edit("criterion", criterion);
     options.candidates_alone = true;
-    return plan_problem(p, options, Monitor{});
+    return planned(p, options);
   };
-  const Plan best = planned("bias"), determinant = planned("o1");
+  const Plan best = best_by("bias"), determinant = best_by("o1");
   EXPECT_FALSE(best.certificate.proved);
   const auto value = [&](const Plan& plan) {
-    EvaluateOptions options;
-    options.plan.criterion = "bias";
-    return evaluate_problem(p, planned_poses(p, plan), options, Monitor{}).plan.criterion_value;
+    DesignEdits bias;
+    bias.edit("criterion", "bias");
+    return evaluate_problem(bias.of(p), planned_poses(p, plan), {}, Monitor{}).plan.criterion_value;
   };
   const double here = value(best), there = value(determinant);
   EXPECT_NEAR(here / best.criterion_value, 1, 1e-6);
@@ -332,7 +333,7 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
 TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {
   // Without the effect poses crowd where the parameters show best; with it the second of two near ones tells little.
   const std::string design = "{variant: short, poses: 9, candidates: 300, restarts: 3, criterion: o1}";
-  PlanOptions options;
+  DesignEdits options;
   const auto nearest = [&](const Plan& plan) {
     double sum = 0;
     for (const PlannedPose& a : plan.poses) {
@@ -345,16 +346,16 @@ TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {
     }
     return sum / double(plan.poses.size());
   };
-  const Plan without = plan_problem(problem("", design), options, Monitor{});
-  const Plan with = plan_problem(problem("{size: 0.3 mm}", design), options, Monitor{});
+  const Plan without = planned(problem("", design), options);
+  const Plan with = planned(problem("{size: 0.3 mm}", design), options);
   EXPECT_GT(nearest(with), 1.5 * nearest(without));
 }
 
 TEST_F(UnmodelledEffects, FormFollowsTheNumberOfPosesUnlessACriterionIsNamed) {
   const auto criterion_of = [&](const std::string& design, const std::string& named) {
-    PlanOptions options;
-    options.criterion = named;
-    const Plan plan = plan_problem(problem("auto", design), options, Monitor{});
+    DesignEdits options;
+    options.edit("criterion", named);
+    const Plan plan = planned(problem("auto", design), options);
     const std::vector<std::string>& notes = plan.statistics.notes;
     return plan.criterion + (notes.empty() || !notes.back().starts_with("Criterion") ? "" : " " + notes.back());
   };
@@ -411,10 +412,9 @@ TEST(UnmodelledEffect, OfAllLengthsThatTheParametersTakeUpIsRefused) {
   // Base and tool of an arm whose pose is read follow what is the same everywhere.
   Problem problem = example("real_data/rosi_positioner/problem.yaml");
   problem.variants.front().unmodelled = UnmodelledSpec{1e-3, 100.0, 0.0, 7};
-  EvaluateOptions options;
-  options.plan.candidates = 200;
+  problem.design.candidates.value = 200;
   try {
-    evaluate_problem(problem, given_poses(problem, list_of(problem, 10)), options, Monitor{});
+    evaluate_problem(problem, given_poses(problem, list_of(problem, 10)), {}, Monitor{});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("problem.yaml:7: an unmodelled effect with a length of"));
@@ -424,9 +424,9 @@ TEST(UnmodelledEffect, OfAllLengthsThatTheParametersTakeUpIsRefused) {
 TEST(UnmodelledEffect, IsRefusedWhereNoTipIsSeen) {
   Problem problem = example("kr270/compensator_geometry.yaml");
   problem.variants.front().unmodelled = UnmodelledSpec{};
-  PlanOptions options;
-  options.candidates = 100;
-  EXPECT_THROW(plan_problem(problem, options, Monitor{}), CannotDo);
+  DesignEdits options;
+  options.edit("candidates", 100);
+  EXPECT_THROW(planned(problem, options), CannotDo);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/workspace/workspace.hpp"
+#include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
@@ -56,10 +57,10 @@ class WorkspaceProofs : public testing::Test {
         const double q1 = -2 + 4.0 * i / steps, q2 = -2 + 4.0 * j / steps;
         if (allowed(q1, q2)) grid.push_back({q1, q2});
       }
-    PlanOptions options;
+    DesignEdits options;
     options.candidates_from = given_poses(problem, grid);
-    options.repeats = Repeats{Repeats::any_number};
-    const Plan on_grid = plan_problem(problem, options, Monitor{});
+    options.edit("repeats", "allow");
+    const Plan on_grid = planned(problem, options);
     EXPECT_LE(on_grid.certificate.bound, plan.certificate.workspace->bound + 1e-9);
     EXPECT_GT(on_grid.certificate.bound, plan.certificate.workspace->bound - 0.02 * 3);
   }
@@ -84,10 +85,10 @@ TEST_F(WorkspaceProofs, TheSentenceNamesTheMarginWithoutWhichTheBoundDoesNotHold
   expect_best_of_a_grid_below(problem, plan, 98,
                               [&](double q1, double q2) { return std::abs(q1) <= inner && std::abs(q2) <= inner; });
   // Poses that turn the second joint to its limits have more.
-  PlanOptions options;
+  DesignEdits options;
   options.candidates_from = given_poses(problem, {{-2, -2}, {-2, 2}, {2, -2}, {2, 2}, {0, 1.5}, {0, -1.5}});
-  options.repeats = Repeats{Repeats::any_number};
-  EXPECT_GT(plan_problem(problem, options, Monitor{}).log_det, plan.certificate.workspace->bound);
+  options.edit("repeats", "allow");
+  EXPECT_GT(planned(problem, options).log_det, plan.certificate.workspace->bound);
 }
 
 TEST_F(WorkspaceProofs, NoGridOfCandidatesHasAPlanBeyondTheBoundWhereTheJointsReadWorseThanTheInstrument) {
@@ -392,9 +393,9 @@ TEST_F(WorkspaceProofs, NoTargetOfATrackerIsFartherFromTheMeanDistanceThanStated
 
 TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
   const auto why = [&](const Problem& problem) {
-    PlanOptions options;
-    options.candidates = 200;
-    const Plan plan = plan_problem(problem, options, Monitor{});
+    DesignEdits options;
+    options.edit("candidates", 200);
+    const Plan plan = planned(problem, options);
     EXPECT_FALSE(plan.certificate.workspace->proved);
     EXPECT_THAT(plan_summary(plan), HasSubstr("no proof: "));
     return plan.certificate.workspace->why_not;
@@ -405,9 +406,9 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
 }
 
 TEST_F(WorkspaceProofs, ASearchThatDidNotEndGivesNoFigureButWhatIsNotExceeded) {
-  PlanOptions options;
-  options.candidates = 1000;
-  Plan plan = plan_problem(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}"), options, Monitor{});
+  DesignEdits options;
+  options.edit("candidates", 1000);
+  Plan plan = planned(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}"), options);
   Certificate::Workspace& whole = *plan.certificate.workspace;
   ASSERT_TRUE(whole.settled) << whole.method;
   EXPECT_THAT(plan_summary(plan), HasSubstr("Over the whole workspace: "));
@@ -493,9 +494,9 @@ TEST_F(WorkspaceProofs, OfPosesThatSomethingForbidsIsLooseAndSaysSo) {
 TEST_F(WorkspaceProofs, PlanIsTheSameOnAnyNumberOfThreads) {
   const Problem problem = arm();
   const auto text = [&](int threads) {
-    PlanOptions options;
+    DesignEdits options;
     options.threads = threads;
-    Plan plan = plan_problem(problem, options, Monitor{});
+    Plan plan = planned(problem, options);
     plan.statistics.seconds = 0;
     for (PlanStage& stage : plan.statistics.stages) stage.seconds = 0;
     return plan_json(plan);

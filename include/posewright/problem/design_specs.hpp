@@ -66,10 +66,8 @@ struct RequirementSpec {
 struct RobustSpec {
   int draws = 200;
   RobustAim aim;
-  int line = 0;  ///< 0: an option's
+  int line = 0;
 };
-/// The nominal robot alone, whatever else is said.
-inline constexpr RobustSpec no_drawn_robots{0, {}, 0};
 // Of one robot nothing can be said to be worst; of more, one number for each and each candidate would fill the memory.
 inline constexpr int least_robust_draws = 2, most_robust_draws = 10'000;
 
@@ -87,7 +85,7 @@ struct DesignSpec {
   bool smallest = false;  ///< poses: auto
   RequirementSpec require;
   Located<int> candidates{default_candidates, 0};
-  std::optional<std::filesystem::path> candidates_from;  ///< a user's list in place of drawn ones
+  std::optional<Located<std::filesystem::path>> candidates_from;  ///< a user's list in place of drawn ones
   Located<int> restarts{10, 0};
   Repeats repeats;
   /// Two poses differ in at least one coordinate by this much: rad and m; 0: no distance is asked of that kind.

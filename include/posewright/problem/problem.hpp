@@ -95,7 +95,13 @@ struct Problem {
   /// Calibrated parameters; put here by apply_parameters (model/apply_parameters.hpp).
   std::optional<CalibratedParameters> parameters;
 
-  SourcePlace at(int line) const { return {file.string(), line}; }
+  /// Names of the options that changed the problem, as set() (problem/design_keys.hpp) has them.
+  std::vector<std::string> edits;
+
+  /// Place of a value by its line; -1, -2, …: of the first, second, … edit.
+  SourcePlace at(int line) const {
+    return line < 0 ? SourcePlace{edits[std::size_t(-line) - 1]} : SourcePlace{file.string(), line};
+  }
 };
 
 }  // namespace posewright

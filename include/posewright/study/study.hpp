@@ -10,22 +10,22 @@
 #include "posewright/planning/configuration_space.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/columns.hpp"
-#include "posewright/study/plan_options.hpp"
+#include "posewright/study/run_options.hpp"
 #include "posewright/study/variant.hpp"
 
 namespace posewright {
 
-/// Command line over the problem file's design block.
+/// The problem's design and the options of a run.
 struct Settings {
   std::string criterion, method;
-  bool criterion_stated = false;  ///< by the problem or an option; else see choose_form()
+  bool criterion_stated = false;  ///< by the problem; else see choose_form()
   int poses = 0;                  ///< 0: the smallest number that suffices
   int candidates = 0;
   bool prior = false, reserve = false;
   Repeats repeats;
   Scaling scaling = Scaling::tolerance;
   std::vector<DesignSpec::Weighted> variants;  ///< at least one
-  Located<std::string> truth;                  ///< the variant that may be the case; empty: none; line 0: an option's
+  Located<std::string> truth;                  ///< the variant that may be the case; empty: none
   std::optional<PoseList> measured;
   std::optional<PoseList> candidates_from;  ///< none: candidates are drawn
   std::optional<Configurations> drawn{};    ///< candidates that were drawn before; none: they are drawn now
@@ -33,23 +33,24 @@ struct Settings {
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
-  bool candidates_alone = false;             ///< as PlanOptions
+  bool candidates_alone = false;             ///< as RunOptions
   std::shared_ptr<const Cell> same_robot{};  ///< the same
   ProofLimits proof{};
   std::optional<RobustSpec> robust{};  ///< only what plans or judges a whole list asks for drawn robots
 };
 /// Throws InputError for contradictions, with their line.
-Settings settings_of(const Problem& problem, const PlanOptions& options);
+Settings settings_of(const Problem& problem, const RunOptions& run);
+/// Throws InputError where the design has no number of poses, or auto without all that it needs.
+void require_number_of_poses(const Problem& problem);
 
-/// Takes up the poses that are fixed by the options or the problem, for what plans a whole list; what judges a given
+/// Takes up the poses that are fixed by the run or the problem, for what plans a whole list; what judges a given
 /// one does without. Of a list that marks poses as fixed, those. Throws InputError with file and line if none is left
 /// to be chosen beside them, and for `reserve`: what is fixed may be lost, too.
 /// @return notes on the reading of the list
-std::vector<std::string> take_fixed(const Problem& problem, const PlanOptions& options, Settings& settings);
+std::vector<std::string> take_fixed(const Problem& problem, const RunOptions& run, Settings& settings);
 
-/// Takes up whether robots are to be drawn, by the options or the problem. Throws InputError for what that does not go
-/// together with.
-void take_robust(const Problem& problem, const PlanOptions& options, Settings& settings);
+/// Takes up whether robots are to be drawn. Throws InputError for what that does not go together with.
+void take_robust(const Problem& problem, Settings& settings);
 
 struct Discrepancy;
 struct Study;

@@ -8,7 +8,7 @@
 #include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/study/effects.hpp"
-#include "posewright/study/plan_options.hpp"
+#include "posewright/study/run_options.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {
@@ -21,9 +21,7 @@ struct CompareOptions {
     PoseList poses;  ///< read with pose_coordinates()
   };
   std::vector<List> plans;  ///< empty: the best plan for each variant is searched
-  /// method (empty: exchange), poses, candidates, restarts, seed, threads; poses, method and restarts for plans that
-  /// are searched.
-  PlanOptions plan;
+  RunOptions run;
 };
 
 struct ComparedVariant {

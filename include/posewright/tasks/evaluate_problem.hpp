@@ -37,7 +37,7 @@ struct PoseListEvaluation {
 };
 
 struct EvaluateOptions {
-  PlanOptions plan;  ///< variant, criterion, candidates, restarts, …
+  RunOptions run;
   std::optional<int> drop, add;
 };
 

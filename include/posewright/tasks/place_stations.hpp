@@ -26,7 +26,7 @@ struct StationRank {
 };
 
 struct StationOptions {
-  PlanOptions plan;
+  RunOptions run;
   std::optional<int> choose;  ///< number of stations; else the problem's
   int full = 3;               ///< how many of the best are planned in full
   bool every_set = false;     ///< every set of so many stations is tried, however many there are

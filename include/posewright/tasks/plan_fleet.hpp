@@ -23,7 +23,7 @@ struct FleetPlan {
 
 /// Plans every problem by itself, each in one process with all its threads (run_tasks).
 /// @param render  converts a plan for its caller: files
-std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const PlanOptions& options,
+std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const RunOptions& run,
                                   const std::function<std::string(const Plan&, std::size_t index)>& render,
                                   const Monitor& monitor);
 

@@ -33,6 +33,12 @@ Shown shown_unit(const std::string& unit) {
   return {1, " " + unit};
 }
 
+/// Without the sign of a number that is zero to the digits shown.
+std::string unsigned_zero(std::string number) {
+  if (number.starts_with('-') && number.find_first_not_of("-0.") == std::string::npos) number.erase(0, 1);
+  return number;
+}
+
 }  // namespace
 
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
@@ -101,7 +107,7 @@ std::string shown_to(double value, double resolution, const std::string& unit) {
   const double step = std::abs(resolution * shown.factor);
   if (!(step > 0) || !std::isfinite(step)) return shown_value(value, unit);
   const int decimals = std::clamp(1 - int(std::floor(std::log10(step))), 0, 12);
-  return fmt::format("{:.{}f}{}", value * shown.factor, decimals, shown.suffix);
+  return unsigned_zero(fmt::format("{:.{}f}", value * shown.factor, decimals)) + shown.suffix;
 }
 
 }  // namespace posewright

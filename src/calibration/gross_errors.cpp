@@ -37,6 +37,42 @@ std::vector<double> sizes_of(const IdentificationModel& model, const std::vector
   return sizes;
 }
 
+/// Whitened readings, one pose below the other, by every tolerance of the robot and the instrument.
+Eigen::MatrixXd tolerance_rows(const IdentificationModel& model, const VariantColumns& columns,
+                               const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+  VariantColumns all;
+  for (int i = 0; i < int(model.parameters().size()); ++i) {
+    const auto at = std::ranges::find(columns.selected, i);
+    const Parameter& p = at == columns.selected.end() ? model.parameters()[std::size_t(i)]
+                                                      : columns.parameters[std::size_t(at - columns.selected.begin())];
+    if (!counts(p, Prior::manufactured)) continue;
+    all.selected.push_back(i);
+    all.parameters.push_back(p);
+  }
+  return blocks_of(model, all, poses, correction).all() * tolerances_of(all).asDiagonal();
+}
+
+/// What of them is left where base, tool and targets are fitted: those take up most of a lens's centre, a first joint's
+/// zero, a last joint's frame.
+Eigen::MatrixXd beside_placing(const IdentificationModel& model, const VariantColumns& columns,
+                               const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
+                               const Eigen::MatrixXd& rows) {
+  const VariantColumns place = placing_columns(columns);
+  if (place.selected.empty() || Eigen::Index(place.selected.size()) >= rows.rows()) return rows;
+  return Beside(blocks_of(model, place, poses, correction).all()).left(rows);
+}
+
+/// Root mean square of the readings of each pose, with the noise.
+std::vector<double> sizes_of_rows(const Eigen::MatrixXd& rows, const std::vector<MeasuredPose>& poses) {
+  const Eigen::Index each = rows.rows() / Eigen::Index(poses.size());
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double count = std::max(1.0, double(poses[k].y.array().isFinite().count()));
+    sizes.push_back(std::sqrt(1.0 + rows.middleRows(Eigen::Index(k) * each, each).squaredNorm() / count));
+  }
+  return sizes;
+}
+
 /// Once the poses are sorted into kept and left out.
 class Trimming {
  public:
@@ -109,28 +145,14 @@ class Trimming {
 
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
-  VariantColumns all;
-  for (int i = 0; i < int(model.parameters().size()); ++i) {
-    const auto at = std::ranges::find(columns.selected, i);
-    const Parameter& p = at == columns.selected.end() ? model.parameters()[std::size_t(i)]
-                                                      : columns.parameters[std::size_t(at - columns.selected.begin())];
-    if (!counts(p, Prior::manufactured)) continue;
-    all.selected.push_back(i);
-    all.parameters.push_back(p);
-  }
-  const BlockArray blocks = blocks_of(model, all, poses, correction);
-  std::vector<double> sizes;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const double count = std::max(1.0, double(poses[k].y.array().isFinite().count()));
-    sizes.push_back(std::sqrt(1.0 + (blocks.block(k) * tolerances_of(all).asDiagonal()).squaredNorm() / count));
-  }
-  return sizes;
+  return sizes_of_rows(tolerance_rows(model, columns, poses, correction), poses);
 }
 
 ResidualSize residual_size(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
   const std::vector<double> sizes = sizes_of(model, correction, poses);
-  const std::vector<double> explained = explained_sizes(model, columns, poses, correction);
+  const std::vector<double> explained = sizes_of_rows(
+      beside_placing(model, columns, poses, correction, tolerance_rows(model, columns, poses, correction)), poses);
   double squares = 0, explained_squares = 0, count = 0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const auto read = double(poses[k].y.array().isFinite().count());

@@ -7,16 +7,15 @@
 #include <numbers>
 
 #include "calibration_accuracy.hpp"
+#include "calibration_columns.hpp"
 #include "calibration_data.hpp"
 #include "calibration_profiles.hpp"
+#include "calibration_refusals.hpp"
 #include "calibration_verdict.hpp"
 #include "effects_left_out.hpp"
-#include "given_parameters.hpp"
-#include "posewright/blocks/identifiability.hpp"
-#include "posewright/calibration/conventions.hpp"
+#include "placed_campaigns.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
-#include "posewright/calibration/gross_errors.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/model/campaigns.hpp"
@@ -25,7 +24,6 @@
 #include "posewright/outputs/table.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/random.hpp"
 #include "remounted_tool.hpp"
 
 namespace posewright {
@@ -33,9 +31,6 @@ namespace {
 
 // So often an estimate may be replaced by a better one that its profiles passed.
 constexpr int most_rounds = 4;
-constexpr int random_configurations = 300;
-constexpr std::size_t most_named = 8;
-constexpr std::uint64_t everywhere_stream = 0xe3e7;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
 constexpr double prior_share = 1 / std::numbers::sqrt2;
 
@@ -70,8 +65,8 @@ class CalibrationRun {
     leave_at_nominal_values(all, fit_options.start);
     fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
     place_again(fit_options);
-    refuse_gross_poses(fit_options);
-    refuse_conventions();
+    refuse_gross_poses(*model_, columns_, fitted_, placed_, fit_options, result_.notes);
+    refuse_conventions(problem_, *model_, columns_, fitted_, placed_, orientation_);
     if (options_.estimate_alone) {
       fit_canonical(fit_options);
       return estimate_alone(fit_options);
@@ -191,39 +186,10 @@ class CalibrationRun {
   /// First fit of base and tool alone. Loads then bend the robot as it stands there; how little
   /// that moves it is found by place_again().
   void place(const VariantColumns& all, FitOptions& fit_options) {
-    placed_ = placed(*model_, all, of_campaign(0), fit_options);
-    for (std::size_t c = 1; c < campaigns_.size(); ++c) place_campaign(c, all, fit_options);
+    placed_ = placed_campaigns(*model_, all, fitted_, campaigns_, fit_options);
     take_canonical_angles(*model_, all, placed_);
     fit_options.start = placed_;
     model_->take_loads_at(placed_);
-  }
-
-  std::vector<MeasuredPose> of_campaign(std::size_t campaign) const {
-    if (campaigns_.empty()) return fitted_;
-    std::vector<MeasuredPose> poses;
-    for (const MeasuredPose& pose : fitted_)
-      if (std::size_t(pose.q.back()) == campaign) poses.push_back(pose);
-    return poses;
-  }
-
-  /// What moved before another campaign, with everything else where the first one says that it stands.
-  void place_campaign(std::size_t campaign, const VariantColumns& all, const FitOptions& fit_options) {
-    std::vector<int> kept;
-    const std::vector<int> moved = campaign_parameters(*model_, campaigns_[campaign]);
-    for (std::size_t j = 0; j < all.selected.size(); ++j)
-      if (std::find(moved.begin(), moved.end(), all.selected[j]) != moved.end()) kept.push_back(int(j));
-    if (kept.empty()) return;
-    start_at_the_first(campaigns_[campaign]);
-    const std::vector<double> found =
-        placed_moved(*model_, subset(all, kept), of_campaign(campaign), fit_options, placed_);
-    for (const int i : moved) placed_[std::size_t(i)] = found[std::size_t(i)];
-  }
-
-  /// Nobody knows where an instrument stands now; a tool is somewhere near where it was.
-  void start_at_the_first(const std::string& campaign) {
-    for (const auto& [own, first] : campaign_pairs(*model_, campaign))
-      if (!model_->parameters()[std::size_t(own)].name.starts_with("base@"))
-        placed_[std::size_t(own)] = placed_[std::size_t(first)];
   }
 
   /// Reference of the estimate: columns of base, tool and targets alone.
@@ -244,62 +210,18 @@ class CalibrationRun {
     }
   }
 
-  /// A fit of readings that are none of the robot's goes astray; robust weights leave them aside.
-  void refuse_gross_poses(FitOptions options) const {
-    if (options_.weighting == Weighting::robust) return;
-    options.start = placed_;
-    const std::vector<GrossPose> gross = gross_poses(*model_, columns_, fitted_, options);
-    if (gross.empty()) return;
-    std::string list;
-    for (std::size_t k = 0; k < std::min(most_named, gross.size()); ++k)
-      list += fmt::format("{}{} ({:.3g} times the stated noise)", k == 0 ? "" : ", ", gross[k].id, gross[k].size);
-    if (gross.size() > most_named) list += fmt::format(" and {} more", gross.size() - most_named);
-    std::string noted;
-    for (const std::string& note : result_.notes) noted += "; " + note;
-    throw CannotDo(
-        fmt::format("gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: "
-                    "check for a lost target or a wrong row. Leave it out, or use --weights robust{}",
-                    gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
-  }
-
-  /// Parameters would bend the robot to a convention that the file does not keep.
-  void refuse_conventions() const {
-    if (!residual_size(*model_, columns_, fitted_, placed_).beyond_robots()) return;
-    const ConventionSearch search = find_conventions(problem_, *model_, fitted_, orientation_);
-    if (search.found.empty()) return;
-    std::string list;
-    for (const Convention& convention : search.found)
-      list += fmt::format("{}{} if {}: {}", list.empty() ? "" : "; or ", shown_value(convention.left, "m"),
-                          convention.condition, convention.remedy);
-    throw CannotDo(fmt::format("base and tool alone leave {}, too much for errors of a robot, and {}",
-                               shown_value(search.left, "m"), list));
-  }
-
   void report(double done) const { monitor_.report({"calibration", done, 2, {}, {}, {}}); }
 
-  /// Columns that these poses determine, judged where things stand: at the origin of the flange a target would say
-  /// nothing of the wrist.
   void choose_columns(const VariantColumns& all) {
     result_.automatic = all.automatic;
     if (all.automatic)
       for (int i = 0; i < int(model_->parameters().size()); ++i)
         if (std::find(all.selected.begin(), all.selected.end(), i) == all.selected.end())
           result_.not_in_auto.push_back(model_->parameters()[std::size_t(i)].name);
-    std::vector<Dependency> dependent;
-    if (result_.prior == Prior::none) {
-      columns_ =
-          determined(*model_, all, fitted_, placed_, Prior::none, &dependent, all.automatic ? 0.0 : exact_dependency);
-      leave_at_nominal(dependent, all);
-    } else {
-      VariantColumns wanted = all;
-      if (all.automatic) {
-        // What tells nothing new wherever the robot stands; what these poses alone do not tell, a tolerance does.
-        wanted = determined(*model_, all, everywhere(), placed_, Prior::none, &dependent);
-        leave_at_nominal(dependent, all);
-      }
-      columns_ = determined(*model_, wanted, fitted_, placed_, result_.prior, &dependent, exact_dependency);
-      leave_at_nominal(dependent, wanted);
-    }
+    ChosenColumns chosen = chosen_columns(*model_, all, fitted_, placed_, result_.prior);
+    columns_ = std::move(chosen.columns);
+    left_out_ = std::move(chosen.left_out);
+    given_ = std::move(chosen.given);
     note(given_.note(left_out_));
     if (columns_.selected.empty()) throw CannotDo("the data determine no parameter of variant '" + spec_.name + "'");
   }
@@ -311,18 +233,6 @@ class CalibrationRun {
         start[std::size_t(i)] = 0.0;
   }
 
-  void leave_at_nominal(const std::vector<Dependency>& dependent, const VariantColumns& among) {
-    for (const Dependency& d : dependent) {
-      CalibratedParameter left;
-      left.label = among.parameters[std::size_t(d.dropped)];
-      left.estimated = false;
-      left.value = left.lower = left.upper = left.label.nominal;
-      left.why_not = describe(d, among.parameters);
-      left_out_.push_back(std::move(left));
-    }
-    given_.take(dependent, among);
-  }
-
   void note(std::string text) {
     if (!text.empty()) result_.notes.push_back(std::move(text));
   }
@@ -332,21 +242,6 @@ class CalibrationRun {
     const auto effect = std::ranges::find_if(result_.effects, &ScoreTest::dominates);
     if (effect != result_.effects.end())
       note(given_.take(*effect, columns_.parameters, result_.fit.covariance, stretch()));
-  }
-
-  /// The poses and random configurations within the limits.
-  std::vector<MeasuredPose> everywhere() const {
-    std::vector<MeasuredPose> poses = fitted_;
-    Random random(0, everywhere_stream);
-    for (int i = 0; i < random_configurations; ++i) {
-      MeasuredPose pose;
-      for (const Coordinate& c : model_->coordinates())
-        pose.q.push_back(c.discrete() ? c.values[std::size_t(random.uniform() * double(c.values.size()))]
-                                      : random.uniform(c.lower, c.upper));
-      // Without noise and limits of a cell: all that is asked is what tells one column from the others.
-      if (model_->measurable(pose.q) && model_->predict(pose.q, placed_, pose.y)) poses.push_back(std::move(pose));
-    }
-    return poses;
   }
 
   /// A smooth effect that the residuals show, and for a variant that lacks one the fit once more, counting it.

@@ -217,6 +217,33 @@ std::string refusal_of(const std::string& problem, const std::string& data) {
   }
 }
 
+/// What `calibrate` says of the readings of a camera whose problem estimates the hand-eye transform alone.
+std::string refusal_of_pictures(VirtualFile& data) {
+  data.write();
+  CalibrateOptions options = data.options();
+  options.variant = "hand_eye";
+  try {
+    calibrate_problem(data.problem, options, Monitor{});
+    return "";
+  } catch (const CannotDo& error) {
+    return error.what();
+  }
+}
+
+TEST(Conventions, OfPicturesAreNamedByCalibrate) {
+  const int width =
+      std::get<CameraMeasurement>(example("instruments/camera_on_hand.yaml").measurement.instrument).width;
+  VirtualFile right("instruments/camera_on_hand.yaml", 15);
+  EXPECT_EQ(refusal_of_pictures(right), "");
+  VirtualFile flipped("instruments/camera_on_hand.yaml", 15);
+  for (MeasuredPose& pose : flipped.poses)
+    for (Eigen::Index i = 0; i < pose.y.size(); i += 2) pose.y[i] = width - pose.y[i];
+  EXPECT_THAT(refusal_of_pictures(flipped), HasSubstr("the picture is flipped: write width - u for u"));
+  VirtualFile late("instruments/camera_on_hand.yaml", 15);
+  for (std::size_t i = 0; i + 1 < late.poses.size(); ++i) late.poses[i].y = late.poses[i + 1].y;
+  EXPECT_THAT(refusal_of_pictures(late), HasSubstr("readings belong 1 row later"));
+}
+
 TEST(Conventions, OfTheSharedCasesAreNamedAndOfRightOnesNone) {
   if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
   EXPECT_EQ(refusal_of("conventions/problem.yaml", "conventions/ok.csv"), "");

@@ -12,9 +12,12 @@ namespace posewright {
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
 
-/// Root mean square of whitened residuals over all readings, and of their part explained by noise and all tolerances.
+/// Root mean square of whitened residuals over all readings, and what noise and all tolerances explain of it where
+/// base, tool and targets are fitted.
 struct ResidualSize {
   double found = 0.0, explained = 0.0;
+  /// Three times: a convention that the file does not keep may be the cause.
+  bool unusual() const { return found > 3.0 * explained; }
   /// Beyond ten times: no error of a robot gives them.
   bool beyond_robots() const { return found > 10.0 * explained; }
 };

@@ -4,16 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/gross_errors.hpp"
+#include "posewright/calibration/placement.hpp"
 #include "posewright/outputs/table.hpp"
+#include "posewright/support/random.hpp"
 
 namespace posewright {
 namespace {
 
 // Share of a step of one σ that the linear model misses: beyond it σ means nothing.
 constexpr double hopeless_curvature = 10.0;
+// Predictions whose σ is so many times what base and tool alone leave are worse than these.
+constexpr double hopeless_predictions = 3.0;
+constexpr int predicted_configurations = 100;
+constexpr std::uint64_t predicted_stream = 0x9e0d;
 
 std::string remedy_of(const Calibration& c) {
   return std::string("measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
@@ -71,6 +78,55 @@ void refuse_open_frames(const CalibratedPoses& poses, Calibration& c) {
                     near_dependence(c), remedy_of(c)));
 }
 
+/// Configurations within the range of those that were measured.
+std::vector<MeasuredPose> among(const CalibratedPoses& poses) {
+  Random random(0, predicted_stream);
+  std::vector<MeasuredPose> drawn;
+  const auto any = [&] { return std::size_t(random.uniform() * double(poses.fitted.size())); };
+  for (int i = 0; i < predicted_configurations; ++i) {
+    MeasuredPose pose = poses.fitted[any()];
+    for (std::size_t k = 0; k < pose.q.size(); ++k) {
+      const double other = poses.fitted[any()].q[k];
+      pose.q[k] = poses.model.coordinates()[k].discrete()
+                      ? other
+                      : random.uniform(std::min(pose.q[k], other), std::max(pose.q[k], other));
+    }
+    if (poses.model.measurable(pose.q) && poses.model.predict(pose.q, poses.placed, pose.y))
+      drawn.push_back(std::move(pose));
+  }
+  return drawn;
+}
+
+/// Mean square of what base and tool alone predict wrongly at poses, per unit of noise; infinite if they are not
+/// determined.
+double placing_variance(const CalibratedPoses& poses, const std::vector<MeasuredPose>& at) {
+  const VariantColumns place = placing_columns(poses.columns);
+  if (place.selected.empty()) return 0.0;
+  const Eigen::MatrixXd read = blocks_of(poses.model, place, poses.fitted, poses.placed).all();
+  const Eigen::MatrixXd there = blocks_of(poses.model, place, at, poses.placed).all();
+  const Eigen::VectorXd scale = read.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(read * scale.asDiagonal());
+  if (qr.rank() < read.cols()) return std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd part = (there * scale.asDiagonal() * qr.colsPermutation()).transpose();
+  const Eigen::MatrixXd R = qr.matrixR().topRows(read.cols());
+  return R.transpose().triangularView<Eigen::Lower>().solve(part).squaredNorm() / double(there.rows());
+}
+
+/// Too few poses for so many parameters: their own σ say so.
+void refuse_wide_predictions(const CalibratedPoses& poses, Calibration& c) {
+  const std::vector<MeasuredPose> at = among(poses);
+  if (at.empty()) return;
+  const Eigen::MatrixXd J = blocks_of(poses.model, poses.columns, at, poses.placed).all();
+  const double sigma = std::sqrt((J * c.fit.covariance).cwiseProduct(J).sum() / double(J.rows()));
+  const double left = residual_size(poses.model, poses.columns, poses.fitted, poses.placed).found *
+                      std::sqrt(1 + placing_variance(poses, at));
+  if (!(sigma > hopeless_predictions * left)) return;
+  c.refusals.push_back(
+      fmt::format("between the measured poses the estimate errs by {:.3g} times the stated noise (1σ), base and tool "
+                  "alone by {:.3g} times{}; {}",
+                  sigma, left, near_dependence(c), remedy_of(c)));
+}
+
 std::string predicted(const Calibration& c) {
   return fmt::format("errors at new poses: {:.3g} times the stated noise with the estimate, {:.3g} times uncalibrated",
                      c.left_out.estimated, c.left_out.placed);
@@ -85,6 +141,7 @@ void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
     refuse_residuals(poses, c);
     refuse_few_poses(c);
     refuse_open_frames(poses, c);
+    refuse_wide_predictions(poses, c);
     if (c.left_out.worse() && std::isfinite(c.left_out.estimated))
       c.refusals.push_back(predicted(c) + ", a significant gain" + near_dependence(c) + "; " + remedy_of(c));
   }

@@ -19,6 +19,8 @@ namespace {
 constexpr double hopeless_curvature = 10.0;
 // Predictions whose σ is so many times what base and tool alone leave are worse than these.
 constexpr double hopeless_predictions = 3.0;
+// Less is no reason to refuse, however significant.
+constexpr double worth_a_refusal = 1.02;
 constexpr int predicted_configurations = 100;
 constexpr std::uint64_t predicted_stream = 0x9e0d;
 
@@ -142,7 +144,8 @@ void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
     refuse_few_poses(c);
     refuse_open_frames(poses, c);
     refuse_wide_predictions(poses, c);
-    if (c.left_out.worse() && std::isfinite(c.left_out.estimated))
+    if (c.left_out.worse() && std::isfinite(c.left_out.estimated) &&
+        c.left_out.estimated > worth_a_refusal * c.left_out.placed)
       c.refusals.push_back(predicted(c) + ", a significant gain" + near_dependence(c) + "; " + remedy_of(c));
   }
   c.verdict = !c.refusals.empty()                            ? Verdict::do_not_use

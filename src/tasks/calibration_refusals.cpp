@@ -11,7 +11,7 @@
 namespace posewright {
 namespace {
 
-constexpr std::size_t most_named = 8;
+constexpr std::size_t most_listed = 8;
 
 }  // namespace
 
@@ -23,9 +23,9 @@ void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& 
   const std::vector<GrossPose> gross = gross_poses(model, columns, poses, options);
   if (gross.empty()) return;
   std::string list;
-  for (std::size_t k = 0; k < std::min(most_named, gross.size()); ++k)
+  for (std::size_t k = 0; k < std::min(most_listed, gross.size()); ++k)
     list += fmt::format("{}{} ({:.3g} times the stated noise)", k == 0 ? "" : ", ", gross[k].id, gross[k].size);
-  if (gross.size() > most_named) list += fmt::format(" and {} more", gross.size() - most_named);
+  if (gross.size() > most_listed) list += fmt::format(" and {} more", gross.size() - most_listed);
   std::string noted;
   for (const std::string& note : notes) noted += "; " + note;
   throw CannotDo(

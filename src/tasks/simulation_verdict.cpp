@@ -20,9 +20,9 @@ constexpr double refused_by_chance = 0.01;
 constexpr std::size_t names_shown = 4;
 
 /// Judges one simulation.
-class Verdict {
+class SimulationVerdict {
  public:
-  Verdict(const Simulation& simulation, const SimulateOptions& options) : s_(simulation), options_(options) {
+  SimulationVerdict(const Simulation& simulation, const SimulateOptions& options) : s_(simulation), options_(options) {
     std::vector<const SimulatedParameter*> judged;
     for (const SimulatedParameter& p : s_.parameters)
       if (p.errors) judged.push_back(&p);
@@ -237,7 +237,7 @@ std::vector<bool> refused_together(const std::vector<double>& chances, double le
 }
 
 void judge_simulation(Simulation& simulation, const SimulateOptions& options) {
-  Verdict verdict(simulation, options);
+  SimulationVerdict verdict(simulation, options);
   simulation.confirmed = verdict.confirmed();
   simulation.verdict = verdict.words();
 }

@@ -107,7 +107,7 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
        "unrecognised option '--pose' (did you mean '--poses'?); see posewright help plan"},
       {{"plan", telescope, "--criteron", "o1"}, 2, "(did you mean '--criterion'?); see posewright help plan"},
       {{"plan", telescope, "--poses"}, 2, "--poses"},
-      {{"plan", telescope, "--poses", "many"}, 2, "--poses many; a whole number from 1"},
+      {{"plan", telescope, "--poses", "many"}, 2, "--poses is 'many'; a whole number from 1"},
       {{"plan", telescope, "--poses", "0"}, 2, "a whole number from 1"},
       {{"plan", telescope, "--poses", "4.5"}, 2, "a whole number from 1"},
       {{"plan", telescope, "--seed", "-1"}, 2, "--seed -1 is not a seed"},

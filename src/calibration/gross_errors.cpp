@@ -73,6 +73,17 @@ std::vector<double> sizes_of_rows(const Eigen::MatrixXd& rows, const std::vector
   return sizes;
 }
 
+/// Root mean square over all readings, of that of each pose.
+double rms_of_all(const std::vector<double>& sizes, const std::vector<MeasuredPose>& poses) {
+  double squares = 0, count = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const auto read = double(poses[k].y.array().isFinite().count());
+    squares += read * sizes[k] * sizes[k];
+    count += read;
+  }
+  return std::sqrt(squares / count);
+}
+
 /// Once the poses are sorted into kept and left out.
 class Trimming {
  public:
@@ -148,19 +159,15 @@ std::vector<double> explained_sizes(const IdentificationModel& model, const Vari
   return sizes_of_rows(tolerance_rows(model, columns, poses, correction), poses);
 }
 
-ResidualSize residual_size(const IdentificationModel& model, const VariantColumns& columns,
-                           const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
-  const std::vector<double> sizes = sizes_of(model, correction, poses);
-  const std::vector<double> explained = sizes_of_rows(
-      beside_placing(model, columns, poses, correction, tolerance_rows(model, columns, poses, correction)), poses);
-  double squares = 0, explained_squares = 0, count = 0;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const auto read = double(poses[k].y.array().isFinite().count());
-    squares += read * sizes[k] * sizes[k];
-    explained_squares += read * explained[k] * explained[k];
-    count += read;
-  }
-  return {std::sqrt(squares / count), std::sqrt(explained_squares / count)};
+double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
+                    const std::vector<double>& correction) {
+  return rms_of_all(sizes_of(model, correction, poses), poses);
+}
+
+double explained_rms(const IdentificationModel& model, const VariantColumns& columns,
+                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+  const Eigen::MatrixXd rows = tolerance_rows(model, columns, poses, correction);
+  return rms_of_all(sizes_of_rows(beside_placing(model, columns, poses, correction, rows), poses), poses);
 }
 
 std::vector<GrossPose> gross_poses(const IdentificationModel& model, const VariantColumns& columns,

@@ -37,7 +37,8 @@ void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& 
 void refuse_conventions(const Problem& problem, const IdentificationModel& model, const VariantColumns& columns,
                         const std::vector<MeasuredPose>& poses, const std::vector<double>& placed,
                         const OrientationForm& orientation) {
-  if (!residual_size(model, columns, poses, placed).unusual()) return;
+  const ResidualSize size{residual_rms(model, poses, placed), explained_rms(model, columns, poses, placed)};
+  if (!size.unusual()) return;
   const ConventionSearch search = find_conventions(problem, model, poses, orientation);
   if (search.found.empty()) return;
   std::string list;

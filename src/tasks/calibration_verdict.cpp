@@ -49,8 +49,9 @@ VariantColumns with_usual_tolerances(const CalibratedPoses& poses) {
 }
 
 void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
-  ResidualSize size = residual_size(poses.model, with_usual_tolerances(poses), poses.fitted, c.fit.correction);
-  size.found = c.fit.scale;  // counts the parameters
+  // The scale counts the parameters.
+  const ResidualSize size{c.fit.scale,
+                          explained_rms(poses.model, with_usual_tolerances(poses), poses.fitted, c.fit.correction)};
   if (!size.beyond_robots()) return;
   c.refusals.push_back(
       fmt::format("residuals are {:.3g} times the stated noise; noise and tolerances explain {:.3g} times. Check "
@@ -120,8 +121,8 @@ void refuse_wide_predictions(const CalibratedPoses& poses, Calibration& c) {
   if (at.empty()) return;
   const Eigen::MatrixXd J = blocks_of(poses.model, poses.columns, at, poses.placed).all();
   const double sigma = std::sqrt((J * c.fit.covariance).cwiseProduct(J).sum() / double(J.rows()));
-  const double left = residual_size(poses.model, poses.columns, poses.fitted, poses.placed).found *
-                      std::sqrt(1 + placing_variance(poses, at));
+  const double left =
+      residual_rms(poses.model, poses.fitted, poses.placed) * std::sqrt(1 + placing_variance(poses, at));
   if (!(sigma > hopeless_predictions * left)) return;
   c.refusals.push_back(
       fmt::format("between the measured poses the estimate errs by {:.3g} times the stated noise (1σ), base and tool "

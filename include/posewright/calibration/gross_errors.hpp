@@ -12,8 +12,16 @@ namespace posewright {
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
 
-/// Root mean square of whitened residuals over all readings, and what noise and all tolerances explain of it where
-/// base, tool and targets are fitted.
+/// Root mean square of whitened residuals over all readings.
+double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
+                    const std::vector<double>& correction);
+
+/// The same of what noise and all tolerances explain where base, tool and targets are fitted, at least 1.
+/// @param columns  those that are estimated, whose tolerances may be stated
+double explained_rms(const IdentificationModel& model, const VariantColumns& columns,
+                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
+
+/// Residuals against what explains them: residual_rms() and explained_rms().
 struct ResidualSize {
   double found = 0.0, explained = 0.0;
   /// Three times: a convention that the file does not keep may be the cause.
@@ -21,9 +29,6 @@ struct ResidualSize {
   /// Beyond ten times: no error of a robot gives them.
   bool beyond_robots() const { return found > 10.0 * explained; }
 };
-/// @param columns  those that are estimated, whose tolerances may be stated
-ResidualSize residual_size(const IdentificationModel& model, const VariantColumns& columns,
-                           const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
 
 /// A pose whose readings no error of the robot gives.
 struct GrossPose {

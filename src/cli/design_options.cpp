@@ -1,9 +1,11 @@
 #include "design_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "option_facts.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/problem/design_keys.hpp"
@@ -15,10 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names that the registries of later stages give.
-std::string names_for(const DesignKey& key) {
-  if (key.path == "design.criterion") return criterion_names();
-  return key.path == "design.method" ? planner_names() : "";
+/// Names that the registries of later stages give; empty for other keys.
+std::vector<std::string> names_for(const DesignKey& key) {
+  if (key.path == "design.criterion") return registered_names(criterion_registry());
+  if (key.path == "design.method") return registered_names(planner_registry());
+  return {};
 }
 
 /// A sentence of the table within a list: "number of poses (18)".
@@ -27,7 +30,7 @@ std::string option_help(const DesignKey& key) {
   text.front() = char(std::tolower(text.front()));
   std::erase(text, '`');
   if (const auto at = text.find("(default: "); at != std::string::npos) text.erase(at + 1, 9);
-  if (const std::string names = names_for(key); !names.empty()) text += ": " + names;
+  if (const auto names = names_for(key); !names.empty()) text += fmt::format(": {}", fmt::join(names, ", "));
   if (key.standard.empty() || key.value.empty()) return text;
   const Json standard = Json::parse(key.standard);
   return text + " (" + (standard.is_string() ? standard.get<std::string>() : key.standard) + ")";
@@ -61,14 +64,7 @@ std::string design_keys_json() {
   Json rows = Json::array();
   for (const DesignKey& key : design_keys()) {
     Json schema = Json::parse("{" + key.schema + "}");
-    if (const std::string names = names_for(key); !names.empty()) {
-      std::vector<std::string> words;
-      for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 2) {
-        end = names.find(", ", begin);
-        words.push_back(names.substr(begin, end - begin));
-      }
-      schema = Json{{"enum", words}};
-    }
+    if (const auto names = names_for(key); !names.empty()) schema = Json{{"enum", names}};
     if (!key.standard.empty()) schema["default"] = Json::parse(key.standard);
     schema["description"] = key.help;
     rows.push_back({{"path", key.path}, {"option", key.option}, {"poses", key.lists_poses}, {"schema", schema}});

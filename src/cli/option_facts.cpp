@@ -22,13 +22,6 @@ std::vector<std::string> literal_words(const std::string& value) {
   return words;
 }
 
-template <class Registry>
-std::vector<std::string> names_of(const Registry& registry) {
-  std::vector<std::string> names;
-  for (const auto& entry : registry) names.push_back(entry.name);
-  return names;
-}
-
 Expected expected_of(const std::string& value) {
   static const std::map<std::string, std::vector<std::string>> files = {
       {"PROBLEM", {"yaml", "yml"}},
@@ -62,15 +55,15 @@ OptionFacts facts_of(const po::option_description& option) {
   facts.value = option.format_parameter();
   facts.many = option.semantic()->is_composing();
   facts.expected = expected_of(facts.value);
-  if (facts.name == "criterion") facts.expected.words = names_of(criterion_registry());
+  if (facts.name == "criterion") facts.expected.words = registered_names(criterion_registry());
   if (facts.name == "to" || facts.name == "from")
     for (const PoseFormat& format : pose_formats())
       if (facts.name == "to" || format.read != nullptr) facts.expected.words.push_back(format.name);
   if (facts.name == "camera") {
-    facts.expected.words = names_of(known_cameras());
+    facts.expected.words = registered_names(known_cameras());
     facts.expected.words.push_back("list");
   }
-  if (facts.name == "method") facts.expected.words = names_of(planner_registry());
+  if (facts.name == "method") facts.expected.words = registered_names(planner_registry());
   return facts;
 }
 

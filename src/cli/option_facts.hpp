@@ -7,6 +7,14 @@
 
 namespace posewright::cli {
 
+/// Names of a registry's entries, in its order.
+template <class Registry>
+std::vector<std::string> registered_names(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const auto& entry : registry) names.push_back(entry.name);
+  return names;
+}
+
 /// Allowed values of an argument or an option.
 struct Expected {
   std::vector<std::string> words;     ///< these words

@@ -56,6 +56,9 @@ void require_number_of_poses(const Problem& problem) {
   if (of_poses && !design.test_poses)
     throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
                      "set design: test_poses");
+  if (design.robust)
+    throw InputError(problem.at(design.robust->line), "a plan over drawn robots (robust) needs a number of poses",
+                     "set poses to a number, not auto");
 }
 
 Settings settings_of(const Problem& problem, const RunOptions& run) {
@@ -109,7 +112,6 @@ void take_robust(const Problem& problem, Settings& settings) {
            "criterion: o1 or ds, and variant: one of them");
   if (settings.criterion != "o1" && settings.criterion != "ds")
     refuse("is for the determinant, not for criterion '" + settings.criterion + "'", "criterion: o1 or ds");
-  if (settings.poses == 0) refuse("needs a number of poses", "set poses to a number, not auto");
   if (settings.reserve) refuse("cannot be combined with reserve", "leave one of them out");
   if (find_variant(problem, settings.variants.front().name.value).unmodelled)
     refuse("does not support a variant with an unmodelled effect", "a variant without unmodelled");

@@ -238,10 +238,10 @@ SearchRequest spaced_request(const Study& study, const Settings& settings, int p
 
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion) {
-  const bool assumed = find_criterion(criterion)->needs_truth && study.discrepancy == nullptr;
+  const bool with_effects = find_criterion(criterion)->needs_truth;
   // An effect that is assumed says too little for moves between candidates.
-  if (!study.list.empty() || assumed) return {};
-  return [&study, with_effects = find_criterion(criterion)->needs_truth](const Eigen::MatrixXd& R) {
+  if (!study.list.empty() || (with_effects && study.discrepancy == nullptr)) return {};
+  return [&study, with_effects](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const Variant& v : study.variants)
       parts.push_back({v.model.get(), v.workspace.get(), v.columns.selected, {}, v.features.get()});

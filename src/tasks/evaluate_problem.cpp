@@ -32,7 +32,6 @@ class ListEvaluation {
         monitor_(monitor),
         stated_distance_(problem.design.minimum_distance),
         settings_(settings_of(problem, options.run)) {
-    settings_.poses = 1;  // any number, until the list is read
     take_robust(problem, settings_);
     settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
     study_ = make_study(problem, settings_, monitor);

@@ -1,8 +1,8 @@
-"""Simulated robots as they are: arms of ten kinds with effects that a geometric model lacks (numpy, own kinematics).
+"""Simulated robots as they are: arms of eleven kinds with effects that a geometric model lacks (numpy, own kinematics).
 
 `arms()` gives the kinds, `Pool(arm, ...)` configurations with the derivative of the readings by every geometric
 parameter, `effect(pool, rng)` the displacement of the targets by one drawn robot's effects, of unit size after the fit.
-Sizes against the repeatability: docs/theory.md, "A smooth effect that no parameter describes"."""
+Sizes against the repeatability: docs/real-data.md, "Robots as they are"."""
 import numpy as np
 
 GRAVITY = np.array([0, 0, -9.81])

@@ -54,6 +54,14 @@ struct DrivenPlan {
   std::vector<std::string> notes;  ///< one a replaced pose
 };
 
+/// The pose of this id; null if there is none.
+template <class Json>
+Json* pose_of_id(Json& poses, const nlohmann::ordered_json& id) {
+  for (auto& pose : poses)
+    if (pose.at("id") == id) return &pose;
+  return nullptr;
+}
+
 void take_over(nlohmann::ordered_json& pose, const nlohmann::ordered_json& stop) {
   pose.erase("listed");
   pose["candidate"] = nullptr;
@@ -66,16 +74,14 @@ DrivenPlan driven_plan(std::string plan, const std::string& route) {
     const auto way = parse_ordered_json(route);
     if (way.value("replaced", nlohmann::ordered_json::array()).empty()) return driven;
     auto json = parse_ordered_json(driven.text);
-    for (const auto& lost : way.at("replaced"))
-      for (auto& pose : json.at("poses"))
-        for (const auto& stop : way.at("poses")) {
-          if (pose.at("id") != lost.at("pose") || stop.at("id") != lost.at("by")) continue;
-          take_over(pose, stop);
-          driven.notes.push_back(fmt::format("Pose {} is replaced by pose {} of the route: {}.",
-                                             lost.at("pose").get<int>(), lost.at("by").get<int>(),
-                                             lost.at("reason").get<std::string>()));
-          break;
-        }
+    for (const auto& lost : way.at("replaced")) {
+      auto* pose = pose_of_id(json.at("poses"), lost.at("pose"));
+      const auto* stop = pose_of_id(way.at("poses"), lost.at("by"));
+      if (pose == nullptr || stop == nullptr) continue;
+      take_over(*pose, *stop);
+      driven.notes.push_back(fmt::format("Pose {} is replaced by pose {} of the route: {}.", lost.at("pose").get<int>(),
+                                         lost.at("by").get<int>(), lost.at("reason").get<std::string>()));
+    }
     driven.text = json_text(json);
   } catch (const nlohmann::json::exception&) {
     // Playing the route says what is wrong with it.

@@ -140,18 +140,19 @@ void read_below(const std::string& path, const Value& value, DesignReading& read
 
 /// A mapping, or one distance for coordinates of its unit.
 void read_minimum_distance(const Value& value, DesignReading& reading) {
-  DesignSpec::MinimumDistance& distance = reading.design.minimum_distance.emplace();
+  reading.design.minimum_distance = DesignSpec::MinimumDistance{};
   if (!value.is_scalar()) return read_below("design.minimum_distance", value, reading);
   const Measured one = value.measured({Quantity::angle, Quantity::length}, Sign::positive);
   if (one.quantity == Quantity::number)
     value.fail("has no unit", "allowed: " + allowed_units({Quantity::angle, Quantity::length}));
+  DesignSpec::MinimumDistance& distance = *reading.design.minimum_distance;
   (one.quantity == Quantity::angle ? distance.angle : distance.length) = one.value;
 }
 
 Read distance(double DesignSpec::MinimumDistance::*member, Quantity quantity) {
   return [=](const Value& value, DesignReading& reading) {
     auto& stated = reading.design.minimum_distance;
-    if (!stated) stated.emplace();
+    if (!stated) stated = DesignSpec::MinimumDistance{};
     (*stated).*member = value.number(quantity, Sign::positive);
   };
 }

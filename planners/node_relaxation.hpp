@@ -59,7 +59,7 @@ class NodeRelaxation {
   bool search_along(std::vector<double>& numbers);
   void choose_working_set(const std::vector<double>& numbers);
   void solve_quadratic(const std::vector<double>& numbers);
-  /// solve() for o3 (theory.md eq. (44), (62), (63)). Nothing if that way is not open: too many candidates, or numbers
+  /// solve() for o3 (theory.md eq. (44), (60), (61)). Nothing if that way is not open: too many candidates, or numbers
   /// that leave a parameter unknown.
   std::optional<bool> solve_least_eigenvalue(ChoiceBox& box, RelaxedBox& relaxed, double best);
   /// True if inertia_ applies to these candidates: one row each, no nuisance columns.

@@ -10,7 +10,7 @@ namespace posewright {
 
 /// Necessary conditions on single rows v_1 … v_L for M0 + Σ v_iᵀv_i ⪰ t I: more than the same for numbers of rows
 /// that need not be whole. With G = V (t I − M0)⁻¹ Vᵀ − I and e eigenvalues of M0 below t, G has exactly s = L − e
-/// negative eigenvalues (Haynsworth 1968, inertia of a matrix and its Schur complements); theory.md eq. (62), (63).
+/// negative eigenvalues (Haynsworth 1968, inertia of a matrix and its Schur complements); theory.md eq. (60), (61).
 /// Rounding is inside: what reaches t is never ruled out.
 class RowInertia {
  public:

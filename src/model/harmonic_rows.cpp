@@ -66,15 +66,12 @@ class ExplicitRows : public HarmonicRows {
     if (noise_.kind == Kind::beams) take_spreads();
     if (bends_) take_remainders(columns.remainders);
     K_.setZero(joints_, Eigen::Index(selected_.size()));
-    if (noise_.kind == Kind::constant) random_columns_ = joints_;
   }
 
   void tune(const std::vector<std::vector<double>>& configurations, std::span<const double> weights) override;
   std::unique_ptr<Work> work() const override { return std::make_unique<ExplicitWork>(); }
   bool at(std::span<const double> q, std::span<const double> factors, Work& work, RowMatrix& B,
           std::span<double> squares) const override;
-  bool with_random(std::span<const double> q, std::span<const double> factors, Work& work, RowMatrix& B,
-                   RowMatrix& Z) const override;
 
  private:
   std::span<const double> own_correction() const {
@@ -291,17 +288,6 @@ bool ExplicitRows::at(std::span<const double> q, std::span<const double> factors
   const Eigen::Index instrument = B.rows() - joints_;
   B.topRows(instrument).noalias() -= w.parts.topRightCorner(instrument, joints_) * K_;
   B.bottomRows(joints_) = K_;
-  return true;
-}
-
-bool ExplicitRows::with_random(std::span<const double> q, std::span<const double> factors, Work& work, RowMatrix& B,
-                               RowMatrix& Z) const {
-  auto& w = static_cast<ExplicitWork&>(work);
-  if (!read(q, factors, w)) return false;
-  to_parts(w, {});
-  const Eigen::Index instrument = instrument_.rows();
-  B = w.parts.topLeftCorner(instrument, Eigen::Index(selected_.size()));
-  Z = w.parts.topRightCorner(instrument, joints_);
   return true;
 }
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "highest_harmonic.hpp"
 #include "part_squares.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/random.hpp"
@@ -15,8 +14,8 @@ constexpr std::uint64_t lines_stream = 0x11e5;
 constexpr double harmonic_of_rounding = 1e-10;
 constexpr int lines_an_axis = 3;
 
-}  // namespace
-
+/// Highest harmonic of a function at 2D + 1 equispaced angles of one axis, with an amplitude above `nothing` or NaN; 0:
+/// none.
 int highest_harmonic(std::span<const double> values, double nothing) {
   const int n = int(values.size());
   for (int h = (n - 1) / 2; h > 0; --h) {
@@ -30,6 +29,8 @@ int highest_harmonic(std::span<const double> values, double nothing) {
   }
   return 0;
 }
+
+}  // namespace
 
 HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed) {
   const auto& axes = form.axes();

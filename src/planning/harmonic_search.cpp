@@ -38,7 +38,7 @@ class FunctionJudge : public BoxJudge {
 /// Judges each box by its own function.
 class JudgeOfSeveral : public BoxJudge {
  public:
-  JudgeOfSeveral(const std::vector<std::unique_ptr<BoundedSensitivity>>& functions, const Refutation* refutation) {
+  JudgeOfSeveral(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions, const Refutation* refutation) {
     for (const auto& f : functions) judges_.push_back(f->judge(refutation));
   }
   void judge(SearchBox& box, double enough, LargestFound& found) override {
@@ -64,7 +64,7 @@ BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchO
       [&] { return std::make_unique<FunctionJudge>(function); }, options, monitor);
 }
 
-BoxSearchResult largest_value(const std::vector<std::unique_ptr<BoundedSensitivity>>& functions,
+BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
                               const BoxSearchOptions& options, const Monitor& monitor, const Refutation* refutation) {
   std::vector<SearchBox> first;
   for (std::size_t f = 0; f < functions.size(); ++f)

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "posewright/planning/ascent.hpp"
-#include "posewright/planning/bounded_sensitivity.hpp"
 #include "posewright/planning/configuration_space.hpp"
+#include "posewright/planning/harmonic_bound.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {

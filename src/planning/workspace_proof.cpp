@@ -10,7 +10,6 @@
 #include "part_squares.hpp"
 #include "posewright/planning/enclosed_proof.hpp"
 #include "posewright/planning/harmonic_bound.hpp"
-#include "posewright/planning/reading_noise_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/tasks.hpp"
 
@@ -31,8 +30,6 @@ constexpr double large_box = 1e6;
 constexpr double shared_box = 1e5;
 // A bound that is loose by more is not worth its time.
 constexpr double most_loose = 0.05;
-// One that is loose by less has no need of a matrix of its own for each box.
-constexpr double hardly_loose = 0.002;
 
 WeightedConfigurations support_of(const WorkspaceBound& found, const ConfigurationSpace& space) {
   WeightedConfigurations result{found.support, found.weights};
@@ -74,17 +71,7 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
 struct Approach {
   HarmonicForms forms;
   std::vector<HarmonicDegrees> degrees{};  ///< of the forms' squares
-  bool noise_by_boxes = false;             ///< a matrix for joints' noise for each box (theory.md eq. (61))
 };
-
-/// True if joints' noise is bounded by boxes, because one matrix for the whole workspace is loose: that takes a
-/// minute where there are more than a few joints.
-bool bounds_noise_by_boxes(const HarmonicForms& forms, double loose, const ProofLimits& limits) {
-  if (!(loose > hardly_loose) || forms.forms.front()->random_columns() == 0) return false;
-  double cost = 0;
-  for (const auto& form : forms.forms) cost += ReadingNoiseSensitivity::cost(*form);
-  return cost <= most_coefficients && (limits.seconds || forms.forms.front()->axes().size() <= axes_at_once);
-}
 
 /// @return why there is no proof by it; empty: there is one
 std::string choose(Approach& approach, const WorkspaceBound& found, const WeightedConfigurations& support,
@@ -101,29 +88,22 @@ std::string choose(Approach& approach, const WorkspaceBound& found, const Weight
   if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
     return "a quick look at fewer than 1,000 candidates";
   const double loose = looseness(forms, support, space, found.factor, rows);
-  approach.noise_by_boxes = bounds_noise_by_boxes(forms, loose, options.proof);
-  if (loose > most_loose && !approach.noise_by_boxes)
-    return forms.forms.front()->random_columns() > 0 && !options.proof.seconds
-               ? "large noise of the joints takes a minute to bound: --proof-time 60"
-               : fmt::format("the bound of joint noise, visit noise or deflections is {:.0f} % too high", 100 * loose);
+  if (loose > most_loose)
+    return fmt::format("the bound of joint noise, visit noise or deflections is {:.0f} % too high", 100 * loose);
   if (!options.proof.seconds && grows_with_distance(forms))
     return "noise that grows with the distance takes minutes to bound: --proof-time 300";
   return {};
 }
 
-using Functions = std::vector<std::unique_ptr<BoundedSensitivity>>;
+using Functions = std::vector<std::unique_ptr<HarmonicSensitivity>>;
 
 /// One a form; the last is not defined where something is not as its form says, or time is over.
 Functions functions_of(const Approach& approach, const Eigen::MatrixXd& T, const WorkspaceBoundOptions& options,
                        const Monitor& monitor) {
   Functions functions;
   for (std::size_t f = 0; f < approach.forms.forms.size(); ++f) {
-    const HarmonicForm& form = *approach.forms.forms[f];
-    if (approach.noise_by_boxes)
-      functions.push_back(std::make_unique<ReadingNoiseSensitivity>(form, T, options.seed, options.threads, monitor));
-    else
-      functions.push_back(
-          std::make_unique<HarmonicSensitivity>(form, T, approach.degrees[f], options.seed, options.threads, monitor));
+    functions.push_back(std::make_unique<HarmonicSensitivity>(*approach.forms.forms[f], T, approach.degrees[f],
+                                                              options.seed, options.threads, monitor));
     if (!functions.back()->defined()) break;
   }
   return functions;

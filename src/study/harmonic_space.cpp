@@ -43,10 +43,7 @@ class StudyForm : public HarmonicForm {
     for (FormPart& part : own_)
       for (const ColumnFactor& factor : part.rows->factors()) part.factors.push_back({axis_for(factor)});
     for (const FormPart& part : own_) append(part);
-    if (own_.size() == 1) {
-      spreads_ = own_.front().rows->spreads();
-      random_columns_ = own_.front().rows->random_columns();
-    }
+    if (own_.size() == 1) spreads_ = own_.front().rows->spreads();
     take_limits();
   }
 
@@ -65,12 +62,6 @@ class StudyForm : public HarmonicForm {
       values[std::size_t(made.axis)] = made.free ? made.constant * x : x - made.constant;
     }
     return values;
-  }
-
-  Eigen::MatrixXd undivided(const Eigen::MatrixXd& T) const override {
-    const FormPart& part = own_.front();
-    const Eigen::MatrixXd own = R_.triangularView<Eigen::Upper>().solve(T).middleRows(part.first_column, part.width);
-    return part.part->mix.size() > 0 ? Eigen::MatrixXd(part.part->mix * own) : own;
   }
 
  private:
@@ -99,11 +90,6 @@ class StudyForm : public HarmonicForm {
     void limit_values(std::span<const double> values, std::span<double> out) override {
       place(values);
       form_.own_.front().part->workspace->necessary_values(q_, out);
-    }
-    bool with_random(std::span<const double> values, BlockArray::RowMatrix& B, BlockArray::RowMatrix& Z) override {
-      place(values);
-      put_factors(form_.own_.front(), values);
-      return form_.own_.front().rows->with_random(q_, factors_, *work_.front(), B, Z);
     }
     void complete(std::span<double> values) const override {
       for (std::size_t a = 0; a < form_.axes().size(); ++a)

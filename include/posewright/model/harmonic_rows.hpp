@@ -28,10 +28,6 @@ class HarmonicRows {
   /// Each column of the parts may be off by a vector of at most this length; empty: by none.
   const std::vector<double>& remainders() const { return remainders_; }
 
-  /// Columns Z of other random effects at a pose, each with a variance of 1, where the noise is the same everywhere:
-  /// then JᵀJ ⪯ (B − ZK)ᵀ(B − ZK) + KᵀK for every K (theory.md eq. (60)). 0: there is none, or other noise.
-  int random_columns() const { return random_columns_; }
-
   /// Adapts free choices so that the bound is near d at these configurations.
   virtual void tune(const std::vector<std::vector<double>>& configurations, std::span<const double> weights) = 0;
 
@@ -46,11 +42,6 @@ class HarmonicRows {
   /// @return false if q is out of reach
   virtual bool at(std::span<const double> q, std::span<const double> factors, Work& work, BlockArray::RowMatrix& B,
                   std::span<double> squares) const = 0;
-  /// B and Z, whitened, without any K. Only where random_columns() is not 0.
-  virtual bool with_random(std::span<const double>, std::span<const double>, Work&, BlockArray::RowMatrix&,
-                           BlockArray::RowMatrix&) const {
-    return false;
-  }
 
  protected:
   std::vector<HarmonicPart> parts_;
@@ -59,7 +50,6 @@ class HarmonicRows {
   int distances_ = 0;
   std::vector<DistanceSpread> spreads_;
   std::vector<double> remainders_;
-  int random_columns_ = 0;
 };
 
 /// Rows whose columns may be off by their remainders as rows that bound the sensitivity all the same (theory.md eq.

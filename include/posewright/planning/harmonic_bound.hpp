@@ -6,14 +6,24 @@
 #include <string>
 #include <vector>
 
-#include "posewright/planning/bounded_sensitivity.hpp"
 #include "posewright/planning/box_search.hpp"
 #include "posewright/planning/factor_bound.hpp"
 #include "posewright/planning/harmonic_form.hpp"
 
 namespace posewright {
 
+class ConfigurationSpace;
 class HarmonicLimits;
+
+/// Degrees of each function along every axis.
+using HarmonicDegrees = std::vector<std::vector<int>>;
+
+/// Counterexamples of a proof: feasible configurations whose own d = ‖J T‖² is above a limit.
+struct Refutation {
+  const ConfigurationSpace& space;
+  int rows = 0;  ///< of a block
+  double above = 0.0;
+};
 
 /// Largest value of one function over its axes' limits (theory.md eq. (37)). Stops as largest_value() of boxes.
 BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchOptions& options,
@@ -25,7 +35,7 @@ BoxSearchResult largest_value(const HarmonicFunction& function, const BoxSearchO
 HarmonicDegrees degrees_of_squares(const HarmonicForm& form, const Eigen::MatrixXd& T, std::uint64_t seed);
 
 /// Σ_k s_k(r_k) ‖B_k T‖² of a form as tensors: what its bounds over boxes are made of (theory.md eq. (39), (56)).
-class HarmonicSensitivity : public BoundedSensitivity {
+class HarmonicSensitivity {
  public:
   /// Interpolates ‖B_k T‖² and the distances.
   /// @param T  columns × any
@@ -38,13 +48,15 @@ class HarmonicSensitivity : public BoundedSensitivity {
   /// Coefficients of a form's tensors together: what memory and a box's time go with.
   static double cost(const HarmonicForm& form, const HarmonicDegrees& squares);
 
-  const HarmonicForm& form() const override { return form_; }
   /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.
-  bool defined() const override { return defined_; }
-  std::vector<SearchBox> first_boxes() const override;
-  std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const override;
-  double size() const override { return double(harmonic_size(form_.axes(), degrees_)); }
-  double work() const override { return size() * (1 + 0.25 * double(terms_.size())); }
+  bool defined() const { return defined_; }
+  std::vector<SearchBox> first_boxes() const;
+  /// @param refutation  places that it keeps as LargestFound::refuting; null: none
+  std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const;
+  /// Coefficients of the tensor that a box is bounded by.
+  double size() const { return double(harmonic_size(form_.axes(), degrees_)); }
+  /// Cost of a box, in coefficients of an existing tensor.
+  double work() const { return size() * (1 + 0.25 * double(terms_.size())); }
 
  private:
   friend class HarmonicJudge;
@@ -82,5 +94,10 @@ class HarmonicSensitivity : public BoundedSensitivity {
   std::optional<HarmonicFunction> multiplied_;  ///< the multiplier as a function of the axes
   bool defined_ = true;
 };
+
+/// Largest value of several, each over its own axes.
+BoxSearchResult largest_value(const std::vector<std::unique_ptr<HarmonicSensitivity>>& functions,
+                              const BoxSearchOptions& options, const Monitor& monitor,
+                              const Refutation* refutation = nullptr);
 
 }  // namespace posewright

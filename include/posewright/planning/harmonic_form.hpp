@@ -28,8 +28,6 @@ class HarmonicForm {
     virtual void distances(std::span<const double> values, std::span<double> squares) = 0;
     /// Terms of the form's limits: as many as limits().values.
     virtual void limit_values(std::span<const double>, std::span<double>) {}
-    /// Rows B of the only part that depends on the axes, times undivided(T) in place of T, and Z of random_columns().
-    virtual bool with_random(std::span<const double>, BlockArray::RowMatrix&, BlockArray::RowMatrix&) { return false; }
     /// All values at the moving axes, then those of following axes: the meaning of a configuration.
     virtual void complete(std::span<double> values) const = 0;
   };
@@ -48,10 +46,6 @@ class HarmonicForm {
   /// Checks the values of limits along an axis.
   const std::vector<int>& limit_degrees() const { return limit_degrees_; }
   int columns() const { return columns_; }
-  /// Columns Z of random effects at a pose besides the readings' noise; where there are any, for every matrix U(q)
-  /// d(q) ≤ ‖B T − Z U‖² + ‖U‖² (theory.md eq. (60)). 0: there are none, or d is not bounded so.
-  int random_columns() const { return random_columns_; }
-  virtual Eigen::MatrixXd undivided(const Eigen::MatrixXd& T) const { return T; }
   virtual std::unique_ptr<Evaluator> evaluator() const = 0;
   /// The space's configuration at values of the axes.
   virtual std::vector<double> configuration(std::span<const double> values) const = 0;
@@ -66,7 +60,6 @@ class HarmonicForm {
   NecessaryLimits limits_;
   std::vector<int> limit_degrees_;
   int columns_ = 0;
-  int random_columns_ = 0;
 };
 
 /// One for each choice of the discrete axes, or why there is none.

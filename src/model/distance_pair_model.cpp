@@ -4,7 +4,6 @@
 
 #include "measure_distance.hpp"
 #include "posewright/model/closed_chain.hpp"
-#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/dense.hpp"
 #include "repeatability.hpp"
@@ -91,12 +90,6 @@ bool DistancePairModel::end(const Point& at, std::size_t which, std::span<const 
 
 void DistancePairModel::do_take_loads_at(std::span<const double> correction) {
   tip_->take_loads_at(tip_part(correction));
-}
-
-std::unique_ptr<HarmonicRows> DistancePairModel::do_harmonic_rows(const Point&, std::span<const int>,
-                                                                  std::string& why_not) const {
-  why_not = "readings of two configurations at a time, which have twice as many joints";
-  return nullptr;
 }
 
 bool DistancePairModel::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {

@@ -19,8 +19,6 @@ class DistancePairModel : public IdentificationModel {
  private:
   void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
-  std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                 std::string& why_not) const override;
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
   bool do_measurable(const Point& at) const override;

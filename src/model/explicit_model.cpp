@@ -4,8 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "enclosed_sensitivity.hpp"
-#include "harmonic_rows.hpp"
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/support/dense.hpp"
 #include "repeatability.hpp"
@@ -105,35 +103,6 @@ void ExplicitModel::displace_alone(const MeasurementModel::Sighting& sighting, L
     const auto own = out.rows.middleRows(first, each);
     out.covariance.block(first, first, each, each) += own * own.transpose();
   }
-}
-
-std::unique_ptr<HarmonicRows> ExplicitModel::do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                              std::string& why_not) const {
-  return make_harmonic_rows(*tip_, *measurement_, repeatability_, tip_parameters_, at, selected, why_not);
-}
-
-/// By theory.md eq. (7): where the instrument sees the whole pose, the residual of a closed chain holds all that its
-/// readings tell of parameters that move the tip.
-bool ExplicitModel::do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
-                               std::span<const double> correction, Enclosure& out) const {
-  const auto of_tip = correction.first(std::min(correction.size(), std::size_t(tip_parameters_)));
-  const auto of_instrument = correction.subspan(of_tip.size());
-  const auto is_other = [&](int i) { return i >= tip_parameters_; };
-  if (repeatability_.independent > 0 || std::any_of(selected.begin(), selected.end(), is_other) ||
-      std::any_of(of_instrument.begin(), of_instrument.end(), [](double x) { return x != 0; }))
-    return false;
-  std::optional<Eigen::Matrix<double, 6, 6>> covariance = measurement_->tip_covariance();
-  if (!covariance) return false;
-  // A visit displaces the tip alike in all directions.
-  covariance->diagonal().head<3>().array() += repeatability_.translation * repeatability_.translation;
-  covariance->diagonal().tail<3>().array() += repeatability_.rotation * repeatability_.rotation;
-  TipModel::EnclosedResidual residual;
-  if (!tip_->enclose_residual(q.first(tip_->coordinates().size()), of_tip, T != nullptr ? selected : selected.first(0),
-                              residual))
-    return false;
-  if (T != nullptr) out.sensitivity = enclosed_sensitivity(residual, *covariance, tip_->reading_noise(), *T);
-  out.allowed = std::move(residual.allowed);
-  return true;
 }
 
 void ExplicitModel::do_take_loads_at(std::span<const double> correction) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/near_words.hpp"
 
@@ -67,30 +66,9 @@ void IdentificationModel::take_loads_at(std::span<const double> correction) {
   do_take_loads_at(total(correction, sum));
 }
 
-std::unique_ptr<HarmonicRows> IdentificationModel::do_harmonic_rows(const Point&, std::span<const int>,
-                                                                    std::string& why_not) const {
-  why_not = "readings that are not of one tip alone";
-  return nullptr;
-}
-
-std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_rows(std::span<const double> q,
-                                                                 std::span<const int> selected,
-                                                                 std::string& why_not) const {
-  auto rows = harmonic_expansion(q, selected, why_not);
-  if (rows == nullptr || rows->remainders().empty()) return rows;
-  return with_remainders(std::move(rows));
-}
-
-std::unique_ptr<HarmonicRows> IdentificationModel::harmonic_expansion(std::span<const double> q,
-                                                                      std::span<const int> selected,
-                                                                      std::string& why_not) const {
+Point IdentificationModel::nominal_point(std::span<const double> q) const {
   require_size(q.size(), coordinates_.size(), "configuration");
-  return do_harmonic_rows(point(q, shift_), selected, why_not);
-}
-
-bool IdentificationModel::do_enclose(std::span<const TaylorModel>, std::span<const int>, const Eigen::MatrixXd*,
-                                     std::span<const double>, Enclosure&) const {
-  return false;
+  return point(q, shift_);
 }
 
 void IdentificationModel::do_take_loads_at(std::span<const double>) {}

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "posewright/model/closed_chain.hpp"
-#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -45,12 +44,6 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
 }
 
 void JointSensorModel::do_take_loads_at(std::span<const double> correction) { tip_->take_loads_at(correction); }
-
-std::unique_ptr<HarmonicRows> JointSensorModel::do_harmonic_rows(const Point&, std::span<const int>,
-                                                                 std::string& why_not) const {
-  why_not = "sensors in the joints of a parallel robot";
-  return nullptr;
-}
 
 bool JointSensorModel::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Eigen::MatrixXd rows, reading_rows;

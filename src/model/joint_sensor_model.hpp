@@ -18,8 +18,6 @@ class JointSensorModel : public IdentificationModel {
  private:
   void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
-  std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                 std::string& why_not) const override;
   bool do_read(const Point& at, Eigen::VectorXd& y) const override;
   void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                      Eigen::VectorXd& out) const override;

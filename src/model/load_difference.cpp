@@ -1,10 +1,9 @@
-#include "load_difference.hpp"
+#include "posewright/model/load_difference.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "posewright/model/harmonic_rows.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -47,12 +46,11 @@ bool LoadDifference::do_pull_back(const Point& at, std::span<const int> selected
                                   const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const {
   // Nominal values are the inner model's; corrections of this one would be a second set.
   if (!at.correction.empty()) return false;
-  std::vector<double> same(at.q.begin(), at.q.end()), unloaded(gradient.size());
-  same[load_] = 0.0;
+  std::vector<double> of_unloaded(gradient.size());
   if (!inside_->pull_back(at.q, selected, by_G, by_covariance, gradient) ||
-      !inside_->pull_back(same, selected, -by_G, by_covariance, unloaded))
+      !inside_->pull_back(unloaded(at.q), selected, -by_G, by_covariance, of_unloaded))
     return false;
-  for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] += unloaded[k];
+  for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] += of_unloaded[k];
   return true;
 }
 
@@ -66,24 +64,14 @@ bool LoadDifference::do_read(const Point& at, Eigen::VectorXd& y) const {
   return true;
 }
 
-std::unique_ptr<HarmonicRows> LoadDifference::do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                               std::string& why_not) const {
-  std::vector<double> same(at.q.begin(), at.q.end());
+std::vector<double> LoadDifference::unloaded(std::span<const double> q) const {
+  std::vector<double> same(q.begin(), q.end());
   same[load_] = 0.0;
-  auto loaded = inside_->harmonic_expansion(at.q, selected, why_not);
-  auto unloaded = loaded != nullptr ? inside_->harmonic_expansion(same, selected, why_not) : nullptr;
-  if (unloaded == nullptr) return nullptr;
-  if (loaded->parts().size() != 1 || loaded->parts().front().distance >= 0 || unloaded->parts().size() != 1) {
-    why_not = "loaded minus unloaded readings whose noise is not the same everywhere";
-    return nullptr;
-  }
-  return harmonic_difference(std::move(loaded), std::move(unloaded));
+  return same;
 }
 
 bool LoadDifference::do_measurable(const Point& at) const {
-  std::vector<double> same(at.q.begin(), at.q.end());
-  same[load_] = 0.0;
-  return inside_->measurable(at.q, at.correction) && inside_->measurable(same, at.correction);
+  return inside_->measurable(at.q, at.correction) && inside_->measurable(unloaded(at.q), at.correction);
 }
 
 Eigen::Isometry3d LoadDifference::do_tool_pose(const Point& at) const { return inside_->tool_pose(at.q); }

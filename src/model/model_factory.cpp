@@ -1,12 +1,12 @@
 #include "posewright/model/model_factory.hpp"
 
 #include "compensator_geometry.hpp"
-#include "load_difference.hpp"
 #include "posewright/model/delta.hpp"
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/five_bar.hpp"
 #include "posewright/model/joint_effects.hpp"
+#include "posewright/model/load_difference.hpp"
 #include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/six_legs.hpp"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "posewright/planning/ascent.hpp"
-#include "posewright/planning/taylor_bound.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -28,9 +27,6 @@ constexpr double settled_within = 0.005;
 // Starts of local searches are apart by this share of a coordinate's range, ends that count as two by that.
 constexpr double start_distance = 0.1, end_distance = 1e-3;
 
-// Boxes that are looked into for what searches miss: a second or two.
-constexpr long boxes_of_a_look = 300;
-
 /// d(q) for fixed weights.
 class Sensitivity : public BlockObjective {
  public:
@@ -49,14 +45,14 @@ class Sensitivity : public BlockObjective {
 using Places = std::vector<std::vector<double>>;
 
 /// Candidates worth keeping and configurations found.
-struct Pool {
+struct PlacePool {
   BlockArray blocks;
   Places configurations;
   std::size_t candidates = 0;   // the first of the pool, all others were found
   std::vector<int> original{};  ///< indices of those candidates
 };
 
-void append(Pool& pool, const Places& found, ConfigurationSpace::Probe& probe) {
+void append(PlacePool& pool, const Places& found, ConfigurationSpace::Probe& probe) {
   BlockArray grown(pool.blocks.count() + found.size(), pool.blocks.rows(), pool.blocks.columns());
   std::copy_n(pool.blocks.data(), pool.blocks.count() * std::size_t(grown.rows() * grown.stride()), grown.data());
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -93,7 +89,7 @@ std::vector<std::size_t> largest_first(const std::vector<double>& values) {
 }
 
 /// Places by d, largest first; those without a block or outside the limits fall away.
-Places by_sensitivity(Places all, const Pool& pool, const Eigen::MatrixXd& T, ConfigurationSpace::Probe& probe) {
+Places by_sensitivity(Places all, const PlacePool& pool, const Eigen::MatrixXd& T, ConfigurationSpace::Probe& probe) {
   Sensitivity sensitivity(T);
   ProbedBlock block(pool.blocks.rows(), pool.blocks.columns());
   std::vector<std::pair<double, std::vector<double>>> valued;
@@ -107,7 +103,7 @@ Places by_sensitivity(Places all, const Pool& pool, const Eigen::MatrixXd& T, Co
 }
 
 /// Poses that weights use, each with one coordinate at an end of its range or at another choice.
-Places at_the_ends(const ApproximateDesign& design, const Pool& pool, const ConfigurationSpace& space) {
+Places at_the_ends(const ApproximateDesign& design, const PlacePool& pool, const ConfigurationSpace& space) {
   Places ends;
   for (const int i : design.weighted()) {
     std::vector<double> q = pool.configurations[std::size_t(i)];
@@ -134,7 +130,7 @@ void add_drawn(Places& starts, std::size_t candidates, const ConfigurationSpace&
 /// Starts of the local searches, no two in one place: the candidates' largest d, the largest d at ends of coordinates
 /// and of all candidates, and candidates that are drawn. What is drawn depends on the seed and the round alone: not on
 /// an order of d that the last bit may turn.
-Places starts_of(const ApproximateDesign& design, const Pool& pool, const std::vector<double>& of_candidates,
+Places starts_of(const ApproximateDesign& design, const PlacePool& pool, const std::vector<double>& of_candidates,
                  const ConfigurationSpace& space, int count, Random& random) {
   Places starts;
   const auto room = [&](double share) { return double(starts.size()) < share * count; };
@@ -148,7 +144,7 @@ Places starts_of(const ApproximateDesign& design, const Pool& pool, const std::v
   return starts;
 }
 
-std::vector<AscentResult> search_from(const Places& starts, const Pool& pool, const Eigen::MatrixXd& T,
+std::vector<AscentResult> search_from(const Places& starts, const PlacePool& pool, const Eigen::MatrixXd& T,
                                       const ConfigurationSpace& space, int evaluations,
                                       const WorkspaceBoundOptions& options) {
   std::vector<AscentResult> results(starts.size());
@@ -179,7 +175,7 @@ Places candidates_above(double limit, const std::vector<double>& d, const Config
 }
 
 /// The mean of the pool's candidates, if it is feasible; else one of them.
-std::vector<double> inner_place(const Pool& pool, ConfigurationSpace::Probe& probe) {
+std::vector<double> inner_place(const PlacePool& pool, ConfigurationSpace::Probe& probe) {
   std::vector<double> mean(pool.configurations.front().size(), 0.0);
   for (std::size_t i = 0; i < pool.candidates; ++i)
     for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += pool.configurations[i][k] / double(pool.candidates);
@@ -200,29 +196,21 @@ bool towards(const std::vector<double>& inside, ConfigurationSpace::Probe& probe
   return probe.feasible(q);
 }
 
-/// Starts that candidates lack: where actuators cut the workspace, few candidates are near its corners. Middles of
-/// boxes that a proof of d ≤ limit would have to cut; none if there is no such proof.
-Places in_uncut_boxes(double limit, const Pool& pool, const Eigen::MatrixXd& T, const ConfigurationSpace& space,
+/// The further starts of largest d, each moved to the last feasible place on the way to it.
+Places further_starts(double limit, const PlacePool& pool, const Eigen::MatrixXd& T, const ConfigurationSpace& space,
                       const WorkspaceBoundOptions& options, const Monitor& monitor) {
-  SeenAbove seen;
-  seen.limit = limit;
-  BoxSearchOptions boxes;
-  boxes.tolerance = options.tolerance;
-  boxes.enough = limit;
-  boxes.most_boxes = boxes_of_a_look;
-  boxes.threads = options.threads;
-  largest_enclosed(space, T, boxes, monitor, &seen);
+  Places places = options.further_starts(T, limit, monitor);
   const auto probe = space.probe();
   const std::vector<double> inside = inner_place(pool, *probe);
-  std::erase_if(seen.middles, [&](std::vector<double>& q) { return !towards(inside, *probe, q); });
+  std::erase_if(places, [&](std::vector<double>& q) { return !towards(inside, *probe, q); });
   Places starts;
-  for (const auto& q : by_sensitivity(std::move(seen.middles), pool, T, *probe))
+  for (const auto& q : by_sensitivity(std::move(places), pool, T, *probe))
     if (int(starts.size()) < options.starts) enter(starts, q, space, start_distance);
   return starts;
 }
 
-Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
-                std::size_t room) {
+PlacePool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const ConfigurationSpace& space,
+                     std::size_t room) {
   std::vector<int> order(blocks.count());
   std::iota(order.begin(), order.end(), 0);
   const auto kept = std::ptrdiff_t(std::min(order.size(), room));
@@ -234,7 +222,7 @@ Pool first_pool(const BlockArray& blocks, const ApproximateDesign& design, const
   order.insert(order.end(), design.support.begin(), design.support.end());
   std::sort(order.begin(), order.end());
   order.erase(std::unique(order.begin(), order.end()), order.end());
-  Pool pool{blocks.subset(order), {}, order.size(), order};
+  PlacePool pool{blocks.subset(order), {}, order.size(), order};
   for (const int i : order) pool.configurations.emplace_back(space.candidate(i).begin(), space.candidate(i).end());
   return pool;
 }
@@ -266,13 +254,12 @@ class ColumnGeneration {
   WorkspaceBound run() {
     const bool quick = blocks_.count() < few_candidates;
     const int rounds = quick ? std::min(few_rounds, options_.rounds) : options_.rounds;
-    const bool has_boxes = !quick && options_.proof.seconds != 0.0 && !space_.is_box() &&
-                           space_.enclosure(Eigen::MatrixXd::Identity(blocks_.columns(), 1)) != nullptr;
+    const bool goes_further = !quick && options_.proof.seconds != 0.0 && !space_.is_box() && options_.further_starts;
     for (int round = 0; round < rounds; ++round) {
       weigh();
       search(starts_of(design_, pool_, of_candidates_, space_, options_.starts, random_));
-      if (has_boxes && is_done() && !monitor_.should_stop())
-        search(in_uncut_boxes(limit_, pool_, design_.factor, space_, options_, monitor_));
+      if (goes_further && is_done() && !monitor_.should_stop())
+        search(further_starts(limit_, pool_, design_.factor, space_, options_, monitor_));
       result_.stopped = monitor_.should_stop();
       monitor_.report({"workspace bound", double(round + 1), double(rounds), {}, {}, 1 / result_.max_ratio});
       if (result_.stopped) break;
@@ -356,7 +343,7 @@ class ColumnGeneration {
   const ConfigurationSpace& space_;
   const WorkspaceBoundOptions& options_;
   const Monitor& monitor_;
-  Pool pool_;
+  PlacePool pool_;
   Random random_;
   int evaluations_;  // the first rounds bring in whatever is larger than the rest; only the last must find each top
   ApproximateDesignOptions weights_;

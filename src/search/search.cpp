@@ -12,7 +12,8 @@
 #include "posewright/planning/extended_bound.hpp"
 #include "posewright/planning/spectral_bound.hpp"
 #include "posewright/planning/whiten.hpp"
-#include "posewright/planning/workspace_proof.hpp"
+#include "posewright/proof/taylor_bound.hpp"
+#include "posewright/proof/workspace_proof.hpp"
 #include "posewright/search/design_measure.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/near_words.hpp"
@@ -320,6 +321,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
     options.seed = request.planner.seed;
     options.proof = request.proof;
     options.threads = request.planner.threads;
+    options.further_starts = middles_of_uncut_boxes(*space, int(joined.blocks.columns()), options);
     workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
   }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "harmonic_space.hpp"
 #include "posewright/model/whitening.hpp"
+#include "posewright/proof/bounded_space.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {
@@ -170,28 +170,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
   std::vector<double> of_part_;
 };
 
-class StudyEnclosure : public ConfigurationSpace::Enclosure {
- public:
-  StudyEnclosure(const SpacePart& part, Eigen::MatrixXd T) : part_(part), T_(std::move(T)) {}
-
-  bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) override {
-    if (!part_.model->enclose(q, part_.selected, nullptr, out_)) return false;
-    limits = std::move(out_.allowed);
-    return true;
-  }
-  bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) override {
-    if (!part_.model->enclose(q, part_.selected, &T_, out_)) return false;
-    d = std::move(out_.sensitivity);
-    return true;
-  }
-
- private:
-  const SpacePart& part_;
-  Eigen::MatrixXd T_;  // of raw columns
-  IdentificationModel::Enclosure out_;
-};
-
-class StudySpace : public ConfigurationSpace {
+class StudySpace : public BoundedSpace {
  public:
   StudySpace(std::vector<SpacePart> parts, const Configurations& candidates, Configurations measured,
              const Spacing& spacing, Eigen::MatrixXd R)
@@ -222,20 +201,7 @@ class StudySpace : public ConfigurationSpace {
   HarmonicForms harmonic_forms(const WeightedConfigurations& where) const override {
     return harmonic_forms_of(parts_, axes_, R_, where);
   }
-  std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd& T) const override {
-    const SpacePart& part = parts_.front();
-    if (parts_.size() > 1 || part.features != nullptr || part.mix.size() > 0) return nullptr;
-    std::vector<TaylorModel> middle;
-    for (const Coordinate& c : part.workspace->proposed()) {
-      if (c.discrete() && c.values.size() > 1) return nullptr;
-      middle.emplace_back(0.5 * (c.lower + c.upper));
-    }
-    // Blocks of the task are J R⁻¹.
-    auto result = std::make_unique<StudyEnclosure>(part, R_.triangularView<Eigen::Upper>().solve(T));
-    std::vector<TaylorModel> limits;
-    if (!result->allowed(middle, limits)) return nullptr;
-    return result;
-  }
+  std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd& T) const override { return enclosure_of(parts_, R_, T); }
   const Spacing& spacing() const override { return spacing_; }
   std::span<const double> candidate(int index) const override { return candidates_[std::size_t(index)]; }
   std::unique_ptr<Probe> probe() const override {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "posewright/planning/harmonic_function.hpp"
+#include "posewright/proof/harmonic_function.hpp"
 
 namespace posewright {
 

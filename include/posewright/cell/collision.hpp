@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewright/blocks/necessary_limits.hpp"
+#include "posewright/cell/necessary_limits.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewright/blocks/necessary_limits.hpp"
+#include "posewright/cell/necessary_limits.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/problem/problem.hpp"

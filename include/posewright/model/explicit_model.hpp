@@ -23,6 +23,10 @@ class ExplicitModel : public IdentificationModel {
                 const Repeatability& repeatability = {});
 
   const TipModel& tip() const { return *tip_; }
+  const MeasurementModel& measurement() const { return *measurement_; }
+  const Repeatability& repeatability() const { return repeatability_; }
+  /// Number of the tip's parameters in use; the instrument's follow.
+  int tip_parameters() const { return tip_parameters_; }
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;
@@ -39,10 +43,6 @@ class ExplicitModel : public IdentificationModel {
   bool do_measurable(const Point& at) const override;
   std::optional<int> do_measurable_margins() const override { return measurement_->margins(); }
   bool do_measurable_margins_at(const Point& at, std::span<double> out) const override;
-  std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                 std::string& why_not) const override;
-  bool do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
-                  std::span<const double> correction, Enclosure& out) const override;
   bool do_actuator_values(const Point& at, std::span<double> values) const override;
   Eigen::Isometry3d do_tool_pose(const Point& at) const override;
 

@@ -9,7 +9,6 @@
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
 
@@ -89,8 +88,6 @@ struct Linearisation {
   }
 };
 
-class HarmonicRows;
-
 /// Visible targets of an instrument. Const and callable from several threads.
 class Visibility {
  public:
@@ -121,29 +118,6 @@ class IdentificationModel {
   void blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const;
   /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
-
-  /// Bound of the sensitivity of these columns over boxes of the coordinates, with the choices of q. Every target
-  /// counts as seen, which only adds information.
-  /// @param why_not  reason, if no bound is known and null is returned
-  std::unique_ptr<HarmonicRows> harmonic_rows(std::span<const double> q, std::span<const int> selected,
-                                              std::string& why_not) const;
-  /// Variant without the remainders of its rows (HarmonicRows::remainders()), which are left to the caller.
-  std::unique_ptr<HarmonicRows> harmonic_expansion(std::span<const double> q, std::span<const int> selected,
-                                                   std::string& why_not) const;
-
-  /// Over a box of configurations: d(q) = ‖J(q) T‖² of whitened blocks J, and functions that are not negative where q
-  /// is within reach and its actuators within their travel.
-  struct Enclosure {
-    TaylorModel sensitivity;
-    std::vector<TaylorModel> allowed;
-  };
-  /// @param q  every coordinate over the box
-  /// @param T  selected × any number; null: only the limits
-  /// @return false if this model has no enclosure
-  bool enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
-               Enclosure& out) const {
-    return visibility_ == nullptr && do_enclose(q, selected, T, shift_, out);
-  }
 
   void set_nominal(int index, double value);  ///< of parameter `index`: later linearisations are there
   /// From now on loads bend an elastic robot as they do with these corrections (of all parameters): what parameters
@@ -209,6 +183,8 @@ class IdentificationModel {
   /// Sets the visibility of targets: from now on the rows of hidden ones are zero in every linearisation, so that a
   /// block counts visible targets only. Without rows_per_target() it does nothing.
   void set_visibility(std::shared_ptr<const Visibility> visibility) { visibility_ = std::move(visibility); }
+  /// False if targets may be hidden.
+  bool sees_all_targets() const { return visibility_ == nullptr; }
   /// Rows that one target has; 0: the instrument sees the pose as a whole.
   int rows_per_target() const { return rows_per_target_; }
 
@@ -221,6 +197,11 @@ class IdentificationModel {
   int tip_column(int tip, int k) const { return int(parameters_.size()) + 6 * tip + k; }
   /// Coordinates of one tip: its own, one tip after the other, choices last.
   std::size_t tip_coordinates() const { return tip_coordinates_; }
+
+  /// q with its choices resolved, at the nominal parameters in force. It refers to q and to this.
+  Point nominal_point(std::span<const double> q) const;
+  /// Nominal parameters in force less those that the model was built with; empty: all zero.
+  std::span<const double> nominal_shift() const { return shift_; }
 
   /// Twists of the tip per unit of each reading (joint or actuator), 6 × readings (see TipModel); false if q is
   /// unreachable or the model has no single tip.
@@ -268,13 +249,9 @@ class IdentificationModel {
   virtual bool do_measurable(const Point& at) const;
   virtual std::optional<int> do_measurable_margins() const;
   virtual bool do_measurable_margins_at(const Point& at, std::span<double> out) const;
-  virtual std::unique_ptr<HarmonicRows> do_harmonic_rows(const Point& at, std::span<const int> selected,
-                                                         std::string& why_not) const;
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
   virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
-  virtual bool do_enclose(std::span<const TaylorModel> q, std::span<const int> selected, const Eigen::MatrixXd* T,
-                          std::span<const double> correction, Enclosure& out) const;
   void hide(std::span<const double> q, Linearisation& out) const;
   bool settle(Point& at, std::vector<double>& scratch) const;
 

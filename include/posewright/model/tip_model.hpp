@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "posewright/blocks/harmonic_parts.hpp"
+#include "posewright/model/harmonic_parts.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/support/taylor_model.hpp"
 

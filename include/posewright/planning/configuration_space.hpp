@@ -9,15 +9,8 @@
 
 #include "posewright/blocks/block_array.hpp"
 #include "posewright/criterion/spacing.hpp"
-#include "posewright/planning/harmonic_form.hpp"
-#include "posewright/support/taylor_model.hpp"
 
 namespace posewright {
-
-struct WeightedConfigurations {
-  std::vector<std::vector<double>> configurations;
-  std::vector<double> weights;
-};
 
 /// Source of candidates: the feasible set and the block of any configuration in it. Planners that look beyond the
 /// candidates see this and nothing of robots.
@@ -54,18 +47,6 @@ class ConfigurationSpace {
     }
   };
 
-  /// ‖J(q) T‖² of the task's blocks over boxes, for one T and one thread.
-  class Enclosure {
-   public:
-    virtual ~Enclosure() = default;
-    /// Functions that are not negative at feasible configurations; other configurations may pass, too.
-    /// @param q  one a coordinate, over the box
-    /// @return false if the box has no enclosure
-    virtual bool allowed(std::span<const TaylorModel> q, std::vector<TaylorModel>& limits) = 0;
-    /// Limits of all allowed values; the model is undefined elsewhere.
-    virtual bool sensitivity(std::span<const TaylorModel> q, TaylorModel& d) = 0;
-  };
-
   virtual ~ConfigurationSpace() = default;
   virtual const std::vector<Axis>& axes() const = 0;
   /// True if every configuration within the axes' limits is feasible.
@@ -73,21 +54,12 @@ class ConfigurationSpace {
   /// Number of smooth functions of q that bound the feasible set within the axes' limits, so that a search may follow
   /// them with a gradient. None: what else bounds it is known as yes or no alone.
   virtual std::optional<int> margins() const { return is_box() ? std::optional(0) : std::nullopt; }
-  /// Bound of ‖J(q) T‖² over boxes of the axes, for any T: then its largest value can be proved.
-  /// @param where  configurations at which bounds that can be chosen ought to be good
-  virtual HarmonicForms harmonic_forms(const WeightedConfigurations& where) const;
   /// Distance of poses that are not candidates (no points in it): the task's spacing, or, if poses may not
   /// repeat, what counts as a repeat. An empty unit: no distance is kept.
   virtual const Spacing& spacing() const = 0;
   /// Configuration of a candidate of the task.
   virtual std::span<const double> candidate(int index) const = 0;
   virtual std::unique_ptr<Probe> probe() const = 0;
-  /// Null if the space has none.
-  virtual std::unique_ptr<Enclosure> enclosure(const Eigen::MatrixXd&) const { return nullptr; }
 };
-
-inline HarmonicForms ConfigurationSpace::harmonic_forms(const WeightedConfigurations&) const {
-  return {"this space does not say how blocks depend on its axes", {}};
-}
 
 }  // namespace posewright

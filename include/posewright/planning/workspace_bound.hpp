@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,11 @@ struct WorkspaceBoundOptions {
   Eigen::MatrixXd prior{};  ///< as ApproximateDesignOptions
   ProofLimits proof{};
   std::vector<std::vector<double>> known{};  ///< configurations that take part from the beginning
+  /// Configurations near which d = ‖J(q) T‖² may exceed a limit, feasible or not: starts that candidates lack where
+  /// actuators cut the workspace. Empty: there are none.
+  using FurtherStarts =
+      std::function<std::vector<std::vector<double>>(const Eigen::MatrixXd& T, double limit, const Monitor& monitor)>;
+  FurtherStarts further_starts{};
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -4,22 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "posewright/model/identification_model.hpp"
-#include "posewright/model/unmodelled_effect.hpp"
 #include "posewright/planning/configuration_space.hpp"
 #include "posewright/workspace/candidates.hpp"
-#include "posewright/workspace/workspace.hpp"
+#include "posewright/workspace/space_part.hpp"
 
 namespace posewright {
-
-/// One model's share of a block: its rows and columns follow those of the parts before.
-struct SpacePart {
-  const IdentificationModel* model;
-  const Workspace* workspace;
-  std::vector<int> selected;
-  Eigen::MatrixXd mix;                       ///< blocks are J(selected) · mix; empty: J(selected)
-  const EffectFeatures* features = nullptr;  ///< in front of the selected ones; null: none
-};
 
 /// The problem's workspace as planners see it. Everything referred to must outlive it.
 /// @param measured  poses that are there already or fixed: new ones keep the spacing from them

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "posewright/blocks/necessary_limits.hpp"
+#include "posewright/cell/necessary_limits.hpp"
 
 namespace posewright {
 

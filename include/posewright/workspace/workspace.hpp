@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "posewright/blocks/necessary_limits.hpp"
 #include "posewright/cell/cell.hpp"
+#include "posewright/cell/necessary_limits.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"

@@ -1,0 +1,102 @@
+#include "posewright/proof/box_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "posewright/support/bytes.hpp"
+#include "posewright/support/parallel.hpp"
+#include "posewright/support/tasks.hpp"
+
+namespace posewright {
+namespace {
+
+// Boxes of one round; more threads than this would have nothing to do.
+constexpr std::size_t boxes_a_round = 16;
+
+/// Verdict of a judge on a box, with its bounds: each field, in the order of the bytes.
+template <class Box, class Found, class Visit>
+void each_field(Box& box, Found& found, const Visit& visit) {
+  visit(box.lower);
+  visit(box.upper);
+  visit(box.bound);
+  visit(box.longest);
+  visit(found.value);
+  visit(found.where);
+  visit(found.function);
+  visit(found.refuting.value);
+  visit(found.refuting.where);
+  visit(found.refuting.function);
+}
+
+}  // namespace
+
+BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<std::unique_ptr<BoxJudge>()>& make,
+                              const BoxSearchOptions& options, const Monitor& monitor) {
+  BoxSearchResult result;
+  std::priority_queue<SearchBox> open;
+  const int threads = thread_count(options.threads);
+  std::vector<std::unique_ptr<BoxJudge>> judges;
+  judges.reserve(std::size_t(threads));
+  for (int i = 0; i < threads; ++i) judges.push_back(make());
+  const auto enough_now = [&] {
+    const double best = result.found.value;
+    const double near = std::isfinite(best) ? best + options.tolerance * std::abs(best) : best;
+    return std::max(near, options.enough - options.slack);
+  };
+  while (true) {
+    std::vector<LargestFound> found(round.size(), result.found);
+    const double enough = enough_now();
+    // Boxes that are not judged keep an infinite bound.
+    if (options.shared && monitor.engine != nullptr) {
+      result.stopped = run_tasks(
+          {"boxes", round.size(), threads, [](std::size_t, std::string_view) {}},
+          [&](std::size_t i, int thread) {
+            judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+            ByteWriter bytes;
+            each_field(round[i], found[i], [&](const auto& field) { bytes.put(field); });
+            return bytes.take();
+          },
+          [&](std::size_t i, std::string_view from) {
+            ByteReader bytes(from);
+            each_field(round[i], found[i], [&](auto& field) { bytes.get(field); });
+          },
+          monitor);
+    } else {
+      parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
+        if (monitor.should_stop()) return;
+        judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+      });
+      result.stopped = monitor.should_stop();
+    }
+    result.boxes += long(round.size());
+    for (LargestFound& one : found) {
+      if (one.refuting.value > result.found.refuting.value) result.found.refuting = std::move(one.refuting);
+      if (one.value > result.found.value) static_cast<FoundPlace&>(result.found) = std::move(one);
+    }
+    for (SearchBox& box : round) {
+      // What is no number bounds nothing: neither less than enough nor more.
+      if (std::isnan(box.bound)) box.bound = std::numeric_limits<double>::infinity();
+      open.push(std::move(box));
+    }
+    round.clear();
+    result.complete = open.top().bound <= enough_now();
+    if (result.complete || result.stopped || result.boxes >= options.most_boxes) break;
+    for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough_now(); ++i) {
+      const SearchBox box = open.top();
+      open.pop();
+      const auto a = std::size_t(box.longest);
+      const double middle = 0.5 * (box.lower[a] + box.upper[a]);
+      round.push_back(box);
+      round.back().upper[a] = middle;
+      round.push_back(box);
+      round.back().lower[a] = middle;
+    }
+  }
+  result.largest = result.found.value;
+  result.bound = open.top().bound + options.slack;
+  return result;
+}
+
+}  // namespace posewright

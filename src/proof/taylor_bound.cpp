@@ -1,0 +1,238 @@
+#include "posewright/proof/taylor_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bernstein.hpp"
+#include "bernstein_tensor.hpp"
+#include "posewright/support/taylor_model.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Degree of the models by the number of axes: a box of six takes some milliseconds.
+constexpr std::array<int, 7> degrees = {4, 8, 8, 6, 5, 4, 4};
+// A cut that leaves more than this share of an axis is not worth another model.
+constexpr double worth_a_cut = 0.9;
+constexpr int most_cuts = 3;
+// Monomials whose degree in one variable is high are counted by their size where that is less than this share of d.
+constexpr double small_share = 2e-5;
+// λ: sweeps of Newton's method on Σ √(slope² + s²), for ever smaller s.
+constexpr int smoothings = 6, sweeps = 12;
+constexpr double first_smoothing = 0.1, finer = 0.2;
+// Boxes that are looked into for what searches miss: a second or two.
+constexpr long boxes_of_a_look = 300;
+
+/// f ≥ 0 on the box [−1, 1]^n where x lies in all of [lower, upper] only; false: nowhere.
+bool cut(const TaylorModel& f, std::vector<double>& lower, std::vector<double>& upper) {
+  if (f.upper() < 0) return false;
+  if (!f.known() || f.monomials() == nullptr) return true;
+  // f is at most this, and its linear part.
+  const auto n = std::size_t(f.monomials()->variables());
+  double linear = 0;
+  for (std::size_t a = 0; a < n; ++a) linear += std::abs(f.coefficients()[1 + a]);
+  const double rest = (f.constant() + (f.variation() - linear) + f.radius()) +
+                      8 * epsilon * (std::abs(f.constant()) + f.variation() + f.radius());
+  for (std::size_t a = 0; a < n; ++a) {
+    const double slope = f.coefficients()[1 + a];
+    if (slope == 0) continue;
+    // rest + the other slopes + slope · x ≥ 0.
+    const double reach = rest + (linear - std::abs(slope)) + 8 * epsilon * linear;
+    const double end = -reach / slope;
+    if (slope > 0) lower[a] = std::max(lower[a], end - 8 * epsilon * std::abs(end));
+    else upper[a] = std::min(upper[a], end + 8 * epsilon * std::abs(end));
+    if (lower[a] > upper[a]) return false;
+  }
+  return true;
+}
+
+/// One multiplier after a step of Newton's method; `slopes` follow.
+double improved(const TaylorModel& c, double lambda, double smoothing, double size, std::vector<double>& slopes) {
+  double first = c.constant(), second = 0, own = 0;
+  for (std::size_t a = 0; a < slopes.size(); ++a) {
+    const double slope = c.coefficients()[1 + a], root = std::hypot(slopes[a], smoothing);
+    first += slope * slopes[a] / root;
+    second += slope * slope * smoothing * smoothing / (root * root * root);
+    own += std::abs(slope);
+  }
+  if (!(own > 0) || !(second > 0)) return lambda;
+  const double most = size / own;
+  const double next = std::clamp(lambda - first / second, std::max(0.0, lambda - most), lambda + most);
+  for (std::size_t a = 0; a < slopes.size(); ++a) slopes[a] += (next - lambda) * c.coefficients()[1 + a];
+  return next;
+}
+
+/// λ ≥ 0 that makes Σ λ_i c_i + Σ_a |slope_a of d + Σ λ_i c_i| small: the linear parts' bound of d + Σ λ_i c_i. Any λ
+/// is valid.
+std::vector<double> multipliers(const TaylorModel& d, const std::vector<const TaylorModel*>& limits) {
+  std::vector<double> lambda(limits.size(), 0.0);
+  if (limits.empty() || d.monomials() == nullptr) return lambda;
+  const auto n = std::size_t(d.monomials()->variables());
+  std::vector<double> slopes(n, 0.0);
+  double size = 0;
+  for (std::size_t a = 0; a < n; ++a) size += std::abs(slopes[a] = d.coefficients()[1 + a]);
+  double smoothing = first_smoothing * size, least = size;
+  std::vector<double> best = lambda;
+  for (int round = 0; round < smoothings && size > 0; ++round, smoothing *= finer) {
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (std::size_t i = 0; i < limits.size(); ++i)
+        lambda[i] = improved(*limits[i], lambda[i], smoothing, size, slopes);
+    double value = 0;
+    for (std::size_t i = 0; i < limits.size(); ++i) value += lambda[i] * limits[i]->constant();
+    for (const double slope : slopes) value += std::abs(slope);
+    if (!(value < least)) continue;
+    least = value;
+    best = lambda;
+  }
+  return best;
+}
+
+/// One thread's.
+class TaylorJudge : public BoxJudge {
+ public:
+  TaylorJudge(const BoundedSpace& space, const Eigen::MatrixXd& T, SeenAbove* seen)
+      : enclosure_(space.enclosure(T)), seen_(seen) {
+    for (const ConfigurationSpace::Axis& axis : space.axes()) {
+      moving_.push_back(axis.upper > axis.lower ? variables_++ : -1);
+      fixed_.push_back(axis.lower);
+      if (axis.upper > axis.lower) widths_.push_back(axis.upper - axis.lower);
+    }
+    monomials_ = &Monomials::of(variables_, degrees[std::size_t(variables_)]);
+  }
+
+  void judge(SearchBox& box, double enough, LargestFound& found) override {
+    const double before = box.bound;
+    box.bound = -infinity;
+    for (int cuts = 0;; ++cuts) {
+      put(box);
+      allowed_.clear();
+      // Without an enclosure nothing is known of a box but that it can be halved.
+      if (!enclosure_->allowed(q_, allowed_)) return leave_unknown(box, before);
+      double left = 1;
+      if (!cut_off(box, left)) return;
+      if (left > worth_a_cut || cuts == most_cuts) break;
+    }
+    TaylorModel d;
+    if (!enclosure_->sensitivity(q_, d) || !d.known()) return leave_unknown(box, before);
+    look_at_middle(d, box, found);
+    std::vector<const TaylorModel*> limits;
+    for (const TaylorModel& c : allowed_)
+      if (c.known() && c.monomials() != nullptr && !(c.lower() >= 0)) limits.push_back(&c);
+    const std::vector<double> lambda = multipliers(d, limits);
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      if (lambda[i] > 0) d.add(lambda[i], *limits[i]);
+    tensor_.take(d, std::isfinite(enough) ? small_share * std::abs(enough) : 0.0);
+    box.bound = std::min(before, tensor_.largest());
+    box.longest = tensor_.most_varied();
+    show(box);
+  }
+
+ private:
+  /// The box as variables.
+  void put(const SearchBox& box) {
+    q_.clear();
+    for (std::size_t k = 0; k < moving_.size(); ++k)
+      q_.push_back(moving_[k] < 0 ? TaylorModel(fixed_[k])
+                                  : TaylorModel::variable(*monomials_, moving_[k], box.lower[std::size_t(moving_[k])],
+                                                          box.upper[std::size_t(moving_[k])]));
+  }
+
+  /// Cuts off the box what no limit allows. @param left  smallest share of an axis that is left
+  bool cut_off(SearchBox& box, double& left) const {
+    std::vector<double> lower(std::size_t(variables_), -1.0), upper(std::size_t(variables_), 1.0);
+    for (const TaylorModel& c : allowed_)
+      if (!cut(c, lower, upper)) return false;
+    for (std::size_t a = 0; a < lower.size(); ++a) {
+      left = std::min(left, 0.5 * (upper[a] - lower[a]));
+      const double middle = 0.5 * box.lower[a] + 0.5 * box.upper[a], half = 0.5 * (box.upper[a] - box.lower[a]);
+      const double slack = 4 * epsilon * (std::abs(middle) + half);
+      if (lower[a] > -1) box.lower[a] = std::max(box.lower[a], middle + lower[a] * half - slack);
+      if (upper[a] < 1) box.upper[a] = std::min(box.upper[a], middle + upper[a] * half + slack);
+    }
+    return true;
+  }
+
+  void leave_unknown(SearchBox& box, double before) const {
+    box.bound = before;
+    double most = -1;
+    for (std::size_t a = 0; a < box.lower.size(); ++a)
+      if (const double width = (box.upper[a] - box.lower[a]) / widths_[a]; width > most) {
+        most = width;
+        box.longest = int(a);
+      }
+  }
+
+  /// The value in the middle, if it is feasible for all that is known.
+  void look_at_middle(const TaylorModel& d, const SearchBox& box, LargestFound& found) const {
+    const double value = d.constant() - d.radius();
+    if (!(value > found.value)) return;
+    for (const TaylorModel& c : allowed_)
+      if (!(c.constant() - c.radius() >= 0)) return;
+    found.value = value;
+    found.function = box.function;
+    found.where = middle_of(box);
+  }
+
+  static std::vector<double> middle_of(const SearchBox& box) {
+    std::vector<double> middle;
+    for (std::size_t a = 0; a < box.lower.size(); ++a) middle.push_back(0.5 * (box.lower[a] + box.upper[a]));
+    return middle;
+  }
+
+  void show(const SearchBox& box) {
+    if (seen_ == nullptr || !(box.bound > seen_->limit)) return;
+    const std::vector<double> middle = middle_of(box);
+    std::vector<double> q;
+    for (std::size_t k = 0; k < moving_.size(); ++k)
+      q.push_back(moving_[k] < 0 ? fixed_[k] : middle[std::size_t(moving_[k])]);
+    const std::scoped_lock lock(seen_->mutex);
+    seen_->middles.push_back(std::move(q));
+  }
+
+  std::unique_ptr<BoundedSpace::Enclosure> enclosure_;
+  SeenAbove* seen_;
+  std::vector<int> moving_;  // variable of each axis; −1: it has one value
+  std::vector<double> fixed_, widths_;
+  int variables_ = 0;
+  const Monomials* monomials_ = nullptr;
+  std::vector<TaylorModel> q_, allowed_;
+  BernsteinTensor tensor_;
+};
+
+}  // namespace
+
+BoxSearchResult largest_enclosed(const BoundedSpace& space, const Eigen::MatrixXd& T, const BoxSearchOptions& options,
+                                 const Monitor& monitor, SeenAbove* seen) {
+  SearchBox all;
+  for (const ConfigurationSpace::Axis& axis : space.axes()) {
+    if (!(axis.upper > axis.lower)) continue;
+    all.lower.push_back(axis.lower);
+    all.upper.push_back(axis.upper);
+  }
+  return largest_value(
+      {all}, [&] { return std::make_unique<TaylorJudge>(space, T, seen); }, options, monitor);
+}
+
+WorkspaceBoundOptions::FurtherStarts middles_of_uncut_boxes(const ConfigurationSpace& space, int columns,
+                                                            const WorkspaceBoundOptions& options) {
+  const auto* bounded = dynamic_cast<const BoundedSpace*>(&space);
+  if (bounded == nullptr || bounded->enclosure(Eigen::MatrixXd::Identity(columns, 1)) == nullptr) return {};
+  BoxSearchOptions boxes;
+  boxes.tolerance = options.tolerance;
+  boxes.most_boxes = boxes_of_a_look;
+  boxes.threads = options.threads;
+  return [bounded, boxes](const Eigen::MatrixXd& T, double limit, const Monitor& monitor) {
+    SeenAbove seen;
+    seen.limit = limit;
+    BoxSearchOptions own = boxes;
+    own.enough = limit;
+    largest_enclosed(*bounded, T, own, monitor, &seen);
+    return std::move(seen.middles);
+  };
+}
+
+}  // namespace posewright

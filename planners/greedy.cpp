@@ -1,14 +1,30 @@
 #include "greedy.hpp"
 
+#include <algorithm>
+
 #include "restarts.hpp"
 
 namespace posewright {
+namespace {
+
+/// The first start has nothing to draw; of further ones, from a drawn pose each, as many as some seconds allow. Counted
+/// and not timed, so that a plan is the same on any machine.
+int affordable_starts(const DesignTask& task, int most) {
+  constexpr double most_products = 1e9;
+  const BlockArray& blocks = *task.candidates.blocks;
+  const double one = double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
+  return int(std::clamp(most_products / one, 1.0, double(most)));
+}
+
+}  // namespace
 
 Design GreedyPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   // Over all candidates: there is no pass afterwards that would bring back what a reduction left out.
   DesignTask whole = task;
   whole.approximate = nullptr;
-  return run_restarts(whole, options, monitor, "greedy",
+  PlannerOptions affordable = options;
+  if (!options.restarts_stated) affordable.restarts = affordable_starts(task, options.restarts);
+  return run_restarts(whole, affordable, monitor, "greedy",
                       [](const DesignTask& part, std::size_t i, Random& random, const Monitor&) {
                         std::vector<int> first;
                         if (i > 0) first.push_back(random.index(int(part.candidates.blocks->count())));

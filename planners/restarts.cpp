@@ -92,11 +92,12 @@ Outcome outcome_in(std::string_view from) {
 }
 
 int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
-  // A kick costs two passes or so; counted and not timed, so that a plan is the same on any machine.
+  // A kick costs two passes or so; counted and not timed, so that a plan is the same on any machine. More restarts than
+  // usual are more work: each keeps its kicks, so that the first of them find what they found.
   constexpr double most_products = 1e10, passes = 2;
   const BlockArray& blocks = *task.candidates.blocks;
   const double pass = double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
-  return int(std::clamp(most_products / (passes * pass * options.restarts), 0.0, double(options.kicks)));
+  return int(std::clamp(most_products / (passes * pass * PlannerOptions{}.restarts), 0.0, double(options.kicks)));
 }
 
 std::vector<int> raw_start(const DesignTask& task, std::size_t index, Random& random) {

@@ -21,8 +21,8 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
 std::string bytes_of(const Outcome& outcome);
 Outcome outcome_in(std::string_view bytes);
 
-/// Kicks of a restart that so many candidates, poses and parameters leave time for, at most `kicks`: all restarts
-/// together make some 10¹⁰ products of scanning for swaps.
+/// Kicks of a restart that so many candidates, poses and parameters leave time for, at most `kicks`: the usual number
+/// of restarts makes some 10¹⁰ products of scanning for swaps.
 int affordable_kicks(const DesignTask& task, const PlannerOptions& options);
 
 /// Start i: rounded optimal weights, draws from them, uniform draws, in turn.

@@ -32,17 +32,25 @@ class LogDetExpansion : public Expansion {
       H -= part.cwiseAbs2();
       return;
     }
-    const BlockArray::RowMatrix products = symmetric_products(Z, r);
-    gram(products, H);
+    gram(symmetric_products(Z, r), H);
+  }
+
+  BlockArray::RowMatrix curvature_factor(const BlockArray::RowMatrix& rows, int r, Eigen::Index most) const override {
+    if (pairs() > most) return {};
+    return symmetric_products(rows * inverse_, r);
   }
 
  private:
+  Eigen::Index pairs() const {
+    const Eigen::Index m = inverse_.cols(), k = nuisance_;
+    return m * (m + 1) / 2 - k * (k + 1) / 2;
+  }
+
   /// ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩: a row for each block's symmetric product, without what is nuisance on both
   /// sides.
   BlockArray::RowMatrix symmetric_products(const BlockArray::RowMatrix& Z, int r) const {
     const Eigen::Index m = Z.cols(), s = Z.rows() / r;
-    const Eigen::Index pairs = m * (m + 1) / 2 - Eigen::Index(nuisance_) * (nuisance_ + 1) / 2;
-    BlockArray::RowMatrix products = padded_rows(s, pairs);
+    BlockArray::RowMatrix products = padded_rows(s, pairs());
     Eigen::MatrixXd square(m, m);
     for (Eigen::Index i = 0; i < s; ++i) {
       const auto zi = Z.middleRows(i * r, r);

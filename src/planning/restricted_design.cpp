@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -22,6 +23,46 @@ constexpr int max_halvings = 20;
 constexpr double boundary_fraction = 0.995;
 // Each step aims at this share of the present products weight × multiplier.
 constexpr double centring = 0.1;
+
+/// Solver of (D + H) x = b, D diagonal and positive, H Φ's curvature on the stacked blocks.
+class NewtonSystem {
+ public:
+  /// @param H  room for a dense curvature; used if the curvature has no factor with few columns
+  NewtonSystem(const Expansion& expansion, const BlockArray::RowMatrix& rows, int r, const Eigen::ArrayXd& D,
+               Eigen::MatrixXd& H)
+      : D_(D), U_(expansion.curvature_factor(rows, r, D.size() / 2)) {
+    if (U_.size() == 0) {
+      expansion.curvature(rows, r, H);
+      H.diagonal() += D.matrix();
+      // In place: of thousands of candidates a second copy would be the largest thing in memory.
+      dense_.emplace(H);
+      return;
+    }
+    // Woodbury: (D + UUᵀ)⁻¹ = D⁻¹ − D⁻¹U (I + UᵀD⁻¹U)⁻¹ UᵀD⁻¹.
+    const BlockArray::RowMatrix scaled = D.rsqrt().matrix().asDiagonal() * U_;
+    Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(U_.cols(), U_.cols());
+    inner.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
+    inner_.compute(inner);
+  }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    if (dense_) return dense_->solve(b);
+    const Eigen::VectorXd x = once(b);
+    // D spans many orders of magnitude near the end: one refinement takes back what that rounds off.
+    return x + once(b - D_.matrix().cwiseProduct(x) - U_ * (U_.transpose() * x));
+  }
+
+ private:
+  Eigen::VectorXd once(const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd scaled = b.array() / D_;
+    return scaled - ((U_ * inner_.solve(U_.transpose() * scaled)).array() / D_).matrix();
+  }
+
+  const Eigen::ArrayXd& D_;
+  BlockArray::RowMatrix U_;
+  Eigen::LLT<Eigen::MatrixXd> inner_;
+  std::optional<Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>> dense_;
+};
 
 }  // namespace
 
@@ -125,7 +166,6 @@ double RestrictedDesign::gap() const {
 
 /// False if no step leaves M regular.
 bool RestrictedDesign::newton_step(double mu) {
-  expansion_->curvature(rows_, blocks_.rows(), hessian_);
   const Eigen::ArrayXd room = cap_ - w_.array();
   Eigen::ArrayXd diagonal = z_.array() / w_.array();
   Eigen::ArrayXd right = d_.array() - lambda_ + mu / w_.array();
@@ -133,11 +173,9 @@ bool RestrictedDesign::newton_step(double mu) {
     diagonal += y_.array() / room;
     right -= mu / room;
   }
-  hessian_.diagonal() += diagonal.matrix();
-  // In place: of thousands of candidates a second copy would be the largest thing in memory.
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(hessian_);
+  const NewtonSystem system(*expansion_, rows_, blocks_.rows(), diagonal, hessian_);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(w_.size());
-  const Eigen::VectorXd a = factor.solve(right.matrix()), b = factor.solve(ones);
+  const Eigen::VectorXd a = system.solve(right.matrix()), b = system.solve(ones);
   const double d_lambda = (a.sum() - (1 - w_.sum())) / b.sum();
   const Eigen::VectorXd dw = a - d_lambda * b;
   const Eigen::VectorXd dz = (mu / w_.array() - z_.array() - z_.array() / w_.array() * dw.array()).matrix();

@@ -182,6 +182,9 @@ TEST_P(Changes, GradientIsTheDerivativeAndTheExpansionIsItsFactor) {
     const Eigen::MatrixXd change = (function.gradient(M + X) - function.gradient(M - X)) / 2e-5;
     for (int i = 0; i < 10; ++i) EXPECT_NEAR(H(i, j), -along(i, change), 1e-6);
   }
+  const BlockArray::RowMatrix U = expansion->curvature_factor(rows, blocks.rows(), 1000);
+  if (U.size() > 0) EXPECT_LT((U * U.transpose() - H).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_EQ(expansion->curvature_factor(rows, blocks.rows(), 5).size(), 0);
 }
 
 std::vector<Case> all_cases() {

@@ -17,6 +17,11 @@ class Expansion {
   Eigen::MatrixXd factor;
   /// H_ij = −D²Φ[J_iᵀJ_i, J_jᵀJ_j], positive semidefinite; `rows` stacks blocks of r rows, H is resized.
   virtual void curvature(const BlockArray::RowMatrix& rows, int r, Eigen::MatrixXd& H) const = 0;
+  /// U with H = U Uᵀ, if Φ has one of at most `most` columns: a solver then need not factorise H. Else empty.
+  virtual BlockArray::RowMatrix curvature_factor(const BlockArray::RowMatrix& /*rows*/, int /*r*/,
+                                                 Eigen::Index /*most*/) const {
+    return {};
+  }
 };
 
 /// Φ as a function of the information matrix M alone (m × m, whitened coordinates).

@@ -1,0 +1,61 @@
+// What a search by restarts promises to whoever asks for more of them.
+
+#include "planners/restarts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "planners/registry.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "tests/kit/random_blocks.hpp"
+
+namespace posewright {
+namespace {
+
+CriterionData unit_data(int columns) {
+  return {Eigen::MatrixXd::Identity(columns, columns), Eigen::VectorXd::Ones(columns), 0};
+}
+
+TEST(Restarts, ARestartHasTheSameKicksHoweverManyThereAre) {
+  const BlockArray blocks = random_blocks(2000, 1, 30, 4);
+  const auto criterion = make_criterion("o1", unit_data(30));
+  const DesignTask task{{&blocks, 0, 1}, criterion.get(), 60};
+  PlannerOptions usual, many, one;
+  many.restarts = 5000;
+  one.restarts = 1;
+  const int kicks = affordable_kicks(task, usual);
+  EXPECT_GT(kicks, 0);
+  EXPECT_EQ(affordable_kicks(task, many), kicks);
+  EXPECT_EQ(affordable_kicks(task, one), kicks);
+}
+
+TEST(Restarts, MoreOfThemAreNeverWorse) {
+  const BlockArray blocks = random_blocks(300, 1, 8, 5);
+  const auto criterion = make_criterion("o1", unit_data(8));
+  const DesignTask task{{&blocks, 0, 1}, criterion.get(), 12};
+  double before = -std::numeric_limits<double>::infinity();
+  for (const int restarts : {1, 2, 5, 20, 60}) {
+    PlannerOptions options;
+    options.restarts = restarts;
+    const double value = make_planner("exchange")->plan(task, options, Monitor{}).value;
+    EXPECT_GE(value, before - 1e-12) << restarts;
+    before = value;
+  }
+}
+
+TEST(Restarts, GreedyStartsOnceWhereAStartTakesLongUnlessMoreAreStated) {
+  const auto criterion = make_criterion("o1", unit_data(6));
+  const auto restarts = [&](std::size_t candidates, bool stated) {
+    const BlockArray blocks = random_blocks(candidates, 2, 6, 6);
+    PlannerOptions options;
+    options.restarts_stated = stated;
+    return make_planner("greedy")->plan({{&blocks, 0, 1}, criterion.get(), 900}, options, Monitor{}).restarts;
+  };
+  EXPECT_EQ(restarts(2000, false), 10);
+  EXPECT_EQ(restarts(60000, false), 1);
+  EXPECT_EQ(restarts(2000, true), 10);
+}
+
+}  // namespace
+}  // namespace posewright

@@ -61,8 +61,12 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
     tests.push_back(std::move(test));
   }
   for (ScoreTest& test : tests) test.corrected = std::min(1.0, test.probability * double(tests.size()));
-  std::stable_sort(tests.begin(), tests.end(), [](const ScoreTest& a, const ScoreTest& b) {
-    return a.probability != b.probability ? a.probability < b.probability : a.statistic > b.statistic;
+  // Where double precision has no smaller probability: information criterion of Schwarz.
+  const auto criterion = [&](const ScoreTest& t) {
+    return double(rows.J.rows()) * std::log1p(-t.share) + t.freedom * std::log(double(rows.J.rows()));
+  };
+  std::stable_sort(tests.begin(), tests.end(), [&](const ScoreTest& a, const ScoreTest& b) {
+    return a.probability != b.probability ? a.probability < b.probability : criterion(a) < criterion(b);
   });
   return tests;
 }

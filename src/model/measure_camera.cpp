@@ -11,6 +11,9 @@ namespace posewright {
 namespace {
 
 constexpr int poses = 12, lens_size = 9;  // camera.* and board.* displacements come first
+constexpr int scale_at = poses + lens_size;
+// 1σ: a board from an office printer.
+constexpr double scale_tolerance = 5e-3;
 constexpr std::array<const char*, lens_size> lens_names = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
 // 1σ before calibration: a data sheet's focal length and centre, an ordinary lens.
 constexpr std::array<double, lens_size> lens_tolerance = {10, 10, 10, 10, 0.1, 0.1, 0.01, 0.01, 0.1};
@@ -114,6 +117,7 @@ struct CameraModel::Scene {
   Eigen::Isometry3d X_MeasureCamera, X_MeasureBoard;
   DisplacementAxes camera, board;
   Lens lens;
+  double scale = 1.0;  ///< of the board's points
 };
 
 CameraModel::CameraModel(const MeasurementSpec& spec)
@@ -137,6 +141,7 @@ CameraModel::CameraModel(const MeasurementSpec& spec)
   for (std::size_t k = 0; k < lens_size; ++k)
     parameters_.push_back(
         {std::string("camera.") + lens_names[k], k < 4 ? "px" : "1", nominal[k], lens_tolerance[k], Role::interest});
+  parameters_.push_back({"pattern.scale", "1", 1.0, scale_tolerance, Role::interest});
 }
 
 CameraModel::Scene CameraModel::scene(const Sighting& sighting) const {
@@ -149,8 +154,9 @@ CameraModel::Scene CameraModel::scene(const Sighting& sighting) const {
   };
   s.X_MeasureCamera = place(X_CarrierCamera_, spec_.on_hand, 0, s.camera);
   s.X_MeasureBoard = place(X_CarrierBoard_, !spec_.on_hand, 6, s.board);
-  for (std::size_t k = 0; k < lens_size; ++k)
-    s.lens[k] = parameters_[poses + k].nominal + (correction.empty() ? 0.0 : correction[poses + k]);
+  const auto value = [&](std::size_t i) { return parameters_[i].nominal + (correction.empty() ? 0.0 : correction[i]); };
+  for (std::size_t k = 0; k < lens_size; ++k) s.lens[k] = value(poses + k);
+  s.scale = value(scale_at);
   return s;
 }
 
@@ -158,7 +164,7 @@ void CameraModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) 
   const Scene s = scene(sighting);
   const Eigen::Isometry3d X_CameraBoard = s.X_MeasureCamera.inverse() * s.X_MeasureBoard;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Eigen::Vector3d p = X_CameraBoard * points_[i];
+    const Eigen::Vector3d p = X_CameraBoard * (s.scale * points_[i]);
     project(p.data(), s.lens.data(), y.data() + 2 * i);
   }
 }
@@ -169,7 +175,7 @@ void CameraModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<cons
   const Eigen::Matrix3d R = s.X_MeasureCamera.linear().transpose();
   const double sign = spec_.on_hand ? -1 : 1;  // a camera that moves sees the board move the other way
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Eigen::Vector3d p = s.X_MeasureBoard * points_[i];
+    const Eigen::Vector3d p = s.X_MeasureBoard * (s.scale * points_[i]);
     const Row23 P = sign * by_point(R * (p - s.X_MeasureCamera.translation()), s.lens) * R;
     Eigen::Matrix<double, 2, 6> along;
     along.leftCols<3>() = P;
@@ -193,8 +199,12 @@ bool CameraModel::motion(const Sighting& sighting, int index, Twist* twist) cons
 void CameraModel::own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const {
   const Scene s = scene(sighting);
   const Eigen::Isometry3d X_CameraBoard = s.X_MeasureCamera.inverse() * s.X_MeasureBoard;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    column.segment<2>(2 * Eigen::Index(i)) = by_lens(X_CameraBoard * points_[i], s.lens, index - poses);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector3d p = X_CameraBoard * (s.scale * points_[i]);
+    column.segment<2>(2 * Eigen::Index(i)) =
+        index == scale_at ? Eigen::Vector2d(by_point(p, s.lens) * (X_CameraBoard.linear() * points_[i]))
+                          : by_lens(p, s.lens, index - poses);
+  }
 }
 
 void CameraModel::covariance(const Sighting&, Eigen::Ref<Eigen::MatrixXd> covariance) const {
@@ -206,7 +216,7 @@ bool CameraModel::sees(const Sighting& sighting) const {
   const Scene s = scene(sighting);
   const Eigen::Isometry3d X_CameraBoard = s.X_MeasureCamera.inverse() * s.X_MeasureBoard;
   for (const Eigen::Vector3d& point : points_) {
-    const Eigen::Vector3d p = X_CameraBoard * point;
+    const Eigen::Vector3d p = X_CameraBoard * (s.scale * point);
     if (!(p.z() > 0)) return false;
     Eigen::Vector2d pixel;
     project(p.data(), s.lens.data(), pixel.data());

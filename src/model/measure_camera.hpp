@@ -14,7 +14,8 @@ Eigen::Vector3d line_of_sight(const CameraMeasurement& camera, const Eigen::Vect
 
 /// A camera and a board of known points, one on the tip, the other fixed. Rows: point by point, image coordinates u, v
 /// (px). Own parameters: camera.{x,…,rz} and board.{x,…,rz}, displacements of their frames in what carries them (the
-/// hand-eye transform and where the fixed one stands), camera.{fx, fy, cx, cy, k1, k2, p1, p2, k3}.
+/// hand-eye transform and where the fixed one stands), camera.{fx, fy, cx, cy, k1, k2, p1, p2, k3}, and
+/// pattern.scale, which multiplies the spacing of the points.
 class CameraModel : public MeasurementModel {
  public:
   explicit CameraModel(const MeasurementSpec& spec);

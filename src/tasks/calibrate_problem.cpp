@@ -33,6 +33,8 @@ namespace {
 constexpr int most_rounds = 4;
 // With a prior, σ is below the tolerance anyhow: here data and prior tell as much as each other.
 constexpr double prior_share = 1 / std::numbers::sqrt2;
+// So many intervals no effect that is one of several moves an estimate.
+constexpr double far_moved = 10.0;
 
 class CalibrationRun {
  public:
@@ -237,11 +239,15 @@ class CalibrationRun {
     if (!text.empty()) result_.notes.push_back(std::move(text));
   }
 
-  /// An effect that most of the residuals are moves estimates farther than their intervals reach.
+  /// An effect that most of the residuals are moves estimates farther than their intervals reach; a smaller one counts
+  /// where it moves them many times as far.
   void give_effect() {
-    const auto effect = std::ranges::find_if(result_.effects, &ScoreTest::dominates);
-    if (effect != result_.effects.end())
-      note(given_.take(*effect, columns_.parameters, result_.fit.covariance, stretch()));
+    const std::vector<ScoreTest>& effects = result_.effects;
+    const auto most = std::ranges::find_if(effects, &ScoreTest::dominates);
+    const auto effect = most != effects.end() ? most : effects.begin();
+    if (effect != effects.end() && effect->beyond_chance())
+      note(given_.take(*effect, columns_.parameters, result_.fit.covariance,
+                       stretch() * (effect->dominates() ? 1.0 : far_moved)));
   }
 
   /// A smooth effect that the residuals show, and for a variant that lacks one the fit once more, counting it.

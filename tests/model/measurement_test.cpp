@@ -249,7 +249,8 @@ TEST(Camera, RowsEqualAutomaticDifferentiationEyeInHandAndEyeToHand) {
       std::vector<Jet> rows;
       for (int r = 0; r < 3; ++r)
         for (int k = 0; k < 4; ++k) {
-          const Vector p = seen_from(eye, board * Vector(Eigen::Vector3d(k * 0.03, r * 0.03, 0).cast<Jet>()));
+          const Vector point = Eigen::Vector3d(k * 0.03, r * 0.03, 0).cast<Jet>() * (own[21] + 1.0);
+          const Vector p = seen_from(eye, board * point);
           Jet pixel[2];
           project(p.data(), lens, pixel);
           rows.insert(rows.end(), {pixel[0], pixel[1]});
@@ -266,14 +267,14 @@ TEST(Camera, BlocksOfManyPixelsHaveFewRowsAndTheSameInformation) {
   const ExplicitModel model = arm.with(spec_of(facing(arm, true)));
   Random random(6, 0);
   const std::vector<int> all = all_parameters(model);
-  EXPECT_EQ(model.block_rows(all), 15) << "six for the motion, nine for the lens";
+  EXPECT_EQ(model.block_rows(all), 16) << "six for the motion, nine for the lens, one for the board";
   const auto m = Eigen::Index(all.size());
   for (int i = 0; i < 20; ++i) {
     const std::vector<double> q = random_configuration(model.coordinates(), random);
     Linearisation scratch;
-    std::vector<double> out(15 * all.size());
+    std::vector<double> out(16 * all.size());
     ASSERT_TRUE(whitened_block(model, q, {}, all, scratch, out.data(), int(all.size())));
-    const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(out.data(), 15, m);
+    const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(out.data(), 16, m);
     ASSERT_TRUE(model.linearise(q, {}, all, scratch));
     const Eigen::MatrixXd expected = scratch.G.transpose() * scratch.covariance.inverse() * scratch.G;
     EXPECT_LT((J.transpose() * J - expected).norm(), 1e-10 * expected.norm());

@@ -141,7 +141,7 @@ class Camera:
         self.points = spacing * np.array([[c, r, 0] for r in range(board["rows"]) for c in range(board["columns"])])
         lens = dict(zip(("fx", "fy", "cx", "cy"), [*camera["focal"], *camera["centre"]]))
         lens |= dict(zip(("k1", "k2", "p1", "p2", "k3"), vector(camera.get("distortion", [0] * 5))))
-        self.nominal = six("camera") | six("board") | {f"camera.{name}": float(value) for name, value in lens.items()}
+        self.nominal = six("camera") | six("board") | {f"camera.{name}": float(value) for name, value in lens.items()} | {"pattern.scale": 1.0}
         self.stands = stands_at("camera", self.X_camera) | stands_at("board", self.X_board)
         self.rows, self.columns = board["rows"], board["columns"]
 
@@ -150,7 +150,7 @@ class Camera:
         camera, board = self.X_camera @ displacement(values, "camera"), self.X_board @ displacement(values, "board")
         camera, board = (X @ camera, board) if self.on_hand else (camera, X @ board)
         X_CameraBoard = np.linalg.inv(camera) @ board
-        return self.points @ X_CameraBoard[:3, :3].T + X_CameraBoard[:3, 3]
+        return values["pattern.scale"] * self.points @ X_CameraBoard[:3, :3].T + X_CameraBoard[:3, 3]
 
     def read(self, X, values, station, seen_from):
         return image(self.in_camera(X, values), {key[7:]: value for key, value in values.items() if key[:7] == "camera."}).ravel()

@@ -172,7 +172,7 @@ design: {poses: 20, candidates: 500}
 TEST(Verdict, AnArmOnAColumnIsNeverMetresOffAndItsOpenDirectionIsNamed) {
   ColumnArm arm;
   Random random(3, 1);
-  for (int draw = 0; draw < 20; ++draw) {
+  for (int draw = 0; draw < 40; ++draw) {
     const Calibration c = arm.calibrated(random, Prior::manufactured);
     ASSERT_TRUE(c.fit.converged);
     EXPECT_EQ(c.verdict, Verdict::do_not_use);
@@ -299,12 +299,52 @@ TEST(Verdict, AnEffectThatMostOfTheResidualsAreLeavesNoIntervalToWhatItMoves) {
   EXPECT_GT(given, 0);
 }
 
+TEST(Verdict, ABoardOfAnotherSizeIsToldFromAFocalLength) {
+  const std::pair scale{"pattern.scale", "pattern.scale"}, focal{"camera.f", "camera.fx, camera.fy"};
+  for (const auto& [is, other] : {std::pair(scale, focal), std::pair(focal, scale)}) {
+    VirtualFile data("instruments/camera_on_hand.yaml", 15);
+    std::vector<double> truth(data.truth.size(), 0.0);
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      if (data.model->parameters()[i].name.starts_with(is.first)) truth[i] = 3e-3 * data.model->parameters()[i].nominal;
+    read_poses_of(*data.model, truth, 1.0, data.random, data.poses);
+    data.write();
+    CalibrateOptions options = data.options();
+    options.variant = "hand_eye";
+    const Calibration c = calibrate_problem(data.problem, options, Monitor{});
+    ASSERT_FALSE(c.effects.empty());
+    EXPECT_EQ(c.effects.front().name, is.second);
+    EXPECT_LT(c.effects.front().corrected, 1e-6);
+    const auto mistaken = std::ranges::find(c.effects, other.second, &ScoreTest::name);
+    EXPECT_GT(c.effects.front().share, mistaken->share + 0.1);
+  }
+}
+
 TEST(Verdict, AFocalLengthOrABoardOfAnotherSizeLeavesNoIntervalOfTheCamerasPlace) {
   if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
-  for (const char* name : {"foc", "sq"}) {
+  for (const auto& [name, effect] : {std::pair("foc", "camera.fx, camera.fy"), std::pair("sq", "pattern.scale")}) {
     const Calibration c =
         calibrated_case(std::string("focal/") + name + ".yaml", std::string("focal/") + name + ".csv");
-    EXPECT_EQ(parameter(c, "camera.z").given, std::vector<std::string>{"camera.fx, camera.fy"}) << name;
+    EXPECT_EQ(parameter(c, "camera.z").given, std::vector<std::string>{effect}) << name;
+  }
+}
+
+TEST(Verdict, ABoardOfOnePercentMoreIsNamedAndEstimatedWithTheCamerasPlace) {
+  if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
+  CalibrateOptions options;
+  options.data = cases / "focal/sq.csv";
+  for (const double size : {0.99, 1.01}) {
+    Problem problem = read_problem(cases / "focal/sq.yaml");
+    std::get<CameraMeasurement>(problem.measurement.instrument).spacing = 0.03 * size;
+    const Calibration without = calibrate_problem(problem, options, Monitor{});
+    EXPECT_EQ(without.effects.front().name, "pattern.scale");
+    EXPECT_EQ(parameter(without, "camera.z").given, std::vector<std::string>{"pattern.scale"});
+    problem.variants.front().parameters.push_back({"pattern.scale"});
+    const Calibration with = calibrate_problem(problem, options, Monitor{});
+    for (const auto& [name, truth] : {std::pair("pattern.scale", 1 / size), std::pair("camera.z", 0.13)}) {
+      const CalibratedParameter& p = parameter(with, name);
+      EXPECT_NEAR(p.value, truth, 2 * p.half_width) << name << " " << size;
+      EXPECT_LT(p.half_width, 0.01 * truth);
+    }
   }
 }
 

@@ -25,8 +25,9 @@ struct ScoreTest {
   double corrected = 1.0;    ///< the same for the best of as many tests (Bonferroni)
   Eigen::VectorXd moves;     ///< of the fitted columns, SI: how far they would move if the effect were fitted, too
 
+  bool beyond_chance() const { return corrected < 0.01; }
   /// Most of what is left is this effect, and chance does not give it.
-  bool dominates() const { return corrected < 0.01 && share > 0.5; }
+  bool dominates() const { return beyond_chance() && share > 0.5; }
 };
 
 /// Score tests (Rao 1948) of effects beside a fit, one by one, on its linearisation: with r the whitened residuals and

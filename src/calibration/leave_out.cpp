@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "posewright/calibration/gain_in_range.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/model/whitening.hpp"
@@ -24,14 +25,6 @@ constexpr double negligible = 0.2;
 constexpr std::size_t most_named = 6;
 // Squares that differ by less, relatively, are the same.
 constexpr double rounding_of_squares = 1e-7;
-
-/// Readings that judge: lengths if there are any, since position is what a robot is calibrated for; else all.
-std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y) {
-  std::vector<int> read = indices_read(y), lengths;
-  for (const int i : read)
-    if (model.readings()[std::size_t(i)].unit == "m") lengths.push_back(i);
-  return lengths.empty() ? read : lengths;
-}
 
 /// Mean square of the whitened residuals of every pose.
 void add_squares(const IdentificationModel& model, const std::vector<double>& correction,
@@ -135,6 +128,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
   result.estimated = summary(estimated, options.weighting);
   result.placed = summary(placed, options.weighting);
   result.gain = gain_of(estimated, placed, options.weighting);
+  result.gain_in_range = gain_in_range(model, columns, poses, start, whole);
   result.squares = std::move(estimated);
   return result;
 }

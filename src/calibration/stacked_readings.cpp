@@ -17,6 +17,13 @@ std::vector<int> indices_read(const Eigen::VectorXd& y) {
   return read;
 }
 
+std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y) {
+  std::vector<int> read = indices_read(y), lengths;
+  for (const int i : read)
+    if (model.readings()[std::size_t(i)].unit == "m") lengths.push_back(i);
+  return lengths.empty() ? read : lengths;
+}
+
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y) {
   out.reading_share = pose.reading_share;

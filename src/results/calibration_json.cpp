@@ -132,9 +132,13 @@ Json orientations_json(const Calibration& c) {
 
 Json left_out_json(const LeaveOut& left_out) {
   const auto judged = [&](double value) { return left_out.groups > 0 ? finite_or_null(value) : Json(nullptr); };
-  return {{"groups", left_out.groups},         {"estimated", judged(left_out.estimated)},
-          {"placed", judged(left_out.placed)}, {"gain", judged(left_out.gain)},
-          {"gains", left_out.gains()},         {"why_not", text_or_null(left_out.why_not)}};
+  return {{"groups", left_out.groups},
+          {"estimated", judged(left_out.estimated)},
+          {"placed", judged(left_out.placed)},
+          {"gain", judged(left_out.gain)},
+          {"gains", left_out.gains()},
+          {"gain_in_range", left_out.gain_in_range ? Json(*left_out.gain_in_range) : Json(nullptr)},
+          {"why_not", text_or_null(left_out.why_not)}};
 }
 
 Json covariance_json(const Calibration& c) {

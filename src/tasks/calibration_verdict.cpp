@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "posewright/calibration/frame_limits.hpp"
+#include "posewright/calibration/gain_in_range.hpp"
 #include "posewright/calibration/gross_errors.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/outputs/table.hpp"
-#include "posewright/support/random.hpp"
 
 namespace posewright {
 namespace {
@@ -21,8 +21,6 @@ constexpr double hopeless_curvature = 10.0;
 constexpr double hopeless_predictions = 3.0;
 // Less is no reason to refuse, however significant.
 constexpr double worth_a_refusal = 1.02;
-constexpr int predicted_configurations = 100;
-constexpr std::uint64_t predicted_stream = 0x9e0d;
 
 std::string remedy_of(const Calibration& c) {
   return std::string("measure more or other poses (plan), fix some of these parameters (`fixed`), or ") +
@@ -81,25 +79,6 @@ void refuse_open_frames(const CalibratedPoses& poses, Calibration& c) {
                     near_dependence(c), remedy_of(c)));
 }
 
-/// Configurations within the range of those that were measured.
-std::vector<MeasuredPose> among(const CalibratedPoses& poses) {
-  Random random(0, predicted_stream);
-  std::vector<MeasuredPose> drawn;
-  const auto any = [&] { return std::size_t(random.uniform() * double(poses.fitted.size())); };
-  for (int i = 0; i < predicted_configurations; ++i) {
-    MeasuredPose pose = poses.fitted[any()];
-    for (std::size_t k = 0; k < pose.q.size(); ++k) {
-      const double other = poses.fitted[any()].q[k];
-      pose.q[k] = poses.model.coordinates()[k].discrete()
-                      ? other
-                      : random.uniform(std::min(pose.q[k], other), std::max(pose.q[k], other));
-    }
-    if (poses.model.measurable(pose.q) && poses.model.predict(pose.q, poses.placed, pose.y))
-      drawn.push_back(std::move(pose));
-  }
-  return drawn;
-}
-
 /// Mean square of what base and tool alone predict wrongly at poses, per unit of noise; infinite if they are not
 /// determined.
 double placing_variance(const CalibratedPoses& poses, const std::vector<MeasuredPose>& at) {
@@ -117,7 +96,7 @@ double placing_variance(const CalibratedPoses& poses, const std::vector<Measured
 
 /// Too few poses for so many parameters: their own σ say so.
 void refuse_wide_predictions(const CalibratedPoses& poses, Calibration& c) {
-  const std::vector<MeasuredPose> at = among(poses);
+  const std::vector<MeasuredPose> at = poses_between(poses.model, poses.fitted, poses.placed);
   if (at.empty()) return;
   const Eigen::MatrixXd J = blocks_of(poses.model, poses.columns, at, poses.placed).all();
   const double sigma = std::sqrt((J * c.fit.covariance).cwiseProduct(J).sum() / double(J.rows()));
@@ -135,6 +114,17 @@ std::string predicted(const Calibration& c) {
                      c.left_out.estimated, c.left_out.placed);
 }
 
+std::string why_not_shown(const Calibration& c) {
+  if (c.left_out.gains())
+    return fmt::format(
+        "there is one between the measured poses, but over the range of the joints only {:.2g} standard "
+        "deviations{}; measure poses all over the range",
+        *c.left_out.gain_in_range, near_dependence(c));
+  return predicted(c) +
+         ", not significant: the data do not show that these parameters are better than the nominal ones" +
+         near_dependence(c);
+}
+
 }  // namespace
 
 void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
@@ -149,13 +139,9 @@ void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
         c.left_out.estimated > worth_a_refusal * c.left_out.placed)
       c.refusals.push_back(predicted(c) + ", a significant gain" + near_dependence(c) + "; " + remedy_of(c));
   }
-  c.verdict = !c.refusals.empty()                            ? Verdict::do_not_use
-              : c.left_out.groups > 0 && !c.left_out.gains() ? Verdict::gain_not_shown
-                                                             : Verdict::use_it;
-  if (c.verdict == Verdict::gain_not_shown)
-    c.notes.push_back("gain not shown: " + predicted(c) +
-                      ", not significant: the data do not show that these parameters are better than the nominal ones" +
-                      near_dependence(c));
+  const bool shown = c.left_out.groups == 0 || (c.left_out.gains() && c.left_out.gains_in_range());
+  c.verdict = !c.refusals.empty() ? Verdict::do_not_use : shown ? Verdict::use_it : Verdict::gain_not_shown;
+  if (c.verdict == Verdict::gain_not_shown) c.notes.push_back("gain not shown: " + why_not_shown(c));
 }
 
 }  // namespace posewright

@@ -10,9 +10,11 @@
 #include <string>
 
 #include "posewright/blocks/identifiability.hpp"
+#include "posewright/calibration/gain_in_range.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/urdf_text.hpp"
@@ -91,6 +93,22 @@ class PoseArm {
     }
     return result;
   }
+  /// Chance of a gain over the range that an estimate from poses of a small region states, and whether there is one.
+  std::pair<double, bool> draw_in_a_corner(int poses) {
+    const std::vector<double> truth = random_truth(*model_, columns_, fraction_, random_);
+    std::vector<MeasuredPose> measured = random_poses(*model_, poses, random_),
+                              others = random_poses(*model_, 50, random_);
+    for (MeasuredPose& pose : measured)
+      for (std::size_t k = 0; k < pose.q.size(); ++k) pose.q[k] = k == 0 ? 0.3 : 0.5 + 0.1 * pose.q[k];
+    read_poses_of(*model_, truth, noise_, random_, measured);
+    read_poses_of(*model_, truth, 0.0, random_, others);
+    FitOptions options;
+    options.prior = Prior::manufactured;
+    const std::vector<double> start = options.start = placed(*model_, columns_, measured, options);
+    const Fit whole = fit(*model_, columns_, measured, options);
+    const double gain = gain_in_range(*model_, columns_, measured, start, whole).value();
+    return {normal_exceeded(-gain), off(whole.correction, others) < off(start, others)};
+  }
   std::size_t parameters() const { return columns_.selected.size(); }
 
  private:
@@ -111,6 +129,23 @@ class PoseArm {
   std::unique_ptr<IdentificationModel> model_;
   VariantColumns columns_;
 };
+
+TEST(LeaveOut, AGainOverTheRangeIsAsFrequentAsPosesOfACornerStateIt) {
+  PoseArm arm(4, 1);
+  double expected = 0, variance = 0;
+  int found = 0, unsure = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto [chance, gained] = arm.draw_in_a_corner(8);
+    expected += chance;
+    variance += chance * (1 - chance);
+    found += gained ? 1 : 0;
+    unsure += chance < 0.9 ? 1 : 0;
+  }
+  RecordProperty("found", found);
+  RecordProperty("unsure", unsure);
+  EXPECT_NEAR(found, expected, 3 * std::sqrt(variance));
+  EXPECT_GT(unsure, 20);
+}
 
 TEST(LeaveOut, ShowsNoGainOfEstimatesThatAreWorseThanBaseAndToolAlone) {
   // A robot that is nearly as nominal, read with twenty times the noise that is stated: estimating spoils it.

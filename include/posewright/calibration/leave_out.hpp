@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,14 @@ struct LeaveOut {
   /// Mean gain of the estimate over all poses left out, paired, in its own standard errors: above 2 it is not an
   /// accident.
   double gain = 0.0;
+  /// posewright::gain_in_range() of the estimate from all poses; none: not judged.
+  std::optional<double> gain_in_range{};
   std::vector<double> squares;  ///< mean square of every pose left out, by the estimate; in the order they were
   std::string why_not;          ///< not judged, or: why the estimate cannot predict (infinite)
 
   /// The estimate predicts better than knowing where things stand does; worse: both beyond chance.
   bool gains() const { return groups > 0 && gain > 2.0; }
+  bool gains_in_range() const { return !gain_in_range || *gain_in_range > 2.0; }
   bool worse() const { return groups > 0 && !(gain >= -2.0); }
 };
 

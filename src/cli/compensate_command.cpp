@@ -39,17 +39,19 @@ po::options_description compensate_command_options() {
        "controller of programs: known name, or YAML file with sign, zero_deg, range_deg, …")               //
       ("coupling", text("F"), "programs: J3 of the controller is J3 - F*J2 of the robot; 0: no coupling")  //
       ("tool", po::value<Words>(),
-       "tool frame of poses in programs: [NAME=]X Y Z and angles in the language's order, mm and deg")  //
-      ("base", po::value<Words>(), "base or user frame of these poses, in the same form")               //
+       "tool frame of poses in programs: [NAME=]X Y Z and angles, in the language's order and units")  //
+      ("base", po::value<Words>(), "base or user frame of these poses, in the same form")              //
       ("world", text("POSE"),
-       "pose of the controller's world frame in the robot's base: x y z roll pitch yaw, mm and deg")          //
-      ("flange", text("POSE"), "pose of the controller's flange in the robot's tip, in the same form")        //
-      ("line-deviation", text("MM"), "largest allowed distance of the tool from straight lines of programs")  //
-      ("problem", text("FILE"), "problem file of the robot (the one named by the parameters, unchanged)")     //
-      ("with-base", "poses refer to the measurement frame: include the estimated pose of the base")           //
-      ("without-tool", "leave out the tool's correction, if another tool was measured")                       //
-      ("position-only", "correct the position of the tip only (robots with fewer than six axes)")             //
-      ("elastic-target", "the poses include the nominal deflection under load already")                       //
+       "pose of the controller's world frame in the robot's base: x y z roll pitch yaw, mm and deg")    //
+      ("flange", text("POSE"), "pose of the controller's flange in the robot's tip, in the same form")  //
+      ("near", text("JOINTS"),
+       "URScript: joints near those of poses that follow no known joints, deg, as the robot's file counts them")  //
+      ("line-deviation", text("MM"), "largest allowed distance of the tool from straight lines of programs")      //
+      ("problem", text("FILE"), "problem file of the robot (the one named by the parameters, unchanged)")         //
+      ("with-base", "poses refer to the measurement frame: include the estimated pose of the base")               //
+      ("without-tool", "leave out the tool's correction, if another tool was measured")                           //
+      ("position-only", "correct the position of the tip only (robots with fewer than six axes)")                 //
+      ("elastic-target", "the poses include the nominal deflection under load already")                           //
       ("most", text("DEG"), "largest correction of a joint (10; prismatic joints: 10 mm per degree)");
   options.add_options()                                                                                           //
       ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                                   //
@@ -83,17 +85,31 @@ CompensateOptions compensation_options(const po::variables_map& values, const Co
   return options;
 }
 
-std::vector<double> pose_numbers(const std::string& option, std::string text) {
+/// Numbers between blanks or commas; none if something else is among them.
+std::vector<double> numbers_of(std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream stream(text);
   stream.imbue(std::locale::classic());
   std::vector<double> numbers;
   double number = 0;
   while (stream >> number) numbers.push_back(number);
-  if (!stream.eof() || numbers.size() < 6 || numbers.size() > 7)
+  return stream.eof() ? numbers : std::vector<double>();
+}
+
+std::vector<double> pose_numbers(const std::string& option, const std::string& text) {
+  std::vector<double> numbers = numbers_of(text);
+  if (numbers.size() < 6 || numbers.size() > 7)
     throw InputError({}, fmt::format("--{} has '{}'", option, text),
-                     "six numbers, seven with a quaternion: mm and deg");
+                     "six numbers, seven with a quaternion: mm and deg (URScript: m and a rotation vector in rad)");
   return numbers;
+}
+
+/// Joints in deg as rad.
+std::vector<double> near_joints(const std::string& text) {
+  std::vector<double> joints = numbers_of(text);
+  if (joints.size() != 6) throw InputError({}, fmt::format("--near has '{}'", text), "six joints in deg");
+  for (double& joint : joints) joint *= std::numbers::pi / 180;
+  return joints;
 }
 
 std::map<std::string, std::vector<double>> named_poses(const po::variables_map& values, const std::string& option) {
@@ -126,6 +142,7 @@ DocumentOptions document_options(const po::variables_map& values) {
   if (const auto coupling = number_between(values, "coupling", -10, 10)) options.coupling = *coupling;
   options.frames.tools = named_poses(values, "tool");
   options.frames.bases = named_poses(values, "base");
+  if (const std::string near = text_of(values, "near"); !near.empty()) options.near = near_joints(near);
   options.frames.X_BaseWorld = fixed_place(values, "world");
   options.frames.X_TipFlange = fixed_place(values, "flange");
   return options;

@@ -3,24 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
+#include "documents.hpp"
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/support/parallel.hpp"
-#include "posewright/support/trimmed.hpp"
 
 namespace posewright {
-namespace {
 
-constexpr std::uintmax_t document_size_limit = 200'000'000;
-
-/// Coordinates that a robot moves, in their order.
 std::vector<std::size_t> moving(const std::vector<Coordinate>& coordinates) {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < coordinates.size(); ++k)
@@ -28,7 +20,6 @@ std::vector<std::size_t> moving(const std::vector<Coordinate>& coordinates) {
   return result;
 }
 
-/// For each name its place among the coordinates.
 std::vector<std::size_t> places_of(const std::vector<std::string>& names, const std::vector<Coordinate>& coordinates) {
   std::vector<std::size_t> result;
   for (const std::string& name : names) {
@@ -39,9 +30,13 @@ std::vector<std::size_t> places_of(const std::vector<std::string>& names, const 
   return result;
 }
 
-[[noreturn]] void refuse_twice(const std::string& file) {
+void refuse_twice(const std::string& file) {
   throw InputError({file, 0}, "is compensated already", "poses as they are meant");
 }
+
+namespace {
+
+constexpr std::uintmax_t document_size_limit = 200'000'000;
 
 /// Plans, routes, evaluations, lists of schema posewright/poses/1.
 class JsonDocument : public PoseDocument {
@@ -139,228 +134,6 @@ class JsonDocument : public PoseDocument {
   std::vector<double> speeds_;
 };
 
-/// Cells of joints are replaced; comments, other columns and line ends stay.
-class CsvDocument : public PoseDocument {
- public:
-  CsvDocument(std::string bytes, const std::string& name, const std::vector<Coordinate>& coordinates)
-      : bytes_(std::move(bytes)), width_(coordinates.size()) {
-    if (bytes_.find(compensated_mark) != std::string::npos) refuse_twice(name);
-    poses_ = read_poses_text(bytes_, name, coordinates);
-    std::string plain = bytes_;
-    if (plain.starts_with(byte_order_mark)) plain.erase(0, byte_order_mark.size());
-    table_ = read_csv_table(plain, name);
-    const std::vector<std::size_t> places = places_of(table_.names, coordinates);
-    for (std::size_t i = 0; i < table_.names.size(); ++i)
-      if (places[i] < coordinates.size() && !coordinates[places[i]].choice())
-        columns_.push_back({i, places[i], unit_of(i, coordinates[places[i]].unit)});
-  }
-
-  std::string text(const OtherValues& values, const std::string& remark) const override {
-    std::vector<Column> actuators;
-    for (std::size_t i = 0; i < table_.names.size(); ++i)
-      for (std::size_t k = 0; k < values.actuator_names.size(); ++k)
-        if (table_.names[i] == values.actuator_names[k]) actuators.push_back({i, k, unit_of(i, "m")});
-    const std::size_t first = bytes_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-    const std::size_t end = bytes_.find('\n');
-    const char* line_end = end != std::string::npos && end > 0 && bytes_[end - 1] == '\r' ? "\r\n" : "\n";
-    std::string result = bytes_.substr(0, first) + "# " + remark + line_end;
-    std::size_t pose = 0;
-    int number = 1;
-    for (std::size_t begin = first; begin < bytes_.size(); ++number) {
-      const std::size_t stop = std::min(bytes_.find('\n', begin), bytes_.size());
-      std::string line = bytes_.substr(begin, stop - begin);
-      if (pose < table_.rows.size() && table_.rows[pose].line == number) {
-        std::vector<std::string> cells(table_.names.size());
-        // What stays is not written anew: digits of its own are somebody's.
-        for (const Column& c : columns_)
-          if (values.configurations[pose * width_ + c.value] != poses_.configurations[pose][c.value])
-            cells[c.column] = fmt::format("{}", values.configurations[pose * width_ + c.value] / c.unit);
-        for (const Column& c : actuators)
-          cells[c.column] = fmt::format("{}", values.actuators[pose * values.actuator_names.size() + c.value] / c.unit);
-        line = with_cells(line, cells);
-        ++pose;
-      }
-      result += line;
-      if (stop < bytes_.size()) result += '\n';
-      begin = stop + 1;
-    }
-    return result;
-  }
-
- private:
-  static constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-
-  struct Column {
-    std::size_t column, value;
-    double unit;  ///< of the header, in SI
-  };
-
-  double unit_of(std::size_t column, const std::string& own) const {
-    const std::string& unit = table_.units[column];
-    return unit.empty() ? 1.0 : parse_value("1 " + unit, own == "m" ? Quantity::length : Quantity::angle);
-  }
-
-  /// The line with cells that are not empty in the place of its own, the blanks around these kept.
-  static std::string with_cells(const std::string& line, const std::vector<std::string>& cells) {
-    std::string result;
-    bool quoted = false;
-    std::size_t begin = 0, cell = 0;
-    for (std::size_t i = 0; i <= line.size(); ++i) {
-      if (i < line.size() && line[i] == '"') quoted = !quoted;
-      if (i < line.size() && (line[i] != ',' || quoted)) continue;
-      const std::string_view own = std::string_view(line).substr(begin, i - begin);
-      const std::string_view core = trimmed(own);
-      if (cell < cells.size() && !cells[cell].empty() && !core.empty()) {
-        const auto before = std::size_t(core.data() - own.data());
-        result.append(own.substr(0, before)).append(cells[cell]).append(own.substr(before + core.size()));
-      } else {
-        result.append(own);
-      }
-      if (i < line.size()) result += ',';
-      begin = i + 1;
-      ++cell;
-    }
-    return result;
-  }
-
-  std::string bytes_;
-  std::size_t width_;
-  PoseTable table_;
-  std::vector<Column> columns_;
-};
-
-/// The points of a program.
-class ProgramPoses : public PoseDocument {
- public:
-  ProgramPoses(std::unique_ptr<ProgramDocument> program, const std::vector<Coordinate>& coordinates,
-               const std::optional<ArmInverse>& inverse, int threads)
-      : moving_(moving(coordinates)),
-        coordinates_(coordinates),
-        inverse_(inverse),
-        program_(std::move(program)),
-        account_(program_->account()) {
-    const std::string& name = account_.file;
-    for (const Coordinate& c : coordinates)
-      if (c.choice() && c.labels.size() > 1)
-        throw InputError({name, 0}, "has no place for the " + c.name + " of a pose",
-                         "a plan, route or list with it; its result can be exported");
-    poses_.name = name;
-    std::vector<int> pose_of_point(program_->points().size(), -1);
-    std::vector<Stood> stood(program_->points().size());
-    parallel_for(stood.size(), thread_count(threads), [&](std::size_t p, int) { stood[p] = stood_at(p); });
-    for (std::size_t p = 0; p < stood.size(); ++p) {
-      if (!stood[p].why_not.empty()) continue;
-      add(program_->points()[p], std::move(stood[p].stand));
-      pose_of_point[p] = int(of_pose_.size());
-      of_pose_.push_back(p);
-    }
-    for (ProgramEntry& entry : account_.entries) {
-      if (entry.point < 0) continue;
-      const auto p = std::size_t(entry.point);
-      entry.point = pose_of_point[p];
-      if (entry.point >= 0) continue;
-      entry.treatment = Treatment::not_compensated;
-      entry.why = stood[p].why_not;
-    }
-    if (of_pose_.empty()) poses_.notes.push_back(name + " has no point that is compensated");
-  }
-
-  const ProgramAccount* account() const override { return &account_; }
-
-  std::string text(const OtherValues& values, const std::string& remark) const override {
-    std::vector<std::optional<ProgramDocument::Values>> points(program_->points().size());
-    for (std::size_t k = 0; k < of_pose_.size(); ++k) {
-      std::vector<double> q;
-      for (const std::size_t m : moving_) q.push_back(values.configurations[k * coordinates_.size() + m]);
-      // What is listed stays to its last digit.
-      if (same(q, k)) continue;
-      points[of_pose_[k]] = ProgramDocument::Values{};
-      points[of_pose_[k]]->stand = branches_[k];
-      points[of_pose_[k]]->stand.joints = q;
-      if (program_->points()[of_pose_[k]].is_pose()) points[of_pose_[k]]->X_BaseTip = inverse_->tip(six(q));
-    }
-    return program_->text(points, remark);
-  }
-
- private:
-  static ArmInverse::Joints six(const std::vector<double>& q) {
-    ArmInverse::Joints joints{};
-    std::copy_n(q.begin(), joints.size(), joints.begin());
-    return joints;
-  }
-
-  /// Joints of a point, or why a pose has none.
-  struct Stood {
-    ArmStand stand;
-    std::string why_not;
-  };
-
-  Stood stood_at(std::size_t p) const {
-    const ProgramDocument::Point& point = program_->points()[p];
-    if (!point.is_pose()) return {{point.joints}, ""};
-    const std::vector<ArmStand> stands = stands_at(point.X_BaseTip);
-    const std::vector<std::size_t> meant = program_->meant(p, stands);
-    if (meant.size() == 1) return {stands[meant.front()], ""};
-    return {{},
-            stands.empty()  ? "the nominal robot does not reach it within its limits, or its wrist is stretched"
-            : meant.empty() ? "no joints within the limits have the status that it states"
-                            : "its status does not decide between several joints"};
-  }
-
-  void add(const ProgramDocument::Point& point, ArmStand stand) {
-    std::vector<double> q;
-    for (const Coordinate& c : coordinates_) q.push_back(c.choice() ? c.values.front() : 0.0);
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-      require_inside(stand.joints[i], coordinates_[moving_[i]], {poses_.name, point.line});
-      q[moving_[i]] = as_allowed(stand.joints[i], coordinates_[moving_[i]]);
-    }
-    poses_.configurations.push_back(std::move(q));
-    poses_.ids.push_back(int(poses_.configurations.size()));
-    poses_.lines.push_back(point.line);
-    poses_.own_ids.push_back(point.measured);
-    branches_.push_back(std::move(stand));
-  }
-
-  /// All joints within the limits, on any turn, that the nominal robot has at a pose.
-  std::vector<ArmStand> stands_at(const Eigen::Isometry3d& X_BaseTip) const {
-    std::vector<ArmBranch> branches;
-    inverse_->solve(X_BaseTip, branches);
-    std::vector<ArmStand> all;
-    for (const ArmBranch& branch : branches) {
-      std::array<double, 6> joints{};
-      add_turns(branch, 0, joints, all);
-    }
-    return all;
-  }
-
-  /// The branch with its joints from i on, on any turns within the limits.
-  void add_turns(const ArmBranch& branch, std::size_t i, std::array<double, 6>& joints,
-                 std::vector<ArmStand>& stands) const {
-    if (i == joints.size()) {
-      stands.push_back({{joints.begin(), joints.end()}, branch.behind_base, branch.behind_arm});
-      return;
-    }
-    for (const int turn : {0, -1, 1}) {
-      joints[i] = branch.q[i] + turn * 2 * std::numbers::pi;
-      if (inside(joints[i], coordinates_[moving_[i]])) add_turns(branch, i + 1, joints, stands);
-    }
-  }
-
-  bool same(const std::vector<double>& q, std::size_t pose) const {
-    for (std::size_t i = 0; i < moving_.size(); ++i)
-      if (q[i] != poses_.configurations[pose][moving_[i]]) return false;
-    return true;
-  }
-
-  std::vector<std::size_t> moving_;
-  std::vector<Coordinate> coordinates_;
-  std::optional<ArmInverse> inverse_;
-  std::unique_ptr<ProgramDocument> program_;
-  ProgramAccount account_;
-  std::vector<std::size_t> of_pose_;  ///< point of each pose
-  std::vector<ArmStand> branches_;    ///< of each pose, as it is listed
-};
-
 /// A list in a format that has a reader and a writer.
 class ListDocument : public PoseDocument {
  public:
@@ -409,7 +182,7 @@ std::string format_of(const DocumentFile& file, const DocumentOptions& options) 
 
 std::unique_ptr<PoseDocument> parse_list(const std::string& format, const DocumentFile& file,
                                          const std::vector<Coordinate>& coordinates) {
-  if (format.empty() || format == "csv") return std::make_unique<CsvDocument>(file.bytes, file.name, coordinates);
+  if (format.empty() || format == "csv") return csv_document(file.bytes, file.name, coordinates);
   if (format == "json") return std::make_unique<JsonDocument>(file.bytes, file.name, coordinates);
   return std::make_unique<ListDocument>(find_readable_format(format), file.bytes, file.name, coordinates);
 }
@@ -489,8 +262,7 @@ std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<Doc
   }
   std::vector<std::unique_ptr<ProgramDocument>> read = read_programs(programs, robot_of(coordinates, options));
   for (std::size_t k = 0; k < read.size(); ++k)
-    documents[places[k]] =
-        std::make_unique<ProgramPoses>(std::move(read[k]), coordinates, options.inverse, options.threads);
+    documents[places[k]] = program_document(std::move(read[k]), coordinates, options);
   std::erase(documents, nullptr);
   return documents;
 }

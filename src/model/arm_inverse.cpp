@@ -59,18 +59,20 @@ ArmInverse::ArmInverse(const ChainDescription& chain) : X_LastTip_(chain.X_LastT
     lines_[i] = {X.linear() * joint.axis, X.translation()};
   }
   zero_ = X * X_LastTip_;
+  three_parallel_ = lines_[1].w.cross(lines_[3].w).norm() <= angle_rounding;
   require_shape();
-  const Vector3d n = lines_[3].w.cross(lines_[4].w);
-  // Where the fifth axis is nearest to the fourth.
-  const Vector3d between = lines_[4].p - lines_[3].p;
-  const double along = between.cross(lines_[4].w).dot(n) / n.squaredNorm();
-  centre_ = lines_[3].p + along * lines_[3].w;
+  // Where one axis is nearest to the next.
+  const Axis &before = lines_[three_parallel_ ? 4 : 3], &behind = lines_[three_parallel_ ? 5 : 4];
+  const Vector3d n = before.w.cross(behind.w);
+  const double along = (behind.p - before.p).cross(behind.w).dot(n) / n.squaredNorm();
+  centre_ = before.p + along * before.w;
   const auto misses = [&](const Axis& line) { return (centre_ - line.p).cross(line.w).norm() > length_rounding; };
-  if (misses(lines_[4]) || misses(lines_[5])) refuse("the last three axes do not meet in a point");
+  if (misses(lines_[4]) || misses(lines_[5]))
+    refuse(three_parallel_ ? "the last two axes do not meet in a point" : "the last three axes do not meet in a point");
   const Vector3d a = lines_[0].w, b = lines_[1].w, out = centre_ - lines_[0].p;
   forward_ = b.cross(a);
   const double side = out.dot(forward_);
-  if (std::abs(side) < 1e-3) refuse("its wrist is on the first axis at zero joints");
+  if (std::abs(side) < 1e-3 && !three_parallel_) refuse("its wrist is on the first axis at zero joints");
   if (side < 0) forward_ = -forward_;
 }
 
@@ -111,6 +113,10 @@ void ArmInverse::solve(const Isometry3d& target, std::vector<ArmBranch>& branche
   const Vector3d upper = across(three.p - two.p), fore = across(centre_ - three.p);
   for (const double q1 : first) {
     const Vector3d back = one.p + turned(c - one.p, one.w, -q1);
+    if (three_parallel_) {
+      add_parallel(target, q1, back, branches);
+      continue;
+    }
     const Vector3d reach = across(back - two.p);
     // |upper + R(q3) fore|² = |reach|²
     const double C = 0.5 * (reach.squaredNorm() - upper.squaredNorm() - fore.squaredNorm());
@@ -150,6 +156,39 @@ void ArmInverse::add_wrists(const Isometry3d& target, const Joints& arm, ArmBran
     if (!polish(target, branch.q)) continue;
     for (double& q : branch.q) q = wrapped(q);
     branches.push_back(branch);
+  }
+}
+
+void ArmInverse::add_parallel(const Isometry3d& target, double q1, const Vector3d& back,
+                              std::vector<ArmBranch>& branches) const {
+  const auto& [one, two, three, four, five, six] = lines_;
+  const Vector3d b = two.w, e = b.unitOrthogonal();
+  const auto across = [&](const Vector3d& v) { return Vector3d(v - b * b.dot(v)); };
+  const Vector3d upper = across(three.p - two.p), fore = across(four.p - three.p);
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(-q1, one.w).toRotationMatrix() * target.linear() * zero_.linear().transpose();
+  std::array<double, 2> fifth{}, third{};
+  // b · R5 w6 = b · R w6: the turns before are about b.
+  const double along = b.dot(five.w) * five.w.dot(six.w);
+  if (solutions_of(b.dot(six.w) - along, b.dot(five.w.cross(six.w)), b.dot(R * six.w) - along, fifth) == 0) return;
+  const Vector3d seen = R.transpose() * b;
+  if (six.w.cross(seen).norm() < 1e-6) return;
+  for (const double q5 : fifth) {
+    const double q6 = angle_between(seen, turned(b, five.w, -q5), six.w);
+    const Eigen::Matrix3d wrist = (Eigen::AngleAxisd(q5, five.w) * Eigen::AngleAxisd(q6, six.w)).toRotationMatrix();
+    const Eigen::Matrix3d turn = R * wrist.transpose();
+    const double sum = angle_between(e, turn * e, b);
+    const Vector3d reach = across(back - turn * (centre_ - four.p) - two.p);
+    const double C = 0.5 * (reach.squaredNorm() - upper.squaredNorm() - fore.squaredNorm());
+    if (solutions_of(upper.dot(fore), upper.dot(b.cross(fore)), C, third) == 0) continue;
+    for (const double q3 : third) {
+      const double q2 = angle_between(upper + turned(fore, b, q3), reach, b), q4 = sum - q2 - q3;
+      ArmBranch branch;
+      branch.q = {q1, q2, three.w.dot(b) < 0 ? -q3 : q3, four.w.dot(b) < 0 ? -q4 : q4, q5, q6};
+      if (!polish(target, branch.q)) continue;
+      for (double& q : branch.q) q = wrapped(q);
+      branches.push_back(branch);
+    }
   }
 }
 

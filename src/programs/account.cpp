@@ -80,6 +80,8 @@ class Accountant {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
       add_motions(programs_[i], accounts[i].account);
       add_lines(programs_[i], accounts[i].account);
+      if (const Language& language = *programs_[i].language; language.pose != nullptr && language.pose().nearest)
+        accounts[i].motions = motions_of(programs_[i]);
     }
     return accounts;
   }
@@ -100,6 +102,34 @@ class Accountant {
           std::find(tally.frames.begin(), tally.frames.end(), use.frames) == tally.frames.end())
         tally.frames.push_back(use.frames);
     }
+  }
+
+  /// The point of a use: that of its name whose value is the last one above it.
+  int target_of(const ReadProgram& program, const Use& use) const {
+    if (use.point) return int(*use.point);
+    int found = -1;
+    const std::vector<FoundPoint>& points = program.reading.points;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!points[i].name.empty() && points[i].name == use.name && points[i].index == use.index &&
+          (found < 0 || points[i].line <= use.line))
+        found = int(i);
+    return found;
+  }
+
+  std::vector<FoundMotion> motions_of(const ReadProgram& program) const {
+    std::vector<FoundMotion> motions;
+    for (const Use& use : program.reading.uses)
+      if (use.moves && use.role == Role::pose)
+        motions.push_back({use.line, beginning_of(program, use), target_of(program, use), use.along});
+    return motions;
+  }
+
+  /// The point whose joints decide at which ones a motion ends.
+  int beginning_of(const ReadProgram& program, const Use& use) const {
+    if (use.near.empty()) return use.before ? target_of(program, program.reading.uses[*use.before]) : -1;
+    Use near{use.line, ""};
+    near.name = use.near;
+    return target_of(program, near);
   }
 
   /// Straight motions to poses from the point of the motion above.
@@ -153,7 +183,7 @@ class Accountant {
   }
 
   Accounted points_of(const ReadProgram& program) {
-    Accounted result{{program.file->name, program.language->format, {}}, {}, {}};
+    Accounted result{{program.file->name, program.language->format, {}}, {}, {}, {}};
     const Reading& reading = program.reading;
     result.frames.resize(reading.points.size());
     std::vector<const Use*> inline_use(reading.points.size(), nullptr);
@@ -193,11 +223,23 @@ class Accountant {
                  std::optional<PlacedFrames>& frames) const {
     if (point.form != Form::pose) return {Treatment::compensated, ""};
     if (!point.frames.tool.name.empty() || used.empty()) used = {point.frames};
+    if (!point.frames.base.name.empty())
+      for (FramePair& pair : used) pair.base = point.frames.base;
     if (used.size() > 1) return {Treatment::not_compensated, "motions to it have several tools or bases"};
+    for (const FrameName* frame : {&used.front().tool, &used.front().base})
+      if (const Use* changed = changed_frame(program, *frame))
+        return {Treatment::not_compensated,
+                fmt::format("the program changes {} (line {})", changed->name, changed->line)};
     Verdict verdict{Treatment::not_compensated, ""};
     frames = frames_.of(*program.language, used.front(), verdict.why);
     if (frames) verdict.treatment = Treatment::compensated;
     return verdict;
+  }
+
+  /// The use that gives a tool or base another value.
+  const Use* changed_frame(const ReadProgram& program, const FrameName& frame) const {
+    const auto at = tallies_.find(key(program, frame.name.substr(0, frame.name.find('['))));
+    return frame.name.empty() || at == tallies_.end() ? nullptr : at->second.with(Role::changed);
   }
 
   Verdict by_form(const ReadProgram& program, const FoundPoint& point) const {
@@ -221,7 +263,7 @@ class Accountant {
     needed.insert(needed.end(), form.status.begin(), form.status.begin() + long(form.required));
     for (const std::string& name : needed)
       if (std::none_of(point.axes.begin(), point.axes.end(), [&](const auto& a) { return a.first == name; }))
-        return not_understood(fmt::format("has no {}: the controller takes it from where the robot is", name));
+        return not_understood(fmt::format("has no {}: the controller has a value of its own for it", name));
     return {Treatment::compensated, ""};
   }
 

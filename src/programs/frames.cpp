@@ -5,15 +5,17 @@
 namespace posewright::programs {
 namespace {
 
-/// The number in TOOL_DATA[1], else the name.
+/// The number in TOOL_DATA[1] and USER 1, else the name in capitals.
 std::string short_name(const std::string& name) {
-  const std::size_t open = name.find('[');
-  return open == std::string::npos || !name.ends_with(']') ? name : name.substr(open + 1, name.size() - open - 2);
+  for (const char* data : {"TOOL_DATA[", "BASE_DATA[", "TOOL ", "USER "})
+    if (const std::string begin = data; name.starts_with(begin))
+      return name.substr(begin.size(), name.size() - begin.size() - (name.ends_with(']') ? 1 : 0));
+  return upper(name);
 }
 
-/// tool0, wobj0, frame 0: no displacement at all.
+/// tool0, wobj0, frame 0 of KRL and TP: no displacement at all. INFORM's tool 0 is a tool as others.
 bool is_identity(const std::string& name, bool tool) {
-  return name == (tool ? "TOOL0" : "WOBJ0") || short_name(name) == "0";
+  return name == (tool ? "TOOL0" : "WOBJ0") || name == "0" || name == "TOOL_DATA[0]" || name == "BASE_DATA[0]";
 }
 
 std::vector<double> no_displacement(const PoseForm& form) { return form.written(Eigen::Isometry3d::Identity()); }
@@ -39,6 +41,7 @@ std::optional<std::vector<double>> FrameValues::values(const Language& language,
   if (const auto at = values_.find(language.format + '\n' + named.name); at != values_.end()) return at->second;
   if (is_identity(named.name, tool)) return no_displacement(language.pose());
   if (const auto at = given.find(""); at != given.end()) return at->second;
+  if (!tool && named.name.empty() && language.pose().in_robot_base) return no_displacement(language.pose());
   return std::nullopt;
 }
 

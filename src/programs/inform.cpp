@@ -1,9 +1,11 @@
-// INFORM: C00000=0,0,0,0,30720,0 of ///POSTYPE PULSE, moved to by MOVJ C00000; other kinds of positions are poses.
+// INFORM: C00000=0,0,0,0,30720,0 of ///POSTYPE PULSE, moved to by MOVJ C00000. C00001=500.0,0.0,300.0,180.0,0.0,0.0 of
+// ///RECTAN is a pose in the frame that ///POSTYPE says, with the joints that ///RCONF says, of the tool of ///TOOL.
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
+#include "pose_form.hpp"
 #include "posewright/support/trimmed.hpp"
 #include "reading.hpp"
 
@@ -31,16 +33,64 @@ class Inform {
  private:
   void read_line(std::size_t begin, std::size_t end, int line) {
     const std::string_view text = trimmed(text_.substr(begin, end - begin));
-    if (text.starts_with("///POSTYPE")) pulses_ = text.find("PULSE") != std::string_view::npos;
-    if (text == "///PULSE") pulses_ = true;
-    if (text.starts_with("///RECTAN")) pulses_ = false;
+    if (text.starts_with("///")) heading(text);
     if (text.starts_with("//INST")) instructions_ = true;
     if (text == "NOP" && !found_.remark) found_.remark = RemarkPlace{std::min(end + 1, text_.size()), "'", "", 32};
     if (text.empty() || text.front() == '/' || text.front() == '\'') return;
     const std::vector<Token> tokens = tokens_of(text_, inform_lexical, begin, end, line);
     TokenCursor cursor(text_, tokens);
-    if (instructions_) instruction(cursor);
-    else point(cursor);
+    if (instructions_) return instruction(cursor);
+    const std::size_t before = found_.points.size();
+    point(cursor);
+    if (found_.points.size() > before) {
+      found_.points.back().heading.begin = begin;
+      found_.points.back().heading.end = std::min(end + 1, text_.size());
+    }
+  }
+
+  /// Headings hold for the positions below them.
+  void heading(std::string_view text) {
+    const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());
+    const std::string word = upper(text.substr(3, blank - 3));
+    const std::string_view value = trimmed(text.substr(blank));
+    const std::string_view first = value.substr(0, value.find_first_of(" ,\t"));
+    if (word == "PULSE" || word == "RECTAN") pulses_ = word == "PULSE";
+    if (word == "TOOL") tool_ = "TOOL " + std::string(first);
+    if (word == "USER") user_ = "USER " + std::string(first);
+    if (word == "RCONF") {
+      heading_ = text;
+      configuration(value);
+    }
+    if (word != "POSTYPE") return;
+    kind_ = upper(first);
+    pulses_ = kind_ == "PULSE";
+  }
+
+  void configuration(std::string_view value) {
+    const std::vector<std::string>& names = inform_pose().status;
+    status_.clear();
+    for (std::size_t begin = 0; begin < value.size() && status_.size() < names.size();) {
+      const std::size_t end = std::min(value.find(',', begin), value.size());
+      const std::vector<Token> part = tokens_of(value, inform_lexical, begin, end);
+      if (part.size() != 2 || part[0].kind != Token::Kind::number) return;
+      status_.emplace_back(names[status_.size()], TextNumber{0, 0, part[0].value});
+      begin = end + 1;
+    }
+  }
+
+  /// What the headings say of a pose.
+  void add_headings(FoundPoint& point) const {
+    point.axes.insert(point.axes.end(), status_.begin(), status_.end());
+    point.heading.text = heading_;
+    point.frames.tool.name = tool_.empty() ? "its tool" : tool_;
+    if (kind_ == "USER") {
+      point.frames.base.name = user_.empty() ? "its user frame" : user_;
+    } else if (kind_ == "BASE" || kind_ == "ROBOT") {
+      point.frames.base = {kind_, std::vector<double>(6, 0.0)};
+    } else if (point.form == Form::pose) {
+      point.form = Form::unclear;
+      point.why = "is given in " + (kind_.empty() ? "no known" : kind_) + " coordinates";
+    }
   }
 
   /// C00001 and P001 by letter and number; empty: something else.
@@ -60,8 +110,7 @@ class Inform {
     FoundPoint point{cursor.now().line, name, pulses_ ? Form::joints : Form::pose};
     cursor.skip();
     cursor.skip();
-    static const std::vector<std::string> of_pose = {"X", "Y", "Z", "RX", "RY", "RZ"};
-    const std::vector<std::string>& names = pulses_ ? source_.axes : of_pose;
+    const std::vector<std::string>& names = pulses_ ? source_.axes : inform_pose().values;
     do {
       const Expression value = read_expression(cursor, {});
       if (!value.is(Expression::Kind::constant)) {
@@ -71,6 +120,7 @@ class Inform {
         point.axes.emplace_back(names[point.axes.size()], TextNumber{value.begin, value.end, value.value});
       }
     } while (cursor.take(','));
+    if (!pulses_) add_headings(point);
     found_.points.push_back(point);
   }
 
@@ -118,6 +168,7 @@ class Inform {
       }
       if (!point_follows && role != Role::operand && role != Role::changed) continue;
       found_.uses.push_back({cursor.now().line, word, role, name, {}, name});
+      found_.uses.back().straight = word == "MOVL";
       point_follows = false;
       if (role == Role::changed) role = Role::operand;
     }
@@ -139,6 +190,8 @@ class Inform {
   std::string_view text_;
   Reading found_;
   bool pulses_ = false, instructions_ = false, shifted_ = false;
+  std::string kind_, tool_, user_, heading_;  ///< of the positions from here on
+  AxisValues status_;
 };
 
 }  // namespace

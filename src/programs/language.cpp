@@ -44,7 +44,7 @@ const std::vector<Language>& languages() {
        false,
        0,
        read_urscript,
-       nullptr},
+       urscript_pose},
       {"yaskawa-inform",
        {".jbi"},
        "",
@@ -56,7 +56,7 @@ const std::vector<Language>& languages() {
        true,
        0,
        read_inform,
-       nullptr},
+       inform_pose},
       {"staubli-val3",
        {".dtx", ".pgx"},
        ".pgx",
@@ -68,7 +68,7 @@ const std::vector<Language>& languages() {
        false,
        0,
        read_val3,
-       nullptr},
+       val3_pose},
       {"joint-trajectory", {}, "", {}, Angle::radians, -1, false, Scope::file, false, 0, read_trajectory, nullptr}};
   return table;
 }

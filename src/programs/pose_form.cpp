@@ -19,6 +19,18 @@ Isometry3d fixed_turns(const std::vector<double>& v, std::size_t x, std::size_t 
          AngleAxisd(v[x] * rad_per_deg, Vector3d::UnitX());
 }
 
+/// Turns about x, then the y that turned with it, then the z that turned with both.
+Isometry3d moved_turns(const std::vector<double>& v) {
+  return Eigen::Translation3d(Vector3d(v[0], v[1], v[2]) * millimetre) *
+         AngleAxisd(v[3] * rad_per_deg, Vector3d::UnitX()) * AngleAxisd(v[4] * rad_per_deg, Vector3d::UnitY()) *
+         AngleAxisd(v[5] * rad_per_deg, Vector3d::UnitZ());
+}
+
+Eigen::Quaterniond turn_of(const Vector3d& r) {
+  const double angle = r.norm();
+  return angle < 1e-300 ? Eigen::Quaterniond::Identity() : Eigen::Quaterniond(AngleAxisd(angle, r / angle));
+}
+
 /// mm, then those turns, deg, about x, y, z.
 std::array<double, 6> with_fixed_turns(const Isometry3d& X) {
   const Eigen::Matrix3d R = X.linear();
@@ -29,6 +41,15 @@ std::array<double, 6> with_fixed_turns(const Isometry3d& X) {
   const double x = upright ? 0 : std::atan2(R(2, 1), R(2, 2)), y = std::atan2(-R(2, 0), level),
                z = upright ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));
   return {p.x(), p.y(), p.z(), x / rad_per_deg, y / rad_per_deg, z / rad_per_deg};
+}
+
+/// mm, then the turns of moved_turns(), deg: the transpose has them about fixed axes, backwards.
+std::array<double, 6> with_moved_turns(const Isometry3d& X) {
+  Isometry3d back = Isometry3d::Identity();
+  back.linear() = X.linear().transpose();
+  const auto v = with_fixed_turns(back);
+  const Vector3d p = X.translation() / millimetre;
+  return {p.x(), p.y(), p.z(), -v[3], -v[4], -v[5]};
 }
 
 Status krl_status(const ArmStand& stand, const std::array<double, 6>& axes) {
@@ -49,6 +70,26 @@ Status tp_status(const ArmStand& stand, const std::array<double, 6>& axes) {
   return {axes[4] < 0 ? 0 : 1, stand.behind_arm ? 1 : 0, stand.behind_base ? 1 : 0, turn(0), turn(3), turn(5)};
 }
 
+/// No flip where the fourth axis is turned over; front and above are 0.
+Status inform_status(const ArmStand& stand, const std::array<double, 6>& axes) {
+  const auto beyond = [&](std::size_t i) { return axes[i] > 180 || axes[i] <= -180 ? 1L : 0L; };
+  const double fourth = std::remainder(axes[3], 360);
+  return {fourth > 90 || fourth <= -90 ? 1 : 0,
+          stand.behind_arm ? 1 : 0,
+          stand.behind_base ? 1 : 0,
+          beyond(3),
+          beyond(5),
+          beyond(0)};
+}
+
+Status val3_status(const ArmStand& stand, const std::array<double, 6>& axes) {
+  return {stand.behind_base ? 1 : 0, stand.behind_arm ? 1 : 0, axes[4] < 0 ? 1 : 0};
+}
+
+std::string val3_status_text(std::size_t which, long value) {
+  return std::string(val3_status_words()[which][std::size_t(value)]);
+}
+
 std::string number_text(std::size_t, long value) { return std::to_string(value); }
 
 std::string tp_status_text(std::size_t which, long value) {
@@ -57,6 +98,12 @@ std::string tp_status_text(std::size_t which, long value) {
 }
 
 }  // namespace
+
+const std::array<std::array<std::string_view, 2>, 3>& val3_status_words() {
+  static constexpr std::array<std::array<std::string_view, 2>, 3> words = {
+      {{"lefty", "righty"}, {"epositive", "enegative"}, {"wpositive", "wnegative"}}};
+  return words;
+}
 
 long PoseForm::merged(std::size_t which, long listed, long now) const {
   const long mask = masks.empty() ? 0 : masks[which];
@@ -118,6 +165,57 @@ const PoseForm& tp_pose() {
                                 6,
                                 tp_status,
                                 tp_status_text};
+  return form;
+}
+
+const PoseForm& urscript_pose() {
+  static const PoseForm form = [] {
+    PoseForm f;
+    f.values = {"x", "y", "z", "rx", "ry", "rz"};
+    f.place = [](const std::vector<double>& v) {
+      return Isometry3d(Eigen::Translation3d(v[0], v[1], v[2]) * turn_of(Vector3d(v[3], v[4], v[5])));
+    };
+    f.written = [](const Isometry3d& X) {
+      const AngleAxisd turn(X.linear());
+      const Vector3d p = X.translation(), r = turn.angle() * turn.axis();
+      return std::vector<double>{p.x(), p.y(), p.z(), r.x(), r.y(), r.z()};
+    };
+    f.length_decimals = 7;
+    f.turn_decimals = 8;
+    f.nearest = f.in_robot_base = true;
+    return f;
+  }();
+  return form;
+}
+
+const PoseForm& inform_pose() {
+  static const PoseForm form = [] {
+    PoseForm f = tp_pose();
+    f.values = {"X", "Y", "Z", "RX", "RY", "RZ"};
+    f.status = {"flip", "lower", "rear", "R", "T", "S"};
+    f.status_of = inform_status;
+    f.status_text = number_text;
+    return f;
+  }();
+  return form;
+}
+
+const PoseForm& val3_pose() {
+  static const PoseForm form = [] {
+    PoseForm f;
+    f.values = {"x", "y", "z", "rx", "ry", "rz"};
+    f.place = [](const std::vector<double>& v) { return moved_turns(v); };
+    f.written = [](const Isometry3d& X) {
+      const auto v = with_moved_turns(X);
+      return std::vector<double>(v.begin(), v.end());
+    };
+    f.status = {"shoulder", "elbow", "wrist"};
+    f.required = 3;
+    f.status_of = val3_status;
+    f.status_text = val3_status_text;
+    f.turns_open = true;
+    return f;
+  }();
   return form;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "account.hpp"
@@ -24,18 +25,28 @@ class Document : public ProgramDocument {
         text_(program_.file->text),
         counter_(counter) {
     program_.file = nullptr;
+    std::vector<int> places(program_.reading.points.size(), -1);
     for (ProgramEntry& entry : account_.entries) {
       const int found = entry.point;
       entry.point = -1;
       if (found < 0 || entry.treatment != Treatment::compensated) continue;
-      entry.point = int(points_.size());
+      entry.point = places[std::size_t(found)] = int(points_.size());
       add(program_.reading.points[std::size_t(found)], accounted.frames[std::size_t(found)]);
       points_.back().measured = accounted.measured[std::size_t(found)];
+    }
+    const auto place = [&](int found) { return found < 0 ? -1 : places[std::size_t(found)]; };
+    for (const FoundMotion& motion : accounted.motions) {
+      const int to = place(motion.to);
+      motions_.push_back({motion.line, place(motion.from), to, known_joints(motion.from), motion.along});
+      if (to >= 0 && frames_[std::size_t(to)]) motions_.back().X_TipTool = frames_[std::size_t(to)]->X_TipTool;
     }
   }
 
   const ProgramAccount& account() const override { return account_; }
   const std::vector<Point>& points() const override { return points_; }
+  const std::vector<PointMotion>* motions() const override {
+    return program_.language->pose != nullptr && program_.language->pose().nearest ? &motions_ : nullptr;
+  }
 
   std::vector<std::size_t> meant(std::size_t point, const std::vector<ArmStand>& stands) const override {
     const PoseForm& form = program_.language->pose();
@@ -50,6 +61,10 @@ class Document : public ProgramDocument {
       if (k < form.required) std::erase_if(left, differs);
       else if (left.size() > 1 && !std::ranges::all_of(left, differs)) std::erase_if(left, differs);
     }
+    const auto beyond = [&](std::size_t i) {
+      return std::ranges::any_of(axes_of(stands[i]), [](double axis) { return std::abs(axis) > 180; });
+    };
+    if (form.turns_open && !std::ranges::all_of(left, beyond)) std::erase_if(left, beyond);
     return left;
   }
 
@@ -70,6 +85,18 @@ class Document : public ProgramDocument {
   }
 
  private:
+  /// Joints of a point of the reading, whether it is compensated or not; none if it states none.
+  std::vector<double> known_joints(int found) const {
+    std::vector<double> values;
+    if (found < 0 || program_.reading.points[std::size_t(found)].form != FoundPoint::Form::joints) return values;
+    for (const std::string& axis : counter_.axes()) {
+      const TextNumber* value = value_of(program_.reading.points[std::size_t(found)], axis);
+      if (value == nullptr) return {};
+      values.push_back(value->value);
+    }
+    return counter_.joints(values);
+  }
+
   static TextEdit edit(const TextNumber& at, std::string text) { return {at.begin, at.end, std::move(text)}; }
 
   const TextNumber* value_of(const FoundPoint& point, const std::string& name) const {
@@ -130,16 +157,42 @@ class Document : public ProgramDocument {
     const PlacedFrames& frames = *frames_[p];
     const std::vector<double> pose = form.written(frames.X_BaseUser.inverse() * values.X_BaseTip * frames.X_TipTool);
     for (std::size_t i = 0; i < pose.size(); ++i)
-      edits.push_back(
-          edit(*value_of(*found_[p], form.values[i]), formats::fixed(pose[i], i < 3 ? 4 : form.turn_decimals)));
-    const std::vector<Status> statuses = statuses_of(values.stand);
+      edits.push_back(edit(*value_of(*found_[p], form.values[i]),
+                           formats::fixed(pose[i], i < 3 ? form.length_decimals : form.turn_decimals)));
+    if (!form.status.empty()) edit_status(edits, p, values.stand);
+  }
+
+  void edit_status(std::vector<TextEdit>& edits, std::size_t p, const ArmStand& stand) const {
+    const PoseForm& form = program_.language->pose();
+    const std::vector<Status> statuses = statuses_of(stand);
     const Status& status = statuses.front();
+    std::map<std::size_t, std::string> others;
     for (std::size_t k = 0; k < form.status.size(); ++k) {
       const TextNumber* listed = value_of(*found_[p], form.status[k]);
       // What only decides between others may be anything where it is not needed.
       if (listed == nullptr || k >= form.required || met(k, *listed, statuses)) continue;
-      edits.push_back(edit(*listed, form.status_text(k, form.merged(k, long(listed->value), status[k]))));
+      std::string text = form.status_text(k, form.merged(k, long(listed->value), status[k]));
+      if (listed->begin == listed->end) others[k] = std::move(text);
+      else edits.push_back(edit(*listed, std::move(text)));
     }
+    if (!others.empty()) add_heading(edits, found_[p]->heading, others);
+  }
+
+  /// A heading with other numbers above the point's line, and the one that was there below it.
+  void add_heading(std::vector<TextEdit>& edits, const StatusHeading& own,
+                   const std::map<std::size_t, std::string>& others) const {
+    const std::size_t first = own.text.find_first_of("0123456789");
+    std::string other = own.text.substr(0, first);
+    std::size_t at = first;
+    for (std::size_t k = 0; at != std::string::npos && at <= own.text.size(); ++k) {
+      const std::size_t end = std::min(own.text.find(',', at), own.text.size());
+      const auto changed = others.find(k);
+      other += (k > 0 ? "," : "") + (changed == others.end() ? own.text.substr(at, end - at) : changed->second);
+      at = end + 1;
+    }
+    const char* line_end = own.end > 1 && text_[own.end - 2] == '\r' ? "\r\n" : "\n";
+    edits.push_back({own.begin, own.begin, other + line_end});
+    edits.push_back({own.end, own.end, own.text + line_end});
   }
 
   void add(const FoundPoint& point, const std::optional<PlacedFrames>& frames) {
@@ -178,6 +231,7 @@ class Document : public ProgramDocument {
   std::vector<Point> points_;
   std::vector<const FoundPoint*> found_;             ///< one a point, of the reading
   std::vector<std::optional<PlacedFrames>> frames_;  ///< one a point
+  std::vector<PointMotion> motions_;
 };
 
 bool has_code_ending(const ReadProgram& program) {

@@ -31,6 +31,12 @@ struct FramePair {
   bool operator==(const FramePair&) const = default;
 };
 
+/// A heading with the status of the points below it.
+struct StatusHeading {
+  std::string text{};              ///< "///RCONF 1,0,0,0,0,0"
+  std::size_t begin = 0, end = 0;  ///< of the point's own line
+};
+
 struct FoundPoint {
   enum class Form { joints, pose, unclear };
   int line = 0;
@@ -41,6 +47,7 @@ struct FoundPoint {
   FramePair frames{};           ///< where the point itself names them
   std::optional<long> index{};  ///< of an element of an array, as motions count them
   std::string label{};          ///< what people call it, where its name is a number
+  StatusHeading heading{};      ///< where the status stands above it: its numbers have no place
 };
 
 /// Use of a point by a motion or another instruction.
@@ -64,9 +71,12 @@ struct Use {
   std::optional<std::size_t> point{};  ///< that stands in the instruction itself
   std::string why{};                   ///< for roles other and unclear
   FramePair frames{};
-  std::optional<long> index{};  ///< of the element of an array, where it is a number
-  bool straight = false;        ///< the tool moves along a line
-  bool moves = true;            ///< false: a name within an instruction that is listed by itself
+  std::optional<long> index{};          ///< of the element of an array, where it is a number
+  bool straight = false;                ///< the tool moves along a line
+  bool moves = true;                    ///< false: a name within an instruction that is listed by itself
+  std::optional<std::size_t> before{};  ///< motion, among the uses, that surely ended where this one begins
+  std::string near{};                   ///< point whose joints decide instead of those before
+  bool along = false;                   ///< the tool follows a path: no joint jumps
 };
 
 /// Place and form of a remark.

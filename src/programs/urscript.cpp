@@ -1,8 +1,11 @@
-// URScript: movej([six]), movel(p[six]), q1 = [six] with movej(q1).
+// URScript: movej([six]), movel(p[six]), q1 = [six] with movej(q1). A pose is of the tool of set_tcp, in the robot's
+// base; it states no joints: the controller takes those nearest to the joints where the motion begins, so a motion is
+// read with the one that surely ran before it.
 
 #include <algorithm>
 #include <set>
 
+#include "pose_form.hpp"
 #include "reading.hpp"
 
 namespace posewright::programs {
@@ -33,7 +36,7 @@ const Grammar& urscript_grammar() {
       {'[', '[', false, true},
       false,
       0,
-      nullptr,
+      [](const std::string& word) { return word == "MOVEL" || word == "MOVEP"; },
       {{"movej"},
        {"movel"},
        {"movep"},
@@ -77,10 +80,66 @@ class Urscript {
     if (!cursor_.is_word()) return cursor_.skip();
     const std::string_view word = cursor_.text();
     const bool first = std::exchange(first_, word == "global" || word == "local");
-    if (word == "def" || word == "thread") return cursor_.skip_to("", true);
+    if (block(word)) return;
     if (cursor_.ahead(1).is('(', cursor_.source())) return call();
     if (first && assignment()) return;
     cursor_.skip();
+  }
+
+  /// What is known of the robot's place where a block begins.
+  struct Block {
+    std::optional<std::size_t> before;
+    bool definition = false, moved = false;
+  };
+
+  /// Takes a word that begins or ends a block; true if the rest of its line is taken, too.
+  bool block(std::string_view word) {
+    const bool definition = word == "def" || word == "thread";
+    if (definition || word == "if" || word == "while" || word == "for" || word == "switch") {
+      blocks_.push_back({last_, definition});
+      // A loop begins where its last motion ended as well.
+      if (word != "if" && word != "switch") last_.reset();
+    } else if (!blocks_.empty() && (word == "elif" || word == "else" || word == "case" || word == "default")) {
+      last_ = blocks_.back().before;
+    } else if (!blocks_.empty() && word == "end") {
+      const Block ended = blocks_.back();
+      blocks_.pop_back();
+      last_ = ended.moved && !ended.definition ? std::nullopt : ended.before;
+      if (ended.moved && !ended.definition) moved();
+    }
+    if (definition) cursor_.skip_to("", true);
+    return definition;
+  }
+
+  void moved() {
+    if (!blocks_.empty()) blocks_.back().moved = true;
+  }
+
+  /// Puts the motions that were found since in their order.
+  void follow(std::size_t since, bool along, const std::string& near) {
+    std::vector<Use>& uses = found_.reading.uses;
+    for (std::size_t i = since; i < uses.size(); ++i) {
+      if (!uses[i].moves || uses[i].role == Role::standing) continue;
+      uses[i].before = last_;
+      uses[i].along = along;
+      uses[i].near = near;
+      last_ = uses[i].role == Role::pose ? std::optional(i) : std::nullopt;
+      moved();
+    }
+  }
+
+  /// set_tcp(p[…]), set_tcp(tcp)
+  void set_tool(const Expression& tool) {
+    FoundPoint values;
+    take_numbers(tool, urscript_pose().values, values);
+    found_.frames.tool = {tool.is(Kind::name) && tool.items.empty() ? tool.word : "an expression"};
+    if (!tool.is(Kind::list) || values.axes.size() != 6) return;
+    found_.frames.tool = {"set_tcp", std::vector<double>()};
+    for (const auto& axis : values.axes) found_.frames.tool.values->push_back(axis.second.value);
+  }
+
+  static bool leaves_place_open(std::string_view word) {
+    return word == "stopl" || word == "stopj" || word == "freedrive_mode" || word == "teach_mode";
   }
 
   /// The arguments may hold further calls: the cursor goes on behind the function's name.
@@ -97,10 +156,37 @@ class Urscript {
       for (Expression& argument : arguments)
         if (argument.is(Kind::other) && argument.items.size() == 2 && is_point_keyword(argument.items[0].word))
           argument = Expression(argument.items[1]);
+      std::string near;
+      if (!arguments.empty()) near = take_inverse(arguments[0]);
+      const std::size_t before = found_.reading.uses.size();
       found_.move(*motion, word, arguments, line);
-    } else if (called.is(Kind::call)) {
+      follow(before, word != "movej" && word != "servoj" && near.empty(), near);
+      return;
+    }
+    if (word == "set_tcp" && called.items.size() >= 1) set_tool(called.items[0]);
+    if (leaves_place_open(word) || own_.contains(word)) {
+      last_.reset();
+      moved();
+    }
+    if (called.is(Kind::call)) {
       found_.pass(word, called.items, line, own_.contains(word) ? Role::passed : Role::operand);
     }
+  }
+
+  /// The pose in get_inverse_kin(pose, qnear=joints) in place of the call; name of the joints.
+  static std::string take_inverse(Expression& target) {
+    if (!target.is(Kind::call) || target.word != "get_inverse_kin" || target.items.empty() || target.items.size() > 2)
+      return "";
+    std::string near;
+    if (target.items.size() == 2) {
+      const Expression& given = target.items[1];
+      const bool keyword = given.is(Kind::other) && given.items.size() == 2 && given.items[0].word == "qnear";
+      const Expression& joints = keyword ? given.items[1] : given;
+      if (!joints.is(Kind::name) || !joints.items.empty()) return "";
+      near = joints.word;
+    }
+    target = Expression(target.items[0]);
+    return near;
   }
 
   static bool is_point_keyword(const std::string& word) {
@@ -121,6 +207,7 @@ class Urscript {
     TokenCursor value_place = ahead;
     const Expression value = read_expression(ahead, urscript_grammar().expressions);
     if (!part && found_.define(name, value, line)) {
+      add_frame(name);
       cursor_ = ahead;
       return true;
     }
@@ -130,9 +217,20 @@ class Urscript {
     return true;
   }
 
+  /// A pose that has a name may be a tool.
+  void add_frame(const std::string& name) {
+    const FoundPoint& point = found_.reading.points.back();
+    if (point.form != Form::pose || point.index || point.axes.size() != 6) return;
+    std::vector<double>& values = found_.reading.frames[name];
+    values.clear();
+    for (const auto& axis : point.axes) values.push_back(axis.second.value);
+  }
+
   std::vector<Token> tokens_;
   TokenCursor cursor_;
   Collector found_;
+  std::vector<Block> blocks_;
+  std::optional<std::size_t> last_;  ///< motion that surely ended where the next begins
   std::set<std::string, std::less<>> own_;
   bool first_ = true;
 };

@@ -1,8 +1,10 @@
-// VAL 3: points are in the .dtx file, <Value key="0" j1="0" … j6="0"/>; the programs beside it (.pgx) move to them.
+// VAL 3: points are in the .dtx file, <Value key="0" j1="0" … j6="0"/>, or as poses in the frame of fatherId with the
+// configuration shoulder, elbow, wrist; frames and tools are there, too. The programs beside it (.pgx) move to them.
 
 #include <algorithm>
 #include <cstdlib>
 
+#include "pose_form.hpp"
 #include "reading.hpp"
 
 namespace posewright::programs {
@@ -15,7 +17,7 @@ const Grammar& val3_grammar() {
   static const Grammar rules = {{'{', '[', false, false},
                                 false,
                                 0,
-                                nullptr,
+                                [](const std::string& word) { return word == "MOVEL"; },
                                 {{"movej"}, {"movel"}, {"movec", Role::pose, 0, 2}},
                                 {"appro", "compose"},
                                 {"herej", "here"},
@@ -52,6 +54,8 @@ class Val3 {
 
   Reading run() {
     data();
+    for (const auto& [name, frame] : frames_)
+      if (const auto values = whole(name, 0)) found_.reading.frames[name] = *values;
     code();
     return std::move(found_.reading);
   }
@@ -84,6 +88,8 @@ class Val3 {
         type = value("type");
       } else if (type.starts_with("joint") || type.starts_with("point")) {
         add_value(name, type.starts_with("point"), attributes, line);
+      } else if (type == "frame" || type == "tool") {
+        add_frame(name, attributes);
       }
     }
   }
@@ -92,19 +98,92 @@ class Val3 {
     if (!found_.reading.remark) found_.reading.remark = RemarkPlace{at, "<!-- ", " -->"};
   }
 
+  struct Frame {
+    std::vector<double> values;  ///< in the father
+    std::string father;
+  };
+
+  /// Name of an element of an array: without an index for the first, which is meant where none is stated.
+  static std::string element(const std::string& name, long index) {
+    return index == 0 ? name : name + "[" + std::to_string(index) + "]";
+  }
+  /// That of "fTable[0]".
+  static std::string element(std::string_view reference) {
+    const std::size_t open = std::min(reference.find('['), reference.size());
+    return element(std::string(reference.substr(0, open)),
+                   open < reference.size() ? std::atol(std::string(reference.substr(open + 1, 9)).c_str()) : 0);
+  }
+
+  std::string_view text_of(const Attribute& a) const {
+    return std::string_view(source_.text).substr(a.begin, a.end - a.begin);
+  }
+
+  /// The number of an attribute; none: it is something else.
+  std::optional<TextNumber> number(const Attribute& a) const {
+    const std::vector<Token> tokens = tokens_of(source_.text, {}, a.begin, a.end);
+    TokenCursor cursor(source_.text, tokens);
+    const Expression value = read_expression(cursor, val3_grammar().expressions);
+    if (!value.is(Kind::constant) || !cursor.done()) return std::nullopt;
+    return TextNumber{value.begin, value.end, value.value};
+  }
+
+  /// A coordinate that is not stated is zero.
+  void add_frame(const std::string& name, const std::vector<Attribute>& attributes) {
+    const std::vector<std::string>& names = val3_pose().values;
+    Frame frame{std::vector<double>(names.size(), 0.0), ""};
+    long key = 0;
+    for (const Attribute& a : attributes) {
+      if (a.name == "key") key = std::atol(std::string(text_of(a)).c_str());
+      if (a.name == "fatherId") frame.father = element(text_of(a));
+      const auto at = std::ranges::find(names, a.name);
+      if (at == names.end()) continue;
+      const auto value = number(a);
+      if (!value) return;
+      frame.values[std::size_t(at - names.begin())] = value->value;
+    }
+    frames_[element(name, key)] = frame;
+  }
+
+  /// Values of a frame in the world, of a tool in the flange.
+  std::optional<std::vector<double>> whole(const std::string& name, int depth) const {
+    if (name.empty() || name == "world" || name == "flange") return std::vector<double>(6, 0.0);
+    const auto at = frames_.find(name);
+    if (at == frames_.end() || depth > 20) return std::nullopt;
+    const auto father = whole(at->second.father, depth + 1);
+    if (!father) return std::nullopt;
+    return val3_pose().written(val3_pose().place(*father) * val3_pose().place(at->second.values));
+  }
+
+  FrameName named_frame(const std::string& name) const {
+    if (name.empty() || name == "world" || name == "flange") return {"world", std::vector<double>(6, 0.0)};
+    return {name};
+  }
+
+  /// lefty or righty and so on; what depends on where the robot is makes the point unclear.
+  void add_status(FoundPoint& point, std::size_t which, const Attribute& a) const {
+    for (std::size_t k = 0; k < 2; ++k)
+      if (text_of(a) == val3_status_words()[which][k]) {
+        point.axes.emplace_back(a.name, TextNumber{a.begin, a.end, double(k)});
+        return;
+      }
+    point.form = Form::unclear;
+    point.why = "the controller chooses its " + a.name + " (" + std::string(text_of(a)) + ")";
+  }
+
   void add_value(const std::string& name, bool pose, const std::vector<Attribute>& attributes, int line) {
     FoundPoint point{line, name, pose ? Form::pose : Form::joints};
-    static const std::vector<std::string> of_pose = {"x", "y", "z", "rx", "ry", "rz"};
+    const std::vector<std::string>&of_pose = val3_pose().values, &status = val3_pose().status;
+    if (pose) point.frames.base = named_frame("");
     for (const Attribute& a : attributes) {
-      if (a.name == "key") point.index = std::atol(source_.text.substr(a.begin, a.end - a.begin).c_str());
-      const bool wanted = pose ? std::find(of_pose.begin(), of_pose.end(), a.name) != of_pose.end()
+      if (a.name == "key") point.index = std::atol(std::string(text_of(a)).c_str());
+      if (pose && a.name == "fatherId") point.frames.base = named_frame(element(text_of(a)));
+      if (const auto at = std::ranges::find(status, a.name); pose && at != status.end())
+        add_status(point, std::size_t(at - status.begin()), a);
+      const bool wanted = pose ? std::ranges::find(of_pose, a.name) != of_pose.end()
                                : a.name.size() == 2 && a.name[0] == 'j' && is_digit(a.name[1]);
       if (!wanted) continue;
-      const std::vector<Token> tokens = tokens_of(source_.text, {}, a.begin, a.end);
-      TokenCursor cursor(source_.text, tokens);
-      const Expression value = read_expression(cursor, val3_grammar().expressions);
-      if (value.is(Kind::constant) && cursor.done()) {
-        point.axes.emplace_back(a.name, TextNumber{value.begin, value.end, value.value});
+      if (const auto value = number(a)) {
+        point.axes.emplace_back(a.name, *value);
       } else {
         point.form = Form::unclear;
         point.why = "has a value that is no number";
@@ -139,9 +218,25 @@ class Val3 {
     const Expression called = read_expression(ahead, val3_grammar().expressions);
     const int line = cursor.now().line;
     cursor.skip();
-    if (const Motion* motion = found_.motion(word))
-      found_.move(*motion, word, called.is(Kind::call) ? called.items : std::vector<Expression>(), line);
-    else if (called.is(Kind::call)) found_.pass(word, called.items, line, own ? Role::passed : Role::operand);
+    const std::vector<Expression> arguments = called.is(Kind::call) ? called.items : std::vector<Expression>();
+    if (const Motion* motion = found_.motion(word)) {
+      found_.frames.tool = tool_of(arguments, motion->count);
+      found_.move(*motion, word, arguments, line);
+    } else if (word == "setFrame" && arguments.size() == 4) {
+      found_.change(arguments[3].word, line, word);
+    } else if (called.is(Kind::call)) {
+      found_.pass(word, called.items, line, own ? Role::passed : Role::operand);
+    }
+  }
+
+  /// movel(point, tool, speed)
+  FrameName tool_of(const std::vector<Expression>& arguments, std::size_t place) const {
+    if (place >= arguments.size() || !arguments[place].is(Kind::name) || arguments[place].component)
+      return {"an expression"};
+    const Expression& tool = arguments[place];
+    if (tool.items.empty()) return named_frame(tool.word);
+    if (tool.items.size() > 1 || !tool.items[0].is(Kind::constant)) return {"an expression"};
+    return named_frame(element(tool.word, std::lround(std::clamp(tool.items[0].value, 0.0, 1e6))));
   }
 
   /// p.trsf.z=…, j[n]=herej(): what follows is seen on its own.
@@ -171,6 +266,7 @@ class Val3 {
 
   const Source& source_;
   Collector found_;
+  std::map<std::string, Frame> frames_;
 };
 
 }  // namespace

@@ -39,6 +39,18 @@ ChainDescription arm(double rounding = 0) {
   return chain;
 }
 
+/// An arm with three parallel axes, as Universal Robots builds them.
+ChainDescription parallel_arm() {
+  const Eigen::Vector3d Y = Eigen::Vector3d::UnitY(), Z = Eigen::Vector3d::UnitZ();
+  ChainDescription chain;
+  chain.joints = {joint(0, 0, 0.1273, Z),       joint(0, 0.22, 0, Y),     joint(-0.612, -0.17, 0, Y),
+                  joint(-0.5723, 0.1139, 0, Y), joint(0, 0, -0.1157, -Z), joint(0, 0.0922, 0, Y)};
+  for (int i = 0; i < 6; ++i) chain.joints[std::size_t(i)].coordinate = i;
+  chain.coordinates.resize(6);
+  chain.X_LastTip = Eigen::Translation3d(0.05, 0.02, 0.1) * Eigen::AngleAxisd(0.7, Y);
+  return chain;
+}
+
 ArmInverse::Joints random_joints(std::mt19937_64& generator) {
   std::uniform_real_distribution<double> any(-3, 3);
   ArmInverse::Joints q{};
@@ -55,8 +67,8 @@ double distance(const ArmInverse::Joints& a, const ArmInverse::Joints& b) {
 
 TEST(ArmInverse, FindsTheJointsThatTheTipWasPutByAndPutsItThereWithAllOthers) {
   // 4 µrad is what 1.5708 differs from a right angle.
-  for (const double rounding : {0.0, 4e-6}) {
-    const ArmInverse inverse(arm(rounding));
+  for (const ChainDescription& chain : {arm(), arm(4e-6), parallel_arm()}) {
+    const ArmInverse inverse(chain);
     std::mt19937_64 generator(1);
     std::vector<ArmBranch> branches;
     int missed = 0;

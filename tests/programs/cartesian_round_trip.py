@@ -1,9 +1,10 @@
-"""Poses of KRL, RAPID and TP programs, compensated by the program and checked without it.
+"""Poses of KRL, RAPID, TP, INFORM, VAL 3 and URScript programs, compensated by the program and checked without it.
 
 cartesian_round_trip.py PROGRAM [POINTS]. Random joints u of an arm; its poses by transforms that are multiplied here, in random
 tools and bases, in mm and deg of each language, with the status that these joints have. Then Newton's method here finds the joints that a
 nominal controller has at the poses written, near u, and the calibrated robot's transforms say where it stands: at most 1 µm off the pose
-that was meant. Every status written is that of these joints.
+that was meant. Every status written is that of these joints. URScript has an arm with three parallel axes and no status: each pose follows
+the joints of the motion before it.
 """
 
 import json
@@ -22,6 +23,8 @@ RNG = np.random.default_rng(4)
 # Origin, axis, limit of each joint, as a KUKA counts them: the first and the fourth axis point down and back.
 JOINTS = [((0, 0, 0.4), (0, 0, -1), 2.9), ((0.26, 0.01, 0.275), (0, 1, 0), 2.4), ((0.68, 0, 0), (0, 1, 0), 2.6),
           ((0.2, -0.01, -0.035), (-1, 0, 0), 5.0), ((0.47, 0, 0), (0, 1, 0), 2.0), ((0.115, 0, 0), (-1, 0, 0), 6.0)]
+PARALLEL = [((0, 0, 0.1273), (0, 0, 1), 6.28), ((0, 0.2209, 0), (0, 1, 0), 6.28), ((-0.612, -0.1719, 0), (0, 1, 0), 6.28),
+            ((-0.5723, 0.1149, 0), (0, 1, 0), 6.28), ((0, 0, -0.1157), (0, 0, -1), 6.28), ((0, 0.0922, 0), (0, 1, 0), 6.28)]
 # Corrections of the calibrated robot: shift (m) of a joint's frame, offset (rad) of its reading.
 SHIFT = {1: (4e-4, 0, -3e-4), 2: (-5e-4, 2e-4, 1e-4)}
 OFFSET = {1: 1.1e-3, 2: -9e-4, 3: 7e-4, 4: 1.3e-3, 5: -5e-4}
@@ -100,7 +103,10 @@ def wrist(q):
 
 
 class Krl:
-    ending, words = "src", []
+    ending, words, beside = "src", [], {}
+
+    def reachable(self, q):
+        return True
 
     def write(self, X, q, tool, base):
         t = frame(zyx(*tool[3:]), np.array(tool[:3]) / 1e3)
@@ -184,7 +190,94 @@ class Tp(Krl):
         return ("F" if d[4] > 0 else "N", "D" if back else "U", "B" if behind else "T", *(math.floor((d[k] + 180) / 360) for k in (0, 3, 5)))
 
 
+class Inform(Krl):
+    ending, words = "jbi", []
+
+    def write(self, X, q, tool, base):
+        b, t = (frame(zyx(f[5], f[4], f[3]), np.array(f[:3]) / 1e3) for f in (base, tool))
+        P = np.linalg.inv(b) @ X @ t
+        r, p, w = angles(P[:3, :3])
+        numbers = ",".join(f"{v:.9f}" for v in [*P[:3, 3] * 1e3, w, p, r])
+        # Neighbours share a heading where they can.
+        heading = "///RCONF " + ",".join(map(str, self.status(q))) + ",0,0\n"
+        self.last, same = heading, getattr(self, "last", "") == heading
+        return ("" if same else heading) + f"C#={numbers}\n"
+
+    def program(self, lines, tool, base):
+        self.words = ["--coupling", "0", "--controller", "inform.yaml", "--tool=3=" + " ".join(map(str, tool)), "--base=2=" + " ".join(map(str, base))]
+        positions, moves = "", ""
+        for k, line in enumerate(lines):
+            positions += line.replace("C#", f"C{k:05d}")
+            moves += f"MOVL C{k:05d} V=100.0 PL=0\n"
+        return (f"/JOB\n//NAME W\n//POS\n///NPOS {len(lines)},0,0,0,0,0\n///USER 2\n///TOOL 3\n///POSTYPE USER\n///RECTAN\n{positions}"
+                f"//INST\n///DATE 2026/01/01 00:00\n///ATTR SC,RW\n///GROUP1 RB1\nNOP\n{moves}END\n")
+
+    def read(self, text, tool, base):
+        b, t = (frame(zyx(f[5], f[4], f[3]), np.array(f[:3]) / 1e3) for f in (base, tool))
+        status = None
+        for line in text.splitlines():
+            if line.startswith("///RCONF"):
+                status = tuple(int(x) for x in line[9:].split(",")[:6])
+            elif re.match(r"C\d+=", line):
+                x = [float(v) for v in line.split("=")[1].split(",")]
+                yield b @ frame(zyx(x[5], x[4], x[3]), np.array(x[:3]) / 1e3) @ np.linalg.inv(t), status
+
+    def status(self, q):
+        d, (behind, back) = np.degrees(q), wrist(q)
+        over = (d[3] - 90) % 360  # the fourth axis is turned over beyond 90 deg
+        beyond = [not -180 < d[k] <= 180 for k in (3, 5, 0)]
+        return tuple(int(x) for x in (0 < over <= 180, back, behind, *beyond))
+
+
+class Val3(Krl):
+    ending, words = "dtx", []
+
+    def turns(self, a, b, c):
+        a, b, c = np.radians([a, b, c])
+        return turn((1, 0, 0), a) @ turn((0, 1, 0), b) @ turn((0, 0, 1), c)
+
+    def frames(self, tool, base):
+        # A frame in a frame, a tool on a tool.
+        return [frame(self.turns(*f[3:]), np.array(f[:3]) / 1e3) @ frame(self.turns(0, 0, 30), (0, 0.1, 0)) for f in (base, tool)]
+
+    def write(self, X, q, tool, base):
+        b, t = self.frames(tool, base)
+        P = np.linalg.inv(b) @ X @ t
+        R = P[:3, :3]
+        a = np.degrees([math.atan2(-R[1, 2], R[2, 2]), math.atan2(R[0, 2], math.hypot(R[1, 2], R[2, 2])), math.atan2(-R[0, 1], R[0, 0])])
+        words = (("lefty", "righty"), ("epositive", "enegative"), ("wpositive", "wnegative"))
+        s = [w[k] for w, k in zip(words, self.status(q))]
+        numbers = " ".join(f'{n}="{v:.9f}"' for n, v in zip(("x", "y", "z", "rx", "ry", "rz"), [*P[:3, 3] * 1e3, *a]))
+        return f'      <Value key="#" {numbers} shoulder="{s[0]}" elbow="{s[1]}" wrist="{s[2]}" fatherId="fPart[1]" />\n'
+
+    def program(self, lines, tool, base):
+        pose = lambda f: " ".join(f'{n}="{v}"' for n, v in zip(("x", "y", "z", "rx", "ry", "rz"), f))
+        data = lambda name, kind, values: f'    <Data name="{name}" access="private" xsi:type="array" type="{kind}" size="{len(values)}">\n' + "".join(values) + "    </Data>\n"
+        value = lambda key, f, father: f'      <Value key="{key}" {f} fatherId="{father}" />\n'
+        self.beside = {"start.pgx": '<?xml version="1.0"?>\n<Programs>\n<Program name="start">\n<Code><![CDATA[\nbegin\n  for n=0 to size(pW)-1\n'
+                                    "    movel(pW[n],tGun[0],mSlow)\n  endFor\n  waitEndMove()\nend\n]]></Code>\n</Program>\n</Programs>\n"}
+        return ('<?xml version="1.0" encoding="utf-8"?>\n<Database xmlns="http://www.staubli.com/robotics/VAL3/Data/2">\n  <Datas>\n'
+                + data("fCell", "frame", [value(0, pose(base), "world[0]")]) + data("fPart", "frame", [value(0, "", "world[0]"), value(1, 'y="100" rz="30"', "fCell[0]")])
+                + data("tHand", "tool", [value(0, pose(tool), "flange[0]")]) + data("tGun", "tool", [value(0, 'y="100" rz="30"', "tHand[0]")])
+                + data("pW", "pointRx", [line.replace("#", str(k)) for k, line in enumerate(lines)]) + "  </Datas>\n</Database>\n")
+
+    def read(self, text, tool, base):
+        b, t = self.frames(tool, base)
+        for m in re.finditer(r'x="(\S+)" y="(\S+)" z="(\S+)" rx="(\S+)" ry="(\S+)" rz="(\S+)" shoulder="(\w+)" elbow="(\w+)" wrist="(\w+)"', text):
+            x = [float(v) for v in m.groups()[:6]]
+            yield (b @ frame(self.turns(*x[3:]), np.array(x[:3]) / 1e3) @ np.linalg.inv(t),
+                   tuple(int(w in ("righty", "enegative", "wnegative")) for w in m.groups()[6:]))
+
+    def status(self, q):
+        behind, back = wrist(q)
+        return int(behind), int(back), int(q[4] < 0)
+
+    def reachable(self, q):
+        return np.abs(q[[3, 5]]).max() < math.pi  # the status leaves turns open
+
+
 def files(folder):
+    (folder / "inform.yaml").write_text("pulses_per_degree: [1000, 1000, 1000, 1000, 1000, 1000]\n")
     links = "".join(f'<link name="l{k}"/>' for k in range(7))
     joints = "".join(f'<joint name="j{k + 1}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/><origin xyz="{o[0]} {o[1]} {o[2]}"/>'
                      f'<axis xyz="{a[0]} {a[1]} {a[2]}"/><limit lower="{-m}" upper="{m}" velocity="1" effort="1"/></joint>'
@@ -201,12 +294,14 @@ def files(folder):
 
 def check(language, tool, base, folder):
     joints = [q for q in (np.array([RNG.uniform(-m + 0.05, m - 0.05) for _, _, m in JOINTS]) for _ in range(3 * POINTS))
-              if abs(q[4]) > 0.15 and abs(math.sin(q[2] + 0.052)) > 0.15][:POINTS]
+              if language.reachable(q) and abs(q[4]) > 0.15 and abs(math.sin(q[2] + 0.052)) > 0.15][:POINTS]
     # Zero is where robots are taught: a status may be stated either way there.
     joints[0] = np.array([0, -0.9, 1.4, 0, 0.6, 0.0])
     text = language.program([language.write(flange(q), q, tool, base) for q in joints], tool, base)
     name = f"w.{language.ending}"
     (folder / name).write_text(text)
+    for other, content in language.beside.items():
+        (folder / other).write_text(content)
     run = subprocess.run([PROGRAM, "compensate", "cal.yaml", name, *language.words, "--most", "45", "--partial", "-o", f"out.{language.ending}", "--json", "--force"],
                          cwd=folder, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
@@ -268,6 +363,76 @@ def check_lines(tool, base, folder):
     print(f"lines: {len(poses) - 1}, the tool leaves them by at most {worst * 1e6:.1f} um, as computed here")
 
 
+def vector(R):
+    q = quaternion(R)
+    size = np.linalg.norm(q[1:])
+    return 2 * math.atan2(size, q[0]) * q[1:] / max(size, 1e-300)
+
+
+def check_near(folder, tool_line, q, X, T):
+    """A pose behind no known joints is refused with its line; --near says which joints are meant; a second run is refused."""
+    P = X @ T
+    pose = ",".join(f"{x:.12f}" for x in [*P[:3, 3], *vector(P[:3, :3])])
+    (folder / "near.script").write_text(f"{tool_line.strip()}\nmovel(p[{pose}])\n")
+    words = [PROGRAM, "compensate", "cal.yaml", "near.script", "-o", "near_out.script", "--most", "45"]
+    run = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    assert run.returncode == 1 and "the joints before it are not known" in run.stdout and not (folder / "near_out.script").exists(), run
+    near = ",".join(map(str, np.degrees(q + 0.05)))
+    run = subprocess.run([*words, f"--near={near}"], cwd=folder, capture_output=True, text=True)
+    assert run.returncode == 0, run
+    x = np.array([float(v) for v in re.search(r"movel\(p\[(.*?)\]", (folder / "near_out.script").read_text())[1].split(",")])
+    u = joints_at(frame(turn(x[3:] / np.linalg.norm(x[3:]), np.linalg.norm(x[3:])), x[:3]) @ np.linalg.inv(T), q)
+    assert np.linalg.norm((flange(u, real=True) - X)[:3, 3]) < 1e-6
+    run = subprocess.run([PROGRAM, "compensate", "cal.yaml", "near_out.script"], cwd=folder, capture_output=True, text=True)
+    assert run.returncode == 2 and "compensated already" in run.stderr, run
+
+
+def check_urscript(folder):
+    """Chains of motions: joints, then poses along lines and to the nearest joints, each near the joints before it."""
+    global JOINTS
+    JOINTS = PARALLEL
+    files(folder)
+    tool = np.array([0.02, -0.03, 0.21, 0.4, -0.2, 0.9])
+    T = frame(turn(tool[3:] / np.linalg.norm(tool[3:]), np.linalg.norm(tool[3:])), tool[:3])
+    clear = lambda q: min(abs(math.sin(q[4])), abs(math.sin(q[2])), 2 * (np.linalg.norm((flange(q) @ [0, -0.0922, 0, 1])[:2]) - 0.1639))
+    lines, joints, meant = ["def weld():", "  set_tcp(p[" + ",".join(map(str, tool)) + "])"], [], []
+    while len(joints) < POINTS:
+        q = RNG.uniform(-3, 3, 6)
+        lines.append("  movej([" + ",".join(f"{x:.12f}" for x in q) + "], a=1.4, v=1.05)")
+        for k in range(5):
+            step = q + RNG.uniform(-0.25, 0.25, 6)
+            # Far from singularities other joints with the same pose are far, too.
+            if min(clear(q), clear(step)) < 0.3:
+                break
+            q = step
+            X = flange(q)
+            P = X @ T
+            word = ("movel", "movej", "movep")[k % 3]
+            lines.append(f"  {word}(p[" + ",".join(f"{x:.12f}" for x in [*P[:3, 3], *vector(P[:3, :3])]) + "], a=1.2, v=0.25)")
+            joints.append(q)
+            meant.append(X)
+    (folder / "w.script").write_text("\n".join([*lines, "end", ""]))
+    run = subprocess.run([PROGRAM, "compensate", "cal.yaml", "w.script", "--most", "45", "--partial", "-o", "out.script", "--json", "--force"],
+                         cwd=folder, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    done = {line["line"] for p in json.loads(run.stdout)["programs"] for line in p["lines"] if line["treatment"] == "compensated"}
+    written = [(n, [float(x) for x in re.search(r"p\[(.*?)\]", line)[1].split(",")]) for n, line in
+               enumerate((folder / "out.script").read_text().splitlines()) if re.search(r"move.\(p\[", line)]
+    assert len(written) == len(joints)
+    worst, checked = 0, 0
+    for (n, x), q, X in zip(written, joints, meant):
+        if n not in done:  # the remark is a line, so that index n is what was line n
+            continue
+        P = frame(turn(np.array(x[3:]) / np.linalg.norm(x[3:]), np.linalg.norm(x[3:])), x[:3]) @ np.linalg.inv(T)
+        u = joints_at(P, q)
+        assert np.abs(u - q).max() < 0.05
+        worst = max(worst, np.linalg.norm((flange(u, real=True) - X)[:3, 3]))
+        checked += 1
+    check_near(folder, lines[1], joints[0], meant[0], T)
+    print(f"Urscript: {checked} of {len(joints)} poses checked, at most {worst * 1e6:.3f} um off")
+    assert checked > 0.8 * len(joints) and worst < 1e-6, (checked, worst)
+
+
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     files(folder)
@@ -275,4 +440,7 @@ with tempfile.TemporaryDirectory() as name:
     check(Krl(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
     check(Rapid(), (120.5, -30, 210, *q), (900, -200, 350, 0.99, 0.1, 0.05, -0.08), folder)
     check(Tp(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
+    check(Inform(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
+    check(Val3(), (120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
     check_lines((120.5, -30, 210, 30, 45, -60), (900, -200, 350, 5, -3, 12), folder)
+    check_urscript(folder)

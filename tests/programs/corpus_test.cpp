@@ -22,6 +22,8 @@ const fs::path corpus = fs::path(POSEWRIGHT_SOURCE_DIR) / "tests/programs/corpus
 ProgramRobot robot_of(const std::string& format) {
   ProgramRobot robot{{"j1", "j2", "j3", "j4", "j5", "j6"}, std::vector<std::string>(6, "rad"), {}, {}};
   if (format != "urscript" && format != "kuka-krl" && format != "staubli-val3") robot.coupling = 0;
+  if (format == "yaskawa-inform")
+    robot.frames = {{{"1", {10, 0, 250, 0, 45, 0}}}, {{"1", {900, -200, 350, 5, -3, 12}}}};
   robot.settings.pulses_per_degree = std::vector<double>(6, 1000);
   return robot;
 }

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -179,12 +181,83 @@ TEST(UrscriptProgram, ComputesConstantsAndSaysWhatItCannot) {
   const auto document = std::move(read({{"urscript", text, "p.script"}}).front());
   EXPECT_THAT(lines_of(*document),
               ElementsAre("2 q1: C", "3 movej: C", "4 movej: C", "5 movej: C", "6 movel q1: C", "7 servoj q1: C",
-                          "8 movej: ?", "9 movel: N", "10 movel: L", "11 movej: ?", "13 path: C", "13 path: C",
+                          "8 movej: N", "9 movel: N", "10 movel: L", "11 movej: ?", "13 path: C", "13 path: C",
                           "14 movej path: C", "15 speedj: L"));
   EXPECT_NEAR(document->points()[2].joints[4], 34 * 0.017453292519943295, 1e-15);
   EXPECT_NEAR(document->points()[3].joints[1], -3.14159265358979 / 6, 1e-14);
   EXPECT_THAT(moved(*document),
               HasSubstr("movej([0.167080, -0.496145, 0.516145, 0.010000, 0.603412, 0.010000], a=1.4)"));
+}
+
+/// An arm whose poses are compensated, with tools and bases that programs name by number.
+std::unique_ptr<ProgramDocument> read_poses(const std::vector<ProgramFile>& files) {
+  ProgramRobot robot = six_axes();
+  robot.why_no_poses.clear();
+  robot.frames = {{{"1", {0, 0, 200, 0, 0, 0}}}, {{"2", {1000, 0, 0, 0, 0, 90}}}};
+  return std::move(read_programs(files, robot).front());
+}
+
+TEST(UrscriptProgram, KnowsWhichMotionSurelyEndedWhereAPoseIsMovedToFrom) {
+  const std::string text =
+      "def prog():\n  set_tcp(p[0, 0, 0.1, 0, 0, 0])\n  home = [0, 0, 0, 0, 1, 0]\n  a = p[0.4, 0, 0.3, 0, 3, 0]\n"
+      "  movel(a)\n  movej(home)\n  movel(a)\n  while (get_standard_digital_in(1)):\n    sync()\n  end\n"
+      "  movej(p[0.4, 0.1, 0.3, 0, 3, 0])\n  if (x > 1):\n    movel(a)\n  else:\n    movel(a)\n  end\n  movel(a)\n"
+      "  movej(get_inverse_kin(a, qnear=home))\n  movel(pose_trans(a, p[0, 0, 0.1, 0, 0, 0]))\n  movel(a)\nend\n";
+  const auto document = read_poses({{"urscript", text, "p.script"}});
+  EXPECT_NEAR(document->points()[0].X_BaseTip.translation().z(), 0.3 - 0.1 * std::cos(3.0), 1e-12);
+  struct Expected {
+    int line, from;
+    bool joints, along;
+  };
+  // Points: a and the one in line 11; home is left, and its joints are known.
+  const std::vector<Expected> expected = {{5, -1, false, true},  {6, 0, false, false},  {7, -1, true, true},
+                                          {11, 0, false, false}, {13, 1, false, true},  {15, 1, false, true},
+                                          {17, -1, false, true}, {18, -1, true, false}, {20, -1, false, true}};
+  ASSERT_EQ(document->motions()->size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const PointMotion& motion = (*document->motions())[k];
+    EXPECT_EQ(motion.line, expected[k].line);
+    EXPECT_EQ(motion.from, expected[k].from) << motion.line;
+    EXPECT_EQ(!motion.joints.empty(), expected[k].joints) << motion.line;
+    EXPECT_EQ(motion.along, expected[k].along) << motion.line;
+  }
+}
+
+TEST(InformProgram, GivesAPoseAHeadingOfItsOwnWhereItsJointsNeedOne) {
+  const std::string text =
+      "/JOB\r\n//NAME W\r\n//POS\r\n///NPOS 2,0,0,0,0,0\r\n///USER 2\r\n///TOOL 1\r\n///POSTYPE USER\r\n"
+      "///RECTAN\r\n///RCONF 0,0,0,0,0,0,0,0\r\nC00000=100.000,0.000,500.000,0.00,0.00,0.00\r\n"
+      "C00001=200.000,0.000,500.000,0.00,0.00,0.00\r\n//INST\r\nNOP\r\nMOVL C00000 V=10.0\r\nMOVL C00001 V=10.0\r\n"
+      "END\r\n";
+  const auto document = read_poses({{"yaskawa-inform", text, "w.jbi"}});
+  ASSERT_EQ(document->points().size(), 2U);
+  EXPECT_LT((document->points()[0].X_BaseTip.translation() - Eigen::Vector3d(1, 0.1, 0.3)).norm(), 1e-12);
+  std::vector<std::optional<ProgramDocument::Values>> values(2);
+  values[0] = ProgramDocument::Values{{{0, 0, 0, 1.7, 0.5, 0}}, document->points()[0].X_BaseTip};
+  EXPECT_THAT(
+      document->text(values, ""),
+      HasSubstr("///RCONF 0,0,0,0,0,0,0,0\r\n///RCONF 1,0,0,0,0,0,0,0\r\nC00000=100.0000,0.0000,500.0000,0.00000,"
+                "0.00000,0.00000\r\n///RCONF 0,0,0,0,0,0,0,0\r\nC00001=200.000,"));
+}
+
+TEST(Val3Program, ComposesFramesAndToolsOfItsFiles) {
+  const auto value = [](const char* type, const char* name, const std::string& values) {
+    return std::string("<Data name=\"") + name + "\" type=\"" + type + "\"><Value key=\"0\" " + values + " /></Data>\n";
+  };
+  const std::string status = " rx=\"0\" ry=\"0\" rz=\"0\" shoulder=\"lefty\" elbow=\"epositive\" wrist=\"wpositive\" ";
+  const std::string data =
+      "<Database>\n" + value("frame", "fA", "x=\"100\" rz=\"90\" fatherId=\"world[0]\"") +
+      value("frame", "fB", "x=\"10\" fatherId=\"fA[0]\"") + value("tool", "tA", "z=\"50\" fatherId=\"flange[0]\"") +
+      value("pointRx", "p1", "x=\"1\" y=\"0\" z=\"0\"" + status + "fatherId=\"fB[0]\"") +
+      value("pointRx", "p2", "x=\"1\" y=\"0\" z=\"0\"" + status + "fatherId=\"fC[0]\"") +
+      value("pointRx", "p3", "x=\"1\" y=\"0\" z=\"0\" rx=\"0\" ry=\"0\" rz=\"0\" wrist=\"wsame\"") + "</Database>\n";
+  const std::string code =
+      "<Programs>\n<Code>begin\nmovel(p1,tA,m)\nmovel(p2,tA,m)\nmovel(p3,tA,m)\nend</Code></Programs>\n";
+  const auto document = read_poses({{"staubli-val3", data, "d/d.dtx"}, {"staubli-val3", code, "d/start.pgx", true}});
+  EXPECT_THAT(lines_of(*document), ElementsAre("5 p1: C", "6 p2: N", "7 p3: ?"));
+  EXPECT_LT((document->points()[0].X_BaseTip.translation() - Eigen::Vector3d(0.1, 0.011, -0.05)).norm(), 1e-12);
+  EXPECT_EQ(why(*document, 6), "fC has no value in these files: --base");
+  EXPECT_EQ(why(*document, 7), "the controller chooses its wrist (wsame)");
 }
 
 TEST(InformProgram, LeavesIncrementsAndMarksTheJob) {

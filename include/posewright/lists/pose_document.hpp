@@ -23,7 +23,8 @@ struct DocumentOptions {
   std::optional<ArmInverse> inverse{};  ///< of the nominal arm, for poses of programs
   std::string why_no_inverse{};         ///< why there is none
   ProgramFrames frames{};
-  int threads = 0;  ///< never changes a result
+  std::optional<std::vector<double>> near{};  ///< joints, rad: near those of poses whose joints before are not known
+  int threads = 0;                            ///< never changes a result
 };
 
 /// Other values for the poses of a document.

@@ -25,6 +25,9 @@ struct ArmBranch {
 /// The first joint puts the centre into the arm's plane (two solutions), the law of cosines gives the third (two), the
 /// wrist's middle joint follows from the angle between its outer axes (two); Newton's method on the chain as it is, for
 /// origins that a URDF rounds.
+///
+/// Or as arms of Universal Robots are built: the fourth axis is parallel to the second and third, and the last two axes
+/// meet in a point. There the sides of the wrist are not told.
 class ArmInverse {
  public:
   using Joints = std::array<double, 6>;
@@ -34,6 +37,8 @@ class ArmInverse {
 
   /// Pose of the tip in the robot's base.
   Eigen::Isometry3d tip(const Joints& q) const;
+  /// Joints near `q` at which the tip has the pose; false if Newton's method does not find them within 0.1 rad a step.
+  bool polish(const Eigen::Isometry3d& X_BaseTip, Joints& q) const;
   /// All solutions, at most eight; none where the wrist's outer axes are in line.
   void solve(const Eigen::Isometry3d& X_BaseTip, std::vector<ArmBranch>& branches) const;
 
@@ -41,7 +46,9 @@ class ArmInverse {
   void require_shape() const;
   void add_wrists(const Eigen::Isometry3d& target, const Joints& arm, ArmBranch branch,
                   std::vector<ArmBranch>& branches) const;
-  bool polish(const Eigen::Isometry3d& target, Joints& q) const;
+  /// Solutions with a first joint, at which the wrist is at `back` with that joint turned back.
+  void add_parallel(const Eigen::Isometry3d& target, double q1, const Eigen::Vector3d& back,
+                    std::vector<ArmBranch>& branches) const;
   /// @param third  about the second axis' direction
   bool is_behind_arm(double third) const;
 
@@ -52,6 +59,7 @@ class ArmInverse {
   std::array<Eigen::Vector3d, 6> axes_;
   Eigen::Isometry3d X_LastTip_, zero_;
   std::array<Axis, 6> lines_;
+  bool three_parallel_ = false;       ///< the second, third and fourth axis
   Eigen::Vector3d centre_, forward_;  ///< the wrist's at zero joints; horizontal, towards it
 };
 

@@ -37,6 +37,14 @@ struct LineMotion {
   Eigen::Isometry3d X_TipTool = Eigen::Isometry3d::Identity();
 };
 
+/// A motion between points of a document; -1: none of them.
+struct PointMotion {
+  int line = 0, from = -1, to = -1;
+  std::vector<double> joints{};                                 ///< where it begins, SI, if a point of joints is there
+  bool along = false;                                           ///< the tool follows a path: no joint jumps
+  Eigen::Isometry3d X_TipTool = Eigen::Isometry3d::Identity();  ///< if it leads to a pose
+};
+
 /// Every motion and every point of a program, in the order of the file.
 struct ProgramAccount {
   std::string file, format;
@@ -101,6 +109,9 @@ class ProgramDocument {
   virtual const ProgramAccount& account() const = 0;
   /// Points to compensate.
   virtual const std::vector<Point>& points() const = 0;
+  /// Motions in the order of the file, of a language whose poses state no joints: the controller takes those nearest to
+  /// the joints where a motion begins. Null: poses state their joints.
+  virtual const std::vector<PointMotion>* motions() const = 0;
   /// Joints meant by a pose's status (S and T, confdata, CONFIG); several if it is ambiguous.
   virtual std::vector<std::size_t> meant(std::size_t point, const std::vector<ArmStand>& stands) const = 0;
   /// @param values  one a point; none: it stays as it is

@@ -1,0 +1,4 @@
+"""posewright by criterion a."""
+import _posewright
+
+_posewright.plan("a")

@@ -1,0 +1,4 @@
+"""posewright by criterion bias."""
+import _posewright
+
+_posewright.plan("bias")

@@ -1,0 +1,4 @@
+"""posewright by criterion ds."""
+import _posewright
+
+_posewright.plan("ds")

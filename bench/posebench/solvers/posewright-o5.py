@@ -1,0 +1,4 @@
+"""posewright by criterion o5."""
+import _posewright
+
+_posewright.plan("o5")

@@ -1,0 +1,4 @@
+"""posewright by criterion test_pose."""
+import _posewright
+
+_posewright.plan("test_pose")

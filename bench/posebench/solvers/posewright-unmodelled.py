@@ -1,0 +1,4 @@
+"""posewright for a variant that has `unmodelled: auto`."""
+import _posewright
+
+_posewright.plan(variant="allowing")

@@ -1,0 +1,4 @@
+"""posewright with its default criterion."""
+import _posewright
+
+_posewright.plan()

@@ -52,6 +52,7 @@ class Document : public ProgramDocument {
     const PoseForm& form = program_.language->pose();
     std::vector<std::size_t> left(stands.size());
     std::iota(left.begin(), left.end(), 0);
+    if (form.status.empty()) return left;
     std::vector<std::vector<Status>> statuses;
     statuses.reserve(stands.size());
     for (const ArmStand& stand : stands) statuses.push_back(statuses_of(stand));
@@ -97,7 +98,11 @@ class Document : public ProgramDocument {
     return counter_.joints(values);
   }
 
-  static TextEdit edit(const TextNumber& at, std::string text) { return {at.begin, at.end, std::move(text)}; }
+  /// A6.5 is a name and a number: another number must not become a part of the name.
+  TextEdit edit(const TextNumber& at, std::string text) const {
+    const bool joins = at.begin > 0 && is_word(text_[at.begin - 1]) && is_digit(text[0]);
+    return {at.begin, at.end, (joins ? " " : "") + std::move(text)};
+  }
 
   const TextNumber* value_of(const FoundPoint& point, const std::string& name) const {
     const bool exact = program_.language->pose != nullptr && point.form == FoundPoint::Form::pose;

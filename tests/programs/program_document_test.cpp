@@ -169,6 +169,12 @@ TEST(TpProgram, LeavesRailAndPositionerWhereTheyAre) {
   EXPECT_THAT(after, Not(HasSubstr("J1= 0.000 deg")));
 }
 
+TEST(KrlProgram, KeepsANumberApartFromTheNameBeforeIt) {
+  const auto document =
+      std::move(read({{"kuka-krl", "DEF W()\nPTP {A1 0,A2 0,A3 0,A4 0,A5 30,A6.5}\nEND\n", "w.src"}}).front());
+  EXPECT_THAT(moved(*document), HasSubstr("A6 1.07296}"));
+}
+
 TEST(UrscriptProgram, ComputesConstantsAndSaysWhatItCannot) {
   const std::string text =
       "def prog():\n  q1 = [0.25, -0.5, 0.5, 0, 0.6, 0]\n  movej([0.15, -0.5, 0.5, 0, 0.6, 0], a=1.4, v=1.05)\n"

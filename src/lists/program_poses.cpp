@@ -89,6 +89,7 @@ class ProgramPoses : public PoseDocument {
       if (!points[p].is_pose()) stood[p].stand.joints = points[p].joints;
     const auto arrive = [&](std::size_t p, const Stood& at) {
       std::vector<double>& joints = stood[p].stand.joints;
+      if (!fault[p].empty()) return;
       if (!at.why_not.empty()) fault[p] = at.why_not;
       else if (joints.empty()) joints = at.stand.joints;
       else if (farthest(joints, at.stand.joints) > 1e-6) fault[p] = "motions lead to it with several joints";

@@ -78,9 +78,8 @@ TEST(ExportCommand, ReplacesItsOwnFilesAndNoOthers) {
     EXPECT_EQ(run_program(folder.path(), words).exit_code, 0) << "nothing is lost: " << format.name;
     // Formats that have no place for a comment cannot be told from others once they differ, and a list of poses may
     // have readings by now.
-    const bool bare = format.name == "pybotics-npy" || format.name == "robodk-csv" || format.name == "lt-irb120" ||
-                      format.name == "mukca" || format.name == "csv" || format.name == "targets-csv" ||
-                      format.name == "powerinspect";
+    const bool bare = format.name == "pybotics-npy" || format.name == "robodk-csv" || format.name == "csv" ||
+                      format.name == "targets-csv" || format.name == "powerinspect";
     if (format.to_be_filled) continue;
     folder.write(words[5], read_file(folder / words[5]) + "\n");
     EXPECT_EQ(run_program(folder.path(), words).exit_code, bare ? 1 : 0) << format.name;

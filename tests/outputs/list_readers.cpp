@@ -68,12 +68,6 @@ std::map<std::string, std::function<List(const std::string&, std::size_t)>> make
     const YAML::Node root = YAML::Load(text);
     return List{root["joint_names"].as<std::vector<std::string>>(), rows_of(root["joint_values"])};
   };
-  r["caljob"] = [](const std::string& text, std::size_t) {
-    List read;
-    for (const YAML::Node& item : YAML::Load(text)["poses"])
-      read.rows.push_back(item["joint_values"].as<std::vector<double>>());
-    return read;
-  };
   r["industrial-calibration"] = [](const std::string& text, std::size_t) {
     List read;
     for (const auto& item : YAML::Load(text)) {
@@ -124,8 +118,6 @@ std::map<std::string, std::function<List(const std::string&, std::size_t)>> make
     return List{{}, in_radians(columns(table(text, '\t', 1, 1), 6, n))};
   };
   r["robodk-csv"] = [](const std::string& text, std::size_t) { return List{{}, in_radians(table(text, ',', 1, 0))}; };
-  r["lt-irb120"] = [](const std::string& text, std::size_t) { return List{{}, in_radians(table(text, ' ', 0, 0))}; };
-  r["mukca"] = [](const std::string& text, std::size_t) { return List{{}, table(text, ',', 0, 0)}; };
   r["csv"] = [](const std::string& text, std::size_t) { return List{{}, table(text, ',', 1, 1)}; };
   r["figaroh-csv"] = [](const std::string& text, std::size_t n) {
     return List{{}, columns(table(text, ',', 1, 1), 6, n)};

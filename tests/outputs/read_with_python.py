@@ -46,8 +46,6 @@ try:
     table = numpy.genfromtxt(export("pybotics-csv", "p.csv"), delimiter=",")
     same("pybotics-csv", numpy.deg2rad(table[:, :-16]), 1e-15)
     assert (table[:, -4:] == [0, 0, 0, 1]).all()
-    same("lt-irb120", numpy.deg2rad(numpy.loadtxt(export("lt-irb120", "l.txt"))), 1e-15)
-    same("mukca", numpy.loadtxt(export("mukca", "m.csv"), delimiter=","))
     same("robodk-csv", numpy.deg2rad(numpy.loadtxt(export("robodk-csv", "r.csv"), delimiter=",", skiprows=1)), 1e-15)
 
     data = yaml.safe_load(export("figaroh", "f.yaml").read_text())
@@ -60,8 +58,6 @@ try:
     data = yaml.safe_load(export("robot-calibration", "c.yaml").read_text())
     assert all(item["joints"] == names and item["features"] == [] for item in data)
     same("robot-calibration", [floats(item["positions"]) for item in data])
-    data = yaml.safe_load(export("caljob", "j.yaml").read_text())
-    same("caljob", [floats(item["joint_values"]) for item in data["poses"]])
     data = yaml.safe_load(export("industrial-calibration", "i.yaml").read_text())
     same("industrial-calibration", [floats(item["target_joints"]) for item in data.values()])
     data = yaml.safe_load(export("joint-trajectory", "t.yaml", "--unchecked").read_text())

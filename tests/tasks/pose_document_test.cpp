@@ -279,8 +279,8 @@ TEST(PoseDocument, OfARouteMovesPosesViaPointsAndEndsOfMotionsButNotHome) {
 
 TEST(PoseDocument, OfOtherListsIsReadBackByTheirFormat) {
   const PoseSequence sequence = random_sequence(6, 5, 2);
-  for (const char* name : {"moveit", "srdf", "robot-calibration", "figaroh", "industrial-calibration", "caljob",
-                           "pybotics-npy", "robodk-csv", "lt-irb120", "mukca", "joint-trajectory"}) {
+  for (const char* name : {"moveit", "srdf", "robot-calibration", "figaroh", "industrial-calibration", "pybotics-npy",
+                           "robodk-csv", "joint-trajectory"}) {
     const std::string bytes = find_pose_format(name).write(sequence, {}).files.front().bytes;
     DocumentOptions options;
     options.format = name;

@@ -67,13 +67,4 @@ std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::str
   return rows;
 }
 
-PoseTable number_table(const std::string& bytes, const std::string& file, char separator, bool header,
-                       const std::string& unit) {
-  PoseTable table;
-  for (const NumberRow& numbers : read_number_rows(bytes, file, separator, header))
-    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
-  if (!unit.empty()) table.units.assign(table.rows.front().cells.size(), unit);
-  return table;
-}
-
 }  // namespace posewright::formats

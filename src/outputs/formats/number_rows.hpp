@@ -21,10 +21,6 @@ struct NumberRow {
 std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::string& file, char separator, bool header,
                                         std::size_t skip = 0);
 
-/// Overload for a list without names of columns; `unit` is that of every column, empty: SI. Throws InputError.
-PoseTable number_table(const std::string& bytes, const std::string& file, char separator, bool header,
-                       const std::string& unit = "");
-
 /// A finite number, all of `text`; false otherwise.
 bool parse_number(std::string_view text, double& value);
 

@@ -38,7 +38,11 @@ Exported write_robodk_csv(const PoseSequence& all, const ExportOptions&) {
 }
 
 PoseTable read_robodk_csv(const std::string& bytes, const std::string& file) {
-  return number_table(bytes, file, ',', true, degrees_or_millimetres);
+  PoseTable table;
+  for (const NumberRow& numbers : read_number_rows(bytes, file, ',', true))
+    table.rows.push_back({numbers.line, {numbers.values.begin(), numbers.values.end()}});
+  table.units.assign(table.rows.front().cells.size(), degrees_or_millimetres);
+  return table;
 }
 
 }  // namespace

@@ -348,7 +348,7 @@ Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& 
   if (task.space == nullptr)
     throw CannotDo("continuous moves poses between the candidates: it needs a robot, not blocks");
   if (!task.criterion->of_information_alone())
-    throw CannotDo("continuous cannot move poses for a plan with reserve; use exchange, tabu or detmax");
+    throw CannotDo("continuous cannot move poses for a plan with reserve; use exchange or tabu");
   Design design = ExchangePlanner().plan(task, options, monitor);
   PoseSet poses = pose_set_of(task, design.members);
   design.exchanges += improve(task, poses, options.threads, monitor);

@@ -3,7 +3,6 @@
 #include "automatic.hpp"
 #include "branch_and_bound.hpp"
 #include "continuous.hpp"
-#include "detmax.hpp"
 #include "exchange.hpp"
 #include "greedy.hpp"
 #include "tabu.hpp"
@@ -23,7 +22,6 @@ const std::vector<PlannerEntry>& planner_registry() {
       row<AutomaticPlanner>("greedy, exchange, tabu, continuous and new candidates in turn"),
       row<ExchangePlanner>("best exchange with rank-r updates from many starts"),
       row<TabuPlanner>("the same neighbourhood, going on where exchange stops"),
-      row<DetmaxPlanner>("excursions: poses are added and removed again"),
       row<GreedyPlanner>("one pose after the other, no way back"),
       row<ContinuousPlanner>("exchange, then the poses themselves are moved by NLopt"),
       row<BranchAndBoundPlanner>("the proved optimum of small problems"),

@@ -124,7 +124,7 @@ def check_case(program, folder, told, random):
         if name.startswith("test_pose") and "test_poses" not in arm.problem["design"]:
             continue
         check = Check()
-        method = str(random.choice(["exchange", "tabu", "detmax", "greedy", "branch_and_bound", "branch_and_bound"]))
+        method = str(random.choice(["exchange", "tabu", "tabu", "greedy", "branch_and_bound", "branch_and_bound"]))
         done, meaning = check_listed(program, folder, poses, name, ["--method", method], random.random() < 0.3, check)
         if meaning and name == "o1":
             determined = possible(meaning, len(poses.Q), arm.problem["design"])

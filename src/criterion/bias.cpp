@@ -1,6 +1,11 @@
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "bias_state.hpp"
 #include "effects.hpp"
 #include "posewright/criterion/discrepancy.hpp"
 #include "posewright/support/dense.hpp"
@@ -59,6 +64,23 @@ Eigen::MatrixXd BiasFunction::gradient(const Eigen::MatrixXd& information) const
   return S / at.value;
 }
 
+namespace {
+
+class BiasCriterion : public Criterion {
+ public:
+  explicit BiasCriterion(std::shared_ptr<const BiasFunction> function) : function_(std::move(function)) {}
+  std::string name() const override { return "bias"; }
+  const InformationFunction& function() const override { return *function_; }
+  std::unique_ptr<DesignState> start(const CandidateView& view, std::vector<int> members) const override {
+    return start_bias(view, std::move(members), function_);
+  }
+
+ private:
+  std::shared_ptr<const BiasFunction> function_;
+};
+
+}  // namespace
+
 std::unique_ptr<Criterion> make_bias_criterion(const CriterionData& data) {
   require_effects(data);
   const EffectGroup& effects = data.effects;
@@ -67,7 +89,7 @@ std::unique_ptr<Criterion> make_bias_criterion(const CriterionData& data) {
   data.R.topLeftCorner(m, m).triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows);
   // The raw trailing columns hold R_af of the whitened fitted ones: that share is taken up whatever the plan.
   const Eigen::MatrixXd offset = effects.error_offset - rows * (data.R.topRightCorner(m, k) * effects.mix);
-  return std::make_unique<FunctionCriterion>("bias", std::make_shared<BiasFunction>(rows, whitened_mix(data), offset));
+  return std::make_unique<BiasCriterion>(std::make_shared<BiasFunction>(rows, whitened_mix(data), offset));
 }
 
 }  // namespace posewright

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "posewright/criterion/registry.hpp"
+#include "posewright/criterion/summed_information.hpp"
 #include "posewright/criterion/trace.hpp"
 #include "tests/kit/plackett_burman.hpp"
 #include "tests/kit/random_blocks.hpp"
@@ -124,6 +125,38 @@ TEST(Bias, PlackettBurmanHasSixTwelfthsOfVarianceAndTwentyThirdsOfBias) {
   const BlockArray X = plackett_burman();
   const Eigen::MatrixXd M = X.all().transpose() * X.all();
   EXPECT_NEAR(make_criterion("bias", screening())->function().value(M), -std::log(6.0 / 12 + 20.0 / 3), 1e-12);
+}
+
+TEST(Bias, OfManyCandidatesNoneGainsWhereTheStateSeesNone) {
+  // More candidates than a swap is looked for among at first.
+  const BlockArray blocks = random_blocks(200, 2, all_columns, 31);
+  CriterionData data{Eigen::MatrixXd::Identity(all_columns, all_columns), Eigen::VectorXd::Ones(all_columns), 0};
+  data.effects = {more_columns, 3 * random_matrix(more_columns, 5, 4), random_matrix(6, fitted_columns, 3),
+                  random_matrix(6, 5, 6)};
+  const auto criterion = make_criterion("bias", data);
+  const auto state = criterion->start({&blocks, 0, 1}, {0, 1, 2, 3, 4, 5});
+  const auto value_of = [&](const std::vector<int>& members) {
+    return criterion->function().value(summed_information(blocks, nullptr, members));
+  };
+  int swaps = 0;
+  for (int quiet = 0, position = 0; quiet < 6; position = (position + 1) % 6, ++quiet) {
+    const Swap swap = state->best_swap(position, 1e-9);
+    if (swap.enter < 0) continue;
+    const double before = state->value();
+    state->apply(position, swap.enter);
+    EXPECT_NEAR(state->value(), before + swap.gain, 1e-9);
+    quiet = -1;
+    ASSERT_LT(++swaps, 200);
+  }
+  EXPECT_GT(swaps, 3);
+  EXPECT_NEAR(value_of(state->members()), state->value(), 1e-9);
+  for (std::size_t position = 0; position < 6; ++position)
+    for (int j = 0; j < 200; ++j) {
+      std::vector<int> other = state->members();
+      other[position] = j;
+      if (!state->may_enter(j)) continue;
+      EXPECT_LE(value_of(other), state->value() + 2e-9) << position << " " << j;
+    }
 }
 
 TEST(Discriminate, PlackettBurmanLeavesTwelveTimesFifteenLessTwentyThirds) {

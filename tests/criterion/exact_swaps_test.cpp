@@ -42,7 +42,8 @@ class ExactSwaps : public testing::TestWithParam<SwapCase> {
     Random random(3, 0);
     for (std::size_t i = 0; i < blocks.count(); ++i) blocks.block(i) *= std::exp(1.5 * random.uniform());
     for (std::size_t i = 50; i < blocks.count(); ++i) blocks.block(i) = 1.001 * blocks.block(i - 50);
-    data.effects = {swap_effects, random_blocks(1, swap_effects, 3, 95).block(0)};
+    data.effects = {swap_effects, random_blocks(1, swap_effects, 3, 95).block(0),
+                    random_blocks(1, 4, swap_columns - swap_effects, 96).block(0), random_blocks(1, 4, 3, 97).block(0)};
     data.variants = {{0, 4, GetParam().nuisance, 1.0, 2.0}, {4, 4, 1, 3.0, 4.0}};
     if (GetParam().criterion == "compound" || GetParam().criterion == "maximin") separate_rows();
     prior_rows = 0.3 * random_blocks(1, 3, swap_columns, 8).block(0);
@@ -88,11 +89,15 @@ class ExactSwaps : public testing::TestWithParam<SwapCase> {
   double definition(const std::vector<int>& members) const {
     const Eigen::MatrixXd G = stacked(members);
     const std::string& name = GetParam().criterion;
-    if (name == "discriminate") {
-      const Eigen::MatrixXd A = G.leftCols(swap_columns - swap_effects);
-      const Eigen::MatrixXd E = G.rightCols(swap_effects) * data.effects.mix;
-      return std::log((E - A * A.colPivHouseholderQr().solve(E)).squaredNorm());
+    const Eigen::MatrixXd A = G.leftCols(swap_columns - swap_effects);
+    const Eigen::MatrixXd E = G.rightCols(swap_effects) * data.effects.mix;
+    if (name == "bias") {
+      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(A);
+      const Eigen::MatrixXd& L = data.effects.error_rows;
+      const Eigen::MatrixXd by_noise = L * fit.solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
+      return -std::log(by_noise.squaredNorm() + (L * fit.solve(E) - data.effects.error_offset).squaredNorm());
     }
+    if (name == "discriminate") return std::log((E - A * A.colPivHouseholderQr().solve(E)).squaredNorm());
     if (name == "compound" || name == "maximin") {
       double sum = 0.0, least = INFINITY;
       for (const VariantGroup& v : data.variants) {
@@ -180,7 +185,8 @@ TEST_P(ExactSwaps, TheBestAdditionIsThatOfTryingAll) {
 
 std::vector<SwapCase> swap_cases() {
   std::vector<SwapCase> cases;
-  for (const char* name : {"compound", "maximin", "discriminate", "o2", "o3", "o4", "o5", "mean16", "mean4", "mean1"})
+  for (const char* name :
+       {"compound", "maximin", "discriminate", "bias", "o2", "o3", "o4", "o5", "mean16", "mean4", "mean1"})
     for (const int rows : {1, 2, 3})
       for (const int nuisance : {0, 2})
         for (const bool prior : {false, true}) {

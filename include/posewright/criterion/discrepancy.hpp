@@ -45,6 +45,9 @@ class BiasFunction : public InformationFunction {
   double value(const Eigen::MatrixXd& information) const override;
   Eigen::MatrixXd gradient(const Eigen::MatrixXd& information) const override;
   bool concave() const override { return false; }
+  const Eigen::MatrixXd& rows() const { return rows_; }
+  const Eigen::MatrixXd& mix() const { return mix_; }
+  const Eigen::MatrixXd& offset() const { return offset_; }
 
  private:
   Eigen::MatrixXd rows_, mix_, offset_;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "posewright/criterion/criterion.hpp"
+#include "posewright/criterion/discrepancy.hpp"
+
+namespace posewright {
+
+/// State of `bias` with exact swaps.
+std::unique_ptr<DesignState> start_bias(const CandidateView& view, std::vector<int> members,
+                                        std::shared_ptr<const BiasFunction> function);
+
+}  // namespace posewright

@@ -127,7 +127,7 @@ def checked(folder, hashes):
 
 
 def numbers_of(description, options):
-    return [int(n) for n in options.poses.split(",")] if options.poses else description["poses"]
+    return options.poses or description["poses"]
 
 
 def of_measured(description, root, options, place):

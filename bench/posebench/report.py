@@ -107,6 +107,7 @@ def provenance(rows, sets):
 def page(rows, notes, sets):
     """The Markdown page of a run."""
     when = "Run on " + ", ".join(ordered(str(row["date"]) for row in rows if row["solver"] == "random")) + "."
+    skips = [when + " " + STORED, "\n".join(f"- {line}" for line in notes.lines())]
     sections = [("Measured and simulated robots", [AREA.format("Fit: plain least squares."), robots_table(rows, PLAIN),
                                                    AREA.format(f"Fit: {PROGRAM}."), robots_table(rows, PROGRAM)]),
                 ("Estimation", ["Error over the random median of plain least squares (area over ln N).", estimators_table(rows, "posewright"),
@@ -115,8 +116,9 @@ def page(rows, notes, sets):
                                       "magnitude of their seconds, not digits.", instances_table(rows)]),
                 ("Trust", [trust_table(rows)]),
                 ("Sets", [provenance(rows, sets)]),
-                ("What was skipped", [when + " " + STORED, "\n".join(f"- {line}" for line in notes.lines())])]
-    parts = [HEAD] + [part for title, body in sections for part in (f"## {title}", *body)]
+                ("What was skipped", skips)]
+    parts = [HEAD] + [part for title, body in sections if "\n|" in "\n".join(body) or body == skips
+                      for part in (f"## {title}", *body)]
     return "\n\n".join(part.rstrip() for part in parts if part.strip()) + "\n"
 
 

@@ -114,6 +114,16 @@ def a_changed_file_is_named(folder):
     expect(code == 1 and "set positioner" in said and "sha256 differs" in said, "a changed file is named, exit code 1")
 
 
+def bad_descriptions_are_named(folder):
+    texts = {"unfinished": 'title = "x"\nkind = "rows"\n', "broken": "title = \n", "few": (SOURCE / "bench/posebench/data/d-leg.toml").read_text()}
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text)
+    code, said, _ = run(folder, "--sets", ",".join(str(folder / f"{name}.toml") for name in texts), "--solvers", "posewright-o1", "--draws", "5", "--poses", "3")
+    expect("set unfinished: " in said and "lacks 'generator'" in said, "a description without a key is named")
+    expect("set broken: Invalid value (at line 1" in said, "a description that is no TOML is named")
+    expect(code == 1 and "posewright-o1 on few: posewright: 3 poses give 3 equations for 6 parameters" in said, "the solver's own words are passed on")
+
+
 def bad_solvers_are_named(folder):
     scripts = {"fails": "import sys\nsys.exit('no licence')\n", "endless": "while True:\n    pass\n", "short": "import _task\n_task.write(_task.arguments()[2], [0])\n"}
     for name, text in scripts.items():
@@ -138,7 +148,7 @@ def finished_parts_are_kept(folder):
     expect(first[key]["cpu"] == second[key]["cpu"] != "", "the second run is the first one's")
 
 
-CHECKS = [pages_are_those_of_the_stored_run, stored_figures_hold, an_absent_set_is_named, bad_solvers_are_named, a_wrong_name_is_named, finished_parts_are_kept]
+CHECKS = [pages_are_those_of_the_stored_run, stored_figures_hold, an_absent_set_is_named, bad_descriptions_are_named, bad_solvers_are_named, a_wrong_name_is_named, finished_parts_are_kept]
 CHECKS += [estimator_agrees_with_the_program, a_changed_file_is_named] if DATA.is_dir() else []
 for check in CHECKS:
     with tempfile.TemporaryDirectory() as scratch:

@@ -51,11 +51,15 @@ Eigen::MatrixXd known_with_features(const Study& study, const EffectFeatures& fe
   const auto own = Eigen::Index(variant.columns.selected.size()), all = own + features.columns();
   Eigen::MatrixXd known = Eigen::MatrixXd::Zero(all, all);
   if (variant.prior.size() > 0) {
-    if (const Configurations poses = known_before(study); poses.count() > 0) {
-      const BlockArray blocks = with_features_last(variant, features, poses, threads);
-      known = blocks.all().transpose() * blocks.all();
-    }
     known.topLeftCorner(own, own) = variant.prior.bottomRightCorner(own, own);
+    if (const Configurations poses = known_before(study); poses.count() > 0) {
+      // The variant's own search may have other features: what these poses say is taken anew, in one piece.
+      const BlockArray before = search_blocks(variant, poses, threads);
+      const auto rows = before.all().rightCols(own);
+      known.topLeftCorner(own, own) -= rows.transpose() * rows;
+      const BlockArray blocks = with_features_last(variant, features, poses, threads);
+      known += blocks.all().transpose() * blocks.all();
+    }
   }
   known.diagonal().tail(features.columns()).array() += 1;
   return known;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "fill_plan.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -211,17 +212,21 @@ class ListEvaluation {
   ListChange add(int k, double phi, const std::vector<double>& references) {
     const int threads = settings_.planner.threads;
     // The list is what is there already; the last thing that is done, so the candidates may change.
+    const Configurations before = study_.measured;
     study_.measured.values.insert(study_.measured.values.end(), poses_.values.begin(), poses_.values.end());
     Settings more = settings_;
     more.poses = k;
     keep_apart(study_, stated_distance_, more);
     keep_away_from_measured(study_, settings_.repeats);
+    // Parts know what was measured before the list; the list's own information comes on top of it, once.
+    Configurations all = std::exchange(study_.measured, before);
     std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, study_.configurations, threads);
     const std::vector<SearchPart> list = search_parts(study_, settings_.criterion, poses_, threads);
     for (std::size_t v = 0; v < parts.size(); ++v) {
       const Eigen::MatrixXd known = list[v].blocks.all().transpose() * list[v].blocks.all();
       parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
     }
+    study_.measured = std::move(all);
     SearchRequest wanted = spaced_request(study_, settings_, k);
     wanted.make_space = space_maker(study_, settings_.criterion);
     wanted.references = references;
@@ -229,7 +234,7 @@ class ListEvaluation {
     const Configurations added = chosen_by(found.design, study_.configurations);
     Configurations longer = poses_;
     longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
-    study_.measured.values.resize(study_.measured.values.size() - poses_.values.size());
+    study_.measured = before;
     ListChange change = changed(longer, phi);
     for (std::size_t i = 0; i < added.count(); ++i) {
       change.added.push_back(pose_of(*study_.first().model, added[i]));

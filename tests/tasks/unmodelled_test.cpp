@@ -330,6 +330,33 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
   EXPECT_GT(here, there);
 }
 
+TEST_F(UnmodelledEffects, BiasAddsToAListThePoseThatHelpsMostWithWhatIsMeasuredCountedOnce) {
+  std::string file = "q1 [rad],q2 [rad]\n";
+  List places;
+  Random random(11, 1);
+  for (int i = 0; i < 15; ++i) {
+    places.push_back({4 * random.uniform() - 2, 0.3 + 1.5 * random.uniform()});
+    file += fmt::format("{:.17g},{:.17g}\n", places.back()[0], places.back()[1]);
+  }
+  folder_.write("places.csv", file);
+  const Problem p = problem("{size: 1 mm}", "{variant: short, poses: 5, candidates_from: places.csv, criterion: bias}");
+  EvaluateOptions options;
+  options.run.measured = given_poses(p, {{1.9, 0.4}, {1.8, 0.5}, {1.7, 1.7}, {1.6, 0.6}});
+  const List list(eight.begin(), eight.begin() + 4);
+  const auto value_with = [&](const std::vector<double>& q) {
+    List longer = list;
+    longer.push_back(q);
+    return evaluate_problem(p, given_poses(p, longer), options, Monitor{}).plan.criterion_value;
+  };
+  EvaluateOptions adding = options;
+  adding.add = 1;
+  const auto added = evaluate_problem(p, given_poses(p, list), adding, Monitor{}).add;
+  ASSERT_TRUE(added && added->added.size() == 1);
+  const auto& chosen = added->added[0].configuration;
+  const double found = value_with({chosen[0].value, chosen[1].value});
+  for (const std::vector<double>& place : places) EXPECT_LE(value_with(place), found + 1e-6 * std::abs(found));
+}
+
 TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {
   // Without the effect poses crowd where the parameters show best; with it the second of two near ones tells little.
   const std::string design = "{variant: short, poses: 9, candidates: 300, restarts: 3, criterion: o1}";

@@ -183,7 +183,9 @@ TEST_P(Changes, GradientIsTheDerivativeAndTheExpansionIsItsFactor) {
     for (int i = 0; i < 10; ++i) EXPECT_NEAR(H(i, j), -along(i, change), 1e-6);
   }
   const BlockArray::RowMatrix U = expansion->curvature_factor(rows, blocks.rows(), 1000);
-  if (U.size() > 0) EXPECT_LT((U * U.transpose() - H).cwiseAbs().maxCoeff(), 1e-10);
+  if (U.size() > 0) {
+    EXPECT_LT((U * U.transpose() - H).cwiseAbs().maxCoeff(), 1e-10);
+  }
   EXPECT_EQ(expansion->curvature_factor(rows, blocks.rows(), 5).size(), 0);
 }
 

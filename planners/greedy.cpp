@@ -7,13 +7,10 @@
 namespace posewright {
 namespace {
 
-/// The first start has nothing to draw; of further ones, from a drawn pose each, as many as some seconds allow. Counted
-/// and not timed, so that a plan is the same on any machine.
+/// The first start has nothing to draw; of further ones, from a drawn pose each, as many as some seconds allow.
 int affordable_starts(const DesignTask& task, int most) {
   constexpr double most_products = 1e9;
-  const BlockArray& blocks = *task.candidates.blocks;
-  const double one = double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
-  return int(std::clamp(most_products / one, 1.0, double(most)));
+  return int(std::clamp(most_products / products_of_a_pass(task), 1.0, double(most)));
 }
 
 }  // namespace

@@ -91,13 +91,17 @@ Outcome outcome_in(std::string_view from) {
   return outcome;
 }
 
-int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
-  // A kick costs two passes or so; counted and not timed, so that a plan is the same on any machine. More restarts than
-  // usual are more work: each keeps its kicks, so that the first of them find what they found.
-  constexpr double most_products = 1e10, passes = 2;
+double products_of_a_pass(const DesignTask& task) {
   const BlockArray& blocks = *task.candidates.blocks;
-  const double pass = double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
-  return int(std::clamp(most_products / (passes * pass * PlannerOptions{}.restarts), 0.0, double(options.kicks)));
+  return double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
+}
+
+int affordable_kicks(const DesignTask& task, const PlannerOptions& options) {
+  // A kick costs two passes or so. More restarts than usual are more work: each keeps its kicks, so that the first of
+  // them find what they found.
+  constexpr double most_products = 1e10, passes = 2;
+  const double usual = passes * products_of_a_pass(task) * PlannerOptions{}.restarts;
+  return int(std::clamp(most_products / usual, 0.0, double(options.kicks)));
 }
 
 std::vector<int> raw_start(const DesignTask& task, std::size_t index, Random& random) {

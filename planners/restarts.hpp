@@ -21,6 +21,10 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
 std::string bytes_of(const Outcome& outcome);
 Outcome outcome_in(std::string_view bytes);
 
+/// Products of one pass over all candidates for every pose: the work that limits are counted in, not timed, so that a
+/// plan is the same on any machine.
+double products_of_a_pass(const DesignTask& task);
+
 /// Kicks of a restart that so many candidates, poses and parameters leave time for, at most `kicks`: the usual number
 /// of restarts makes some 10¹⁰ products of scanning for swaps.
 int affordable_kicks(const DesignTask& task, const PlannerOptions& options);

@@ -7,9 +7,8 @@
 
 #include "gram.hpp"
 #include "kernels/kernels.hpp"
-#include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
-#include "regular.hpp"
+#include "recomputed_state.hpp"
 
 namespace posewright {
 namespace {
@@ -34,10 +33,10 @@ struct Products {
 ///   Δφ = −tr(S⁻¹ T) + 2 tr(S⁻¹ ẽ g̃ᵀ) + tr(S⁻¹ T S⁻¹ ẽ ẽᵀ),   T = Ã B Ãᵀ
 /// (theory.md eq. (64); Woodbury). Not concave, so nothing bounds a swap: candidates that give most when added are
 /// tried first, and all others where none of those gains.
-class BiasState : public DesignState {
+class BiasState : public RecomputedState {
  public:
   BiasState(const CandidateView& view, std::vector<int> members, std::shared_ptr<const BiasFunction> function)
-      : DesignState(view, std::move(members)),
+      : RecomputedState(view, std::move(members), *function),
         shared_(std::move(function)),
         function_(*shared_),
         fitted_(function_.rows().cols()),
@@ -47,7 +46,7 @@ class BiasState : public DesignState {
     refresh();
   }
 
-  double value() const override { return singular_ ? -infinity : -std::log(error_); }
+  double value() const override { return singular() ? -infinity : -std::log(error_); }
   double loss(int position) const override {
     const Products& k = own_[std::size_t(members()[std::size_t(position)])];
     return k.T.trace() - 2 * k.H.trace();
@@ -61,18 +60,6 @@ class BiasState : public DesignState {
         break;
       }
     return best;
-  }
-
-  double removal(int position) override {
-    return function_.value(information_ - block_information(blocks(), members()[std::size_t(position)])) - value();
-  }
-
-  bool refresh() override {
-    information_ = summed_information(blocks(), view().prior, members());
-    singular_ = !std::isfinite(function_.value(information_));
-    if (singular_) information_.diagonal().array() += start_ridge;
-    update();
-    return !singular_;
   }
 
  private:
@@ -90,24 +77,16 @@ class BiasState : public DesignState {
     return best.enter < 0 ? Swap{} : best;
   }
 
-  void do_change(int leave, int enter) override {
-    if (enter >= 0) information_ += block_information(blocks(), enter);
-    if (leave >= 0) information_ -= block_information(blocks(), leave);
-    // A start that was singular may have become regular.
-    if (singular_ || !std::isfinite(function_.value(information_))) refresh();
-    else update();
-  }
-
   double gain_of(double change) const { return change > -error_ ? -std::log1p(change / error_) : -infinity; }
 
   /// φ, what its changes hang on, and every candidate's own products.
-  void update() {
+  void update() override {
     const Eigen::Index a = fitted_, k = function_.mix().rows();
     const Eigen::MatrixXd& L = function_.rows();
-    const Eigen::LLT<Eigen::MatrixXd> factor(information_.topLeftCorner(a, a));
+    const Eigen::LLT<Eigen::MatrixXd> factor(information().topLeftCorner(a, a));
     V_ = factor.solve(Eigen::MatrixXd::Identity(a, a));
     const Eigen::MatrixXd spread = V_ * L.transpose();
-    const Eigen::MatrixXd fit = V_ * (information_.topRightCorner(a, k) * function_.mix());
+    const Eigen::MatrixXd fit = V_ * (information().topRightCorner(a, k) * function_.mix());
     const Eigen::MatrixXd error = L * fit - function_.offset();
     error_ = L.transpose().cwiseProduct(spread).sum() + error.squaredNorm();
     B_ = spread * spread.transpose();
@@ -223,21 +202,17 @@ class BiasState : public DesignState {
   }
 
   /// +∞ where the fitted columns would not be determined.
-  double from_scratch(int k, int j) const {
-    return std::exp(-function_.value(information_ + block_information(blocks(), j) - block_information(blocks(), k))) -
-           error_;
-  }
+  double from_scratch(int k, int j) const { return std::exp(-value_of_swap(k, j)) - error_; }
 
   std::shared_ptr<const BiasFunction> shared_;  // a state may outlive its criterion
   const BiasFunction& function_;
   Eigen::Index fitted_;
   int rows_;
-  Eigen::MatrixXd information_, V_, B_, pull_, residual_;  // pull_: V Lᵀ E; residual_: e = J residual_
-  std::vector<Products> own_;                              // of each candidate with itself
-  std::vector<double> added_;                              // change of φ if it is added
-  std::vector<int> order_;                                 // by added_
+  Eigen::MatrixXd V_, B_, pull_, residual_;  // pull_: V Lᵀ E; residual_: e = J residual_
+  std::vector<Products> own_;                // of each candidate with itself
+  std::vector<double> added_;                // change of φ if it is added
+  std::vector<int> order_;                   // by added_
   double error_ = 0.0;
-  bool singular_ = false;
   BlockArray::RowMatrix vectors_, crossed_;
   Products both_;
   Square S_, half_, lower_, inverse_, IT_, IK_;

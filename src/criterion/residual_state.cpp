@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "by_bound.hpp"
-#include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
-#include "regular.hpp"
+#include "recomputed_state.hpp"
 
 namespace posewright {
 namespace {
@@ -21,11 +20,11 @@ constexpr double safe_pivot = 1e-4;
 ///   then removing k:   T falls by tr(eᵀ H⁻¹ e), e = e_k − Cᵀ (I + D_j)⁻¹ e_j, H = I − D_k + Cᵀ (I + D_j)⁻¹ C
 /// (theory.md eq. (47); Björck 1996, 3.1). Added first, so that nobody is indispensable. T is concave in M, so a
 /// swap gains no more than ‖e_j‖² − ‖e_k‖².
-class ResidualState : public DesignState {
+class ResidualState : public RecomputedState {
  public:
   ResidualState(const CandidateView& view, std::vector<int> members,
                 std::shared_ptr<const DiscriminateFunction> function)
-      : DesignState(view, std::move(members)),
+      : RecomputedState(view, std::move(members), *function),
         shared_(std::move(function)),
         function_(*shared_),
         fitted_(function_.fitted()),
@@ -33,46 +32,26 @@ class ResidualState : public DesignState {
     refresh();
   }
 
-  double value() const override { return singular_ ? -infinity : std::log(T_); }
+  double value() const override { return singular() ? -infinity : std::log(T_); }
   double loss(int position) const override { return squares_[members()[std::size_t(position)]] / T_; }
 
   Swap best_addition() override { return best_of(-1, -infinity); }
-
-  double removal(int position) override {
-    return function_.value(information_ - block_information(blocks(), members()[std::size_t(position)])) - value();
-  }
-
-  bool refresh() override {
-    information_ = summed_information(blocks(), view().prior, members());
-    singular_ = !std::isfinite(function_.value(information_));
-    if (singular_) information_.diagonal().array() += start_ridge;
-    update();
-    return !singular_;
-  }
 
  private:
   Swap do_best_swap(int position, double min_gain) override {
     return best_of(members()[std::size_t(position)], min_gain);
   }
 
-  void do_change(int leave, int enter) override {
-    if (enter >= 0) information_ += block_information(blocks(), enter);
-    if (leave >= 0) information_ -= block_information(blocks(), leave);
-    // A start that was singular may have become regular.
-    if (singular_ || !std::isfinite(function_.value(information_))) refresh();
-    else update();
-  }
-
   /// V, Θ, T and the residuals of all candidates.
-  void update() {
+  void update() override {
     const Eigen::Index a = fitted_, k = half_.rows();
-    const Eigen::LLT<Eigen::MatrixXd> factor(information_.topLeftCorner(a, a));
+    const Eigen::LLT<Eigen::MatrixXd> factor(information().topLeftCorner(a, a));
     V_ = factor.solve(Eigen::MatrixXd::Identity(a, a));
-    const Eigen::MatrixXd crossed = information_.bottomLeftCorner(k, a).transpose() * half_;
+    const Eigen::MatrixXd crossed = information().bottomLeftCorner(k, a).transpose() * half_;
     BlockArray::RowMatrix directions(a + k, k);
     directions.topRows(a) = -factor.solve(crossed);
     directions.bottomRows(k) = half_;
-    T_ = half_.cwiseProduct(information_.bottomRightCorner(k, k).selfadjointView<Eigen::Lower>() * half_).sum() -
+    T_ = half_.cwiseProduct(information().bottomRightCorner(k, k).selfadjointView<Eigen::Lower>() * half_).sum() -
          factor.matrixL().solve(crossed).squaredNorm();
     residuals_.noalias() = blocks().all() * directions;
     const Eigen::Index r = blocks().rows();
@@ -140,7 +119,7 @@ class ResidualState : public DesignState {
 
   /// −∞ where the fitted columns would not be determined.
   double from_scratch(int k, int j) const {
-    const double phi = function_.value(information_ + block_information(blocks(), j) - block_information(blocks(), k));
+    const double phi = value_of_swap(k, j);
     return std::isfinite(phi) ? std::exp(phi) - T_ : -infinity;
   }
 
@@ -148,11 +127,10 @@ class ResidualState : public DesignState {
   const DiscriminateFunction& function_;
   Eigen::Index fitted_;
   const Eigen::MatrixXd& half_;
-  Eigen::MatrixXd information_, V_;
+  Eigen::MatrixXd V_;
   BlockArray::RowMatrix residuals_;  // of all candidates, r rows each
   Eigen::VectorXd squares_;
   double T_ = 0.0;
-  bool singular_ = false;
   ByBound queue_;
   Eigen::MatrixXd towards_, left_, projected_, S_, C_, solved_, error_;  // V A_kᵀ, I − D_k, …
   Eigen::LLT<Eigen::MatrixXd> factor_;

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -390,7 +389,6 @@ TEST(Init, AFileWhoseMeshesAreMissingPlansWithoutACellAndSaysSo) {
 
 TEST(Init, HandEyeInThreeCommands) {
   const TemporaryFolder folder;
-  const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435", "--board", "6x9x25mm"}).exit_code, 0);
   const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--quiet"});
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
@@ -403,8 +401,6 @@ TEST(Init, HandEyeInThreeCommands) {
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  RecordProperty("seconds", std::to_string(seconds));
 }
 
 /// What the makers say of whole angles of view, horizontally and vertically, in degrees; the table has focal lengths.

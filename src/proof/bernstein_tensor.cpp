@@ -1,6 +1,7 @@
 #include "bernstein_tensor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,20 @@ double of_power(int m, int i, int k) {
   for (int j = std::max(0, k - (m - i)); j <= std::min(i, k); ++j)
     sum += ((k - j) % 2 == 0 ? 1 : -1) * binomial(i, j) * binomial(m - i, k - j);
   return sum / binomial(m, k);
+}
+
+constexpr std::size_t most = Monomials::most_degree + 1;
+
+/// of_power() of each degree, coefficient and power.
+const auto& powers() {
+  static const auto made = [] {
+    std::array<std::array<std::array<double, most>, most>, most> w{};
+    for (std::size_t m = 0; m < most; ++m)
+      for (std::size_t i = 0; i <= m; ++i)
+        for (std::size_t k = 0; k <= m; ++k) w[m][i][k] = of_power(int(m), int(i), int(k));
+    return w;
+  }();
+  return made;
 }
 
 }  // namespace
@@ -75,7 +90,7 @@ void BernsteinTensor::take(const TaylorModel& f, double small) {
         double* to = next_.data() + (o * terms + i) * strides[a];
         std::fill_n(to, strides[a], 0.0);
         for (std::size_t k = 0; k < terms; ++k) {
-          const double w = of_power(degree, int(i), int(k));
+          const double w = powers()[std::size_t(degree)][i][k];
           const double* from = now_.data() + (o * terms + k) * strides[a];
           for (std::size_t x = 0; x < strides[a]; ++x) to[x] += w * from[x];
         }

@@ -35,6 +35,12 @@ void append_exponents(int variables, int variable, int left, Monomials::Exponent
   }
 }
 
+using Coefficients = Eigen::Map<Eigen::ArrayXd>;
+using ConstCoefficients = Eigen::Map<const Eigen::ArrayXd>;
+
+Coefficients array(std::vector<double>& c) { return {c.data(), Eigen::Index(c.size())}; }
+ConstCoefficients array(std::span<const double> c) { return {c.data(), Eigen::Index(c.size())}; }
+
 using Norms = std::array<double, Monomials::most_degree + 1>;
 
 /// Σ |coefficients| of each degree, rounded down at worst by what `up` makes good.
@@ -42,11 +48,11 @@ Norms norms_of(const TaylorModel& f) {
   Norms norms{};
   const std::span<const double> c = f.coefficients();
   if (f.monomials() == nullptr) return {std::abs(c[0])};
-  std::size_t i = 0;
-  for (int d = 0; i < c.size(); ++d) {
-    double norm = 0;
-    for (const std::size_t end = std::min(c.size(), f.monomials()->count_to(d)); i < end; ++i) norm += std::abs(c[i]);
-    norms[std::size_t(d)] = norm;
+  std::size_t first = 0;
+  for (int d = 0; first < c.size(); ++d) {
+    const std::size_t end = std::min(c.size(), f.monomials()->count_to(d));
+    norms[std::size_t(d)] = array(c.subspan(first, end - first)).abs().sum();
+    first = end;
   }
   return norms;
 }
@@ -109,11 +115,7 @@ TaylorModel TaylorModel::between(double lower, double upper) {
 
 bool TaylorModel::known() const { return radius_ < infinity; }
 
-double TaylorModel::variation() const {
-  double sum = 0;
-  for (std::size_t i = 1; i < coefficients_.size(); ++i) sum += std::abs(coefficients_[i]);
-  return sum * up;
-}
+double TaylorModel::variation() const { return array(coefficients().subspan(1)).abs().sum() * up; }
 
 double TaylorModel::lower() const {
   const double reach = (variation() + radius_) * up;
@@ -144,29 +146,29 @@ void TaylorModel::take_monomials(const TaylorModel& other) {
 
 void TaylorModel::add(double factor, const TaylorModel& other) {
   take_monomials(other);
-  double size = 0;
-  for (std::size_t i = 0; i < other.coefficients_.size(); ++i) {
-    const double term = factor * other.coefficients_[i];
-    coefficients_[i] += term;
-    size += std::abs(term) + std::abs(coefficients_[i]);
-  }
+  const auto from = array(other.coefficients());
+  auto to = array(coefficients_).head(from.size());
+  to += factor * from;
+  const double size = std::abs(factor) * from.abs().sum() * up + to.abs().sum();
   radius_ = clean((radius_ + std::abs(factor) * other.radius_ + epsilon * size + underflow) * up);
 }
 
 TaylorModel& TaylorModel::operator+=(const TaylorModel& other) {
   take_monomials(other);
-  double size = 0;
-  for (std::size_t i = 0; i < other.coefficients_.size(); ++i)
-    size += std::abs(coefficients_[i] += other.coefficients_[i]);
+  const auto from = array(other.coefficients());
+  auto to = array(coefficients_).head(from.size());
+  to += from;
+  const double size = to.abs().sum();
   radius_ = clean((radius_ + other.radius_ + epsilon * size) * up);
   return *this;
 }
 
 TaylorModel& TaylorModel::operator-=(const TaylorModel& other) {
   take_monomials(other);
-  double size = 0;
-  for (std::size_t i = 0; i < other.coefficients_.size(); ++i)
-    size += std::abs(coefficients_[i] -= other.coefficients_[i]);
+  const auto from = array(other.coefficients());
+  auto to = array(coefficients_).head(from.size());
+  to -= from;
+  const double size = to.abs().sum();
   radius_ = clean((radius_ + other.radius_ + epsilon * size) * up);
   return *this;
 }
@@ -181,8 +183,8 @@ TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
   if (a.coefficients_.size() == 1) {
     // A factor that is known to lie within a radius of a number.
     TaylorModel product = b;
-    double size = 0;
-    for (double& c : product.coefficients_) size += std::abs(c *= a.coefficients_[0]);
+    array(product.coefficients_) *= a.coefficients_[0];
+    const double size = array(product.coefficients_).abs().sum();
     const double b_size = a.radius_ > 0 ? (b.variation() + std::abs(b.constant()) + b.radius_) * up : 0.0;
     product.radius_ =
         clean((std::abs(a.coefficients_[0]) * b.radius_ + a.radius_ * b_size + epsilon * size + underflow) * up);

@@ -23,7 +23,8 @@ set(may_study ${may_search} ${may_lists} cell workspace search lists)
 set(may_tasks ${may_study} route study)
 list(REMOVE_ITEM may_tasks proof)
 set(may_results support problem model calibration criterion planning outputs lists study tasks blocks)
-set(may_cli ${may_tasks} tasks results)
+set(may_options ${may_tasks} tasks results)
+set(may_cli ${may_options} options)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/include/*.hpp ${SOURCE}/src/*.hpp ${SOURCE}/src/*.cpp
   ${SOURCE}/src/*.inl ${SOURCE}/planners/*.hpp ${SOURCE}/planners/*.cpp)

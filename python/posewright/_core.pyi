@@ -170,6 +170,8 @@ class Plan:
     def problem_file(self) -> str: ...
     @property
     def problem_sha256(self) -> str: ...
+    @property
+    def validation(self) -> Optional[Plan]: ...
     def summary(self) -> str: ...
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -420,6 +422,10 @@ def plan(
     problem: Problem,
     poses: Union[int, str, None] = None,
     *,
+    # options
+    validation: Optional[int] = None,
+    gap: Optional[float] = None,
+    proof_time: Optional[float] = None,
     # keys of design
     variant: Union[float, str, None] = None,
     truth: Union[float, str, None] = None,
@@ -449,8 +455,6 @@ def plan(
     fixed: Optional[_Poses] = None,
     test_poses: Union[dict[str, Any], str, None] = None,
     # own
-    gap: Optional[float] = None,
-    proof_time: Optional[float] = None,
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -460,9 +464,12 @@ def evaluate(
     problem: Problem,
     poses: _Poses,
     *,
+    # options
     drop: Optional[int] = None,
     add: Optional[int] = None,
-    format: str = "",
+    from_: Optional[str] = None,
+    controller: Optional[str] = None,
+    coupling: Optional[float] = None,
     # keys of design
     variant: Union[float, str, None] = None,
     truth: Union[float, str, None] = None,
@@ -499,10 +506,12 @@ def evaluate(
 ) -> Evaluation: ...
 def observe(
     problem: Problem,
-    variant: str = "",
+    variant: Optional[str] = None,
     *,
-    candidates: int = 2000,
+    # options
+    candidates: Optional[int] = None,
     poses: Optional[int] = None,
+    # own
     seed: int = 0,
     threads: int = 0,
     progress: _Report = None,
@@ -511,13 +520,16 @@ def route(
     problem: Problem,
     poses: _Poses,
     *,
-    format: str = "",
+    # options
     from_home: bool = False,
     closed: bool = False,
     start: Optional[int] = None,
+    replace: bool = False,
+    milestones: Optional[int] = None,
     settle: Optional[float] = None,
     reading: Optional[float] = None,
-    milestones: int = 200,
+    from_: Optional[str] = None,
+    # own
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -527,17 +539,19 @@ def select(
     blocks: Union[Blocks, ArrayLike],
     poses: int,
     *,
-    criterion: str = "o1",
-    method: str = "exchange",
-    nuisance: Optional[int] = None,
     names: Optional[list[str]] = None,
+    # options
     rows: Optional[int] = None,
-    repeats: Union[int, str, None] = None,
+    nuisance: Optional[int] = None,
+    criterion: Optional[str] = None,
+    method: Optional[str] = None,
     restarts: Optional[int] = None,
-    reserve: bool = False,
-    fixed: Optional[ArrayLike] = None,
-    augment: Optional[ArrayLike] = None,
+    fixed: Union[str, ArrayLike, None] = None,
+    augment: Union[str, ArrayLike, None] = None,
+    repeats: Union[float, str, None] = None,
     gap: Optional[float] = None,
+    reserve: bool = False,
+    # own
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -686,33 +700,45 @@ class Report:
 def calibrate(
     problem: Problem,
     data: Union[_Path, Sequence[_Path]],
-    variant: str = "",
+    variant: Optional[str] = None,
     *,
+    # options
     weights: Optional[str] = None,
-    prior: bool = True,
-    moved: str = "auto",
+    no_prior: bool = False,
     validate: Optional[_Path] = None,
-    hold_back: int = 0,
+    moved: Optional[str] = None,
+    hold_back: Optional[int] = None,
     in_steps: bool = False,
+    profile: Union[str, Sequence[str], None] = None,
     interpolate: bool = False,
-    profile: Union[str, Sequence[str]] = "auto",
+    dh: Optional[str] = None,
+    # own
+    threads: int = 0,
     progress: _Report = None,
 ) -> Calibration: ...
 def simulate(
     problem: Problem,
     poses: _Poses,
-    variant: str = "",
+    variant: Optional[str] = None,
     *,
-    truth: str = "",
-    draws: int = 1000,
+    # options
+    draws: Optional[int] = None,
+    truth: Optional[str] = None,
+    truth_nominal: bool = False,
+    truth_repeatability: Union[float, str, None] = None,
+    truth_independent: Union[float, str, None] = None,
+    truth_joints: Union[float, str, None] = None,
+    no_prior: bool = False,
     exact: bool = False,
-    missing: float = 0.0,
-    outliers: float = 0.0,
-    weights: Optional[str] = None,
-    prior: bool = True,
     profile: bool = False,
-    validation: int = 50,
-    format: str = "",
+    weights: Optional[str] = None,
+    missing: Optional[float] = None,
+    outliers: Optional[float] = None,
+    outlier_size: Optional[float] = None,
+    validation: Optional[int] = None,
+    candidates: Optional[int] = None,
+    from_: Optional[str] = None,
+    # own
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -735,10 +761,11 @@ def compare(
     problem: Problem,
     plans: Mapping[str, _Poses] = ...,
     *,
-    variants: list[str] = ...,
-    truth: str = "",
+    # options
+    variant: Union[str, Sequence[str], None] = None,
+    truth: Optional[str] = None,
+    from_: Optional[str] = None,
     # keys of design
-    variant: Union[float, str, None] = None,
     criterion: Optional[str] = None,
     method: Optional[str] = None,
     poses: Union[int, str, None] = None,
@@ -774,13 +801,16 @@ def next_poses(
     data: Optional[_Path] = None,
     poses: int = 1,
     *,
-    required: Optional[float] = None,
-    variant: str = "",
-    criterion: str = "",
-    prior: bool = True,
+    # options
+    required: Union[float, str, None] = None,
+    variant: Optional[str] = None,
+    criterion: Optional[str] = None,
+    no_prior: bool = False,
     candidates: Optional[int] = None,
     candidates_from: Optional[_Poses] = None,
     state: Optional[_Path] = None,
+    restart: bool = False,
+    # own
     seed: int = 0,
     threads: int = 0,
     time_limit: Optional[float] = None,
@@ -789,8 +819,10 @@ def next_poses(
 def stations(
     problem: Problem,
     *,
+    # options
     choose: Optional[int] = None,
-    full: int = 3,
+    pairs: bool = False,
+    full: Optional[int] = None,
     # keys of design
     variant: Union[float, str, None] = None,
     truth: Union[float, str, None] = None,
@@ -831,27 +863,31 @@ def export(
     to: str,
     problem: Optional[Problem] = None,
     *,
-    unchecked: bool = False,
+    # options
     name: Optional[str] = None,
-    speed: Optional[float] = None,
+    speed: Optional[int] = None,
     settle: Optional[float] = None,
     wait: Optional[float] = None,
-    digital_output: Union[int, str, None] = None,
-    digital_input: Union[int, str, None] = None,
-    tool: Union[int, str, None] = None,
-    payload: Union[int, float, str, None] = None,
+    digital_output: Union[float, str, None] = None,
+    digital_input: Union[float, str, None] = None,
+    tool: Union[float, str, None] = None,
+    payload: Union[float, str, None] = None,
     base: Optional[int] = None,
     coupling: Optional[float] = None,
     controller: Optional[_Path] = None,
-    group: Optional[str] = None,
     station: Optional[str] = None,
+    group: Optional[str] = None,
+    unchecked: bool = False,
+    # own
 ) -> Exported: ...
 def report(
     problem: Problem,
     plan: _Path,
     *,
+    # options
     route: Optional[_Path] = None,
     brief: bool = False,
+    # own
     threads: int = 0,
     time_limit: Optional[float] = None,
     progress: _Report = None,

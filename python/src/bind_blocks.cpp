@@ -5,6 +5,8 @@
 #include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "keywords.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/select_blocks.hpp"
 
@@ -41,36 +43,31 @@ Labelled labelled(const py::object& given, std::optional<int> rows, const std::o
   return result;
 }
 
-Plan select(const py::object& blocks, long long poses, const std::string& criterion, const std::string& method,
-            std::optional<int> nuisance, std::optional<std::vector<std::string>> names, std::optional<int> rows,
-            const py::object& repeats, std::optional<long long> restarts, bool reserve, const py::object& fixed,
-            const py::object& augment, std::optional<double> gap, const py::int_& seed, long long threads,
-            std::optional<double> time_limit, py::object progress) {
-  if (gap && !(*gap > 0 && *gap < 100)) throw InputError({}, "gap is no percentage", "above 0 and below 100");
-  Labelled given = labelled(blocks, rows, nuisance);
+Plan select(const py::object& blocks, const py::object& poses, const py::kwargs& named) {
+  Keywords keywords(named);
+  keywords.set("poses", poses);
+  const py::object names = keywords.take("names");
   SelectOptions options;
-  options.poses = checked("poses", poses, 1, most_poses);
-  options.criterion = criterion;
-  options.method = method;
+  options.nuisance = -1;
+  keywords.read(select_options(), options);
+  const std::optional<int> nuisance = options.nuisance < 0 ? std::nullopt : std::optional(options.nuisance);
+  Labelled given = labelled(blocks, options.rows, nuisance);
   options.nuisance = given.nuisance;
-  if (restarts) options.restarts = checked("restarts", *restarts, 1, most_restarts);
-  if (!fixed.is_none()) options.fixed = indices_of(fixed, "fixed", given.array.count());
-  if (!augment.is_none()) options.measured = indices_of(augment, "augment", given.array.count());
-  options.repeats = repeats_of(repeats).value_or(Repeats{});
-  if (gap) options.gap = *gap / 100;
-  options.reserve = reserve;
-  options.seed = seed_of(seed);
-  options.threads = checked("threads", threads, 0, most_threads);
+  options.seed = keywords.seed;
+  options.threads = keywords.threads;
+  const std::optional<double> limit = keywords.time_limit();
+  keywords.finish();
   BlockFile file{std::move(given.array), {}, {}};
   for (const Parameter& p : given.parameters) file.columns.push_back(p.name);
-  if (names) {
-    if (names->size() != file.columns.size())
-      throw InputError({}, "there are " + std::to_string(names->size()) + " names",
+  if (!names.is_none()) {
+    auto columns = names.cast<std::vector<std::string>>();
+    if (columns.size() != file.columns.size())
+      throw InputError({}, "there are " + std::to_string(columns.size()) + " names",
                        "one for each of the " + std::to_string(file.columns.size()) + " columns is expected");
-    file.columns = std::move(*names);
+    file.columns = std::move(columns);
   }
   Plan result;
-  Watch watch(time_limit, std::move(progress));
+  Watch watch(limit, keywords.progress);
   watch.run([&](const Monitor& monitor) { result = select_blocks(std::move(file), options, monitor); },
             OnInterrupt::keep_best);
   return result;
@@ -192,19 +189,19 @@ void bind_blocks(py::module_& m) {
   bind_blocks_class(m);
   bind_judged(m);
   const py::none none;
-  m.def(
-      "select", &select, py::arg("blocks"), py::arg("poses"), py::kw_only(), py::arg("criterion") = "o1",
-      py::arg("method") = "exchange", py::arg("nuisance") = none, py::arg("names") = none, py::arg("rows") = none,
-      py::arg("repeats") = none, py::arg("restarts") = none, py::arg("reserve") = false, py::arg("fixed") = none,
-      py::arg("augment") = none, py::arg("gap") = none, py::arg("seed") = 0, py::arg("threads") = 0,
-      py::arg("time_limit") = none, py::arg("progress") = none,
-      R"(The same search on whitened Jacobian blocks of your own: an array n × r × m, (n·r) × m beside rows=r, or Blocks.
+  {
+    define(
+        m, "select", &select,
+        documentation(
+            "select", "blocks: object, poses: int, *, names: object = None", rows_of(select_options()), {"poses"},
+            false, run_arguments, "Plan",
+            R"(The same search on whitened Jacobian blocks of your own: an array n × r × m, (n·r) × m with rows=r, or Blocks.
 
-nuisance: how many leading columns are eliminated (Blocks know it); repeats: "forbid", "allow" or how often; restarts: 10
-or what a time limit allows; fixed: indices that are among the poses; augment: indices that are measured already, to
-which so many poses come; gap: percent, method branch_and_bound ends once no plan is better by more. Columns are
-taken as they are: multiply them by their tolerances for criteria that depend on the scale. plan.candidates are the
-indices of the chosen blocks. Ctrl-C as in plan().)");
+Blocks state their nuisance columns; fixed, augment: indices of blocks. Columns are taken as they are: multiply them by
+their tolerances for criteria that depend on the scale. plan.candidates are the indices of the chosen blocks. Ctrl-C as
+in plan().)"),
+        py::arg("blocks"), py::arg("poses"));
+  }
   m.def("evaluate_blocks", &evaluate_blocks, py::arg("blocks"), py::arg("chosen") = none, py::kw_only(),
         py::arg("nuisance") = none, py::arg("rows") = none, py::arg("tolerance") = none, py::arg("prior") = false,
         R"(What the chosen blocks (all where none are named) are worth, by a QR of their rows.

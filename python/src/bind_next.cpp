@@ -1,10 +1,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "arguments.hpp"
 #include "arrays.hpp"
+#include "keywords.hpp"
 #include "made.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/next.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/text_file.hpp"
@@ -35,11 +36,11 @@ WholeLines lines_of(const std::filesystem::path& file) {
   return whole_lines(read_text(file, largest_data));
 }
 
-NextStep step_of(const Problem& problem, NextOptions& options, const std::filesystem::path& state_file,
+NextStep step_of(const Problem& problem, NextOptions& options, const std::filesystem::path& state_file, bool anew,
                  const Monitor& monitor) {
   const WholeLines lines = lines_of(options.data);
   std::optional<NextState> state;
-  if (!state_file.empty()) state = read_next_state(state_file);
+  if (!state_file.empty() && !anew) state = read_next_state(state_file);
   if (state) require_continues(*state, state_file, problem, options.data, lines.text);
   if (lines.has_rows) options.text = lines.text;
   if (state) reuse(*state, problem, options);
@@ -50,32 +51,25 @@ NextStep step_of(const Problem& problem, NextOptions& options, const std::filesy
   return step;
 }
 
-MadeNext next_poses_of(const Shared& problem, const py::object& data, long long poses, const py::object& required,
-                       const std::string& variant, const std::string& criterion, bool prior,
-                       const py::object& candidates, const py::object& candidates_from, const py::object& state,
-                       const py::int_& seed, long long threads, Limit time_limit, py::object progress) {
+MadeNext next_poses_of(const Shared& problem, const py::object& data, const py::object& poses,
+                       const py::kwargs& named) {
+  Keywords keywords(named);
+  if (!data.is_none()) keywords.set("data", py::str(data));
+  keywords.set("poses", poses);
   NextOptions options;
-  if (!data.is_none()) options.data = data.cast<std::filesystem::path>();
-  options.poses = checked("poses", poses, 1, 1000);
-  options.required = within(required, "required", 1e-12, 1e3);
-  options.variant = variant;
-  options.criterion = criterion;
-  options.prior = prior ? Prior::manufactured : Prior::none;
-  options.candidates = optional_number(candidates, "candidates", 10'000'000);
-  if (!candidates_from.is_none())
-    options.candidates_from = pose_list(candidates_from, without_limits(coordinates_of(*problem, variant)));
-  options.seed = seed_of(seed);
-  options.threads = checked("threads", threads, 0, most_threads);
-  const auto state_file = state.is_none() ? std::filesystem::path() : state.cast<std::filesystem::path>();
-  MadeNext made{problem, std::move(options), {}};
-  Watch watch(time_limit, std::move(progress));
-  watch.run(
-      [&](const Monitor& monitor) {
-        made.value = with_places(*made.problem,
-                                 [&] { return step_of(made.problem->problem, made.options, state_file, monitor); });
-      },
-      OnInterrupt::raise);
-  return made;
+  keywords.read(next_options(), options);
+  if (const py::object list = keywords.take("candidates_from"); !list.is_none())
+    options.candidates_from = pose_list(list, without_limits(coordinates_of(*problem, options.variant)));
+  options.seed = keywords.seed;
+  options.threads = keywords.threads;
+  const std::filesystem::path state_file = keywords.text("state");
+  const bool anew = keywords.flag("restart");
+  const Limit limit = keywords.time_limit();
+  keywords.finish();
+  return MadeNext::of(problem, std::move(options), limit, keywords.progress,
+                      [&](const Problem& p, NextOptions& o, const Monitor& monitor) {
+                        return step_of(p, o, state_file, anew, monitor);
+                      });
 }
 
 py::array_t<double> next_configurations(const MadeNext& made) {
@@ -129,16 +123,14 @@ void bind_next(py::module_& m) {
       .def("__repr__", [](const N& n) {
         return py::str("<NextPoses after {}: {}>").format(n.value.next.measured, verdict_name(n.value.next.verdict));
       });
-  const py::none none;
-  m.def("next_poses", &next_poses_of, py::arg("problem"), py::arg("data") = none, py::arg("poses") = 1, py::kw_only(),
-        py::arg("required") = none, py::arg("variant") = "", py::arg("criterion") = "", py::arg("prior") = true,
-        py::arg("candidates") = none, py::arg("candidates_from") = none, py::arg("state") = none, py::arg("seed") = 0,
-        py::arg("threads") = 0, py::arg("time_limit") = none, py::arg("progress") = none,
-        R"(Fits what is measured so far, chooses the next poses, says when to stop (docs/next.md).
+  define(m, "next_poses", &next_poses_of,
+         documentation("next_poses", "problem: Problem, data: object = None, poses: int = 1, *",
+                       rows_of(next_options()), {"data", "poses"}, false, run_arguments, "NextPoses",
+                       R"(Fits the readings so far, chooses the next poses, reports when to stop (docs/next.md).
 
-data: the file of readings, whole lines count; None or no such file: nothing is measured; required: error at the test
-poses that suffices, m (None: the problem's); prior: tolerances of what was manufactured count; state: a file that is
-read and written anew, so that candidates are drawn once and other data are noticed.)");
+data: the file of readings, whole lines count; None or no such file: no pose is measured; required without unit: m;
+state: a file that is read and written anew, so that candidates are drawn once and other data are noticed.)"),
+         py::arg("problem"), py::arg("data") = py::none(), py::arg("poses") = 1);
 }
 
 }  // namespace posewright::python

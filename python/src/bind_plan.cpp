@@ -151,8 +151,11 @@ void bind_plan_class(py::module_& m) {
       return p.poses.empty() ? std::vector<std::string>() : texts(p.poses.front().configuration, field);
     };
   };
-  py::class_<Plan>(m, "Plan", "Which poses to measure, and how good the result will be; docs/plan-file.md.")
-      .def_readonly("poses", &Plan::poses)
+  py::class_<Plan> bound(m, "Plan", py::dynamic_attr(),
+                         "Which poses to measure, and how good the result will be; docs/plan-file.md.");
+  // Of plan(…, validation=k), which sets it on its result.
+  bound.attr("validation") = py::none();
+  bound.def_readonly("poses", &Plan::poses)
       .def_property_readonly("configurations", &configurations, "N × n, SI, without load cases and stations")
       .def_property_readonly("names", name_of(&NamedValue::name), "of the columns of configurations")
       .def_property_readonly("units", name_of(&NamedValue::unit), "of the columns of configurations")

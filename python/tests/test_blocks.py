@@ -93,7 +93,7 @@ def test_arrays_of_anything_but_real_numbers_are_type_errors(blocks, kind):
         (dict(poses=6, names=["a"]), pw.InputError, "there are 1 names"),
         (dict(poses=6, rows=3), pw.InputError, "blocks is 300 × 3 × 8"),
         (dict(poses=6, gap=1), pw.InputError, "it is for branch_and_bound"),
-        (dict(poses=6, gap=100), pw.InputError, "gap is no percentage"),
+        (dict(poses=6, gap=100), pw.InputError, "above 0 and below 100"),
     ],
 )
 def test_arguments_that_do_not_fit_the_blocks(blocks, arguments, error, said):

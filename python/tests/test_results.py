@@ -128,7 +128,7 @@ def test_a_route_knows_whether_the_plan_was_made_for_this_problem(kr270, small_p
 
 
 def test_bad_arguments_of_a_route(kr270, small_plan):
-    with pytest.raises(pw.InputError, match="start and from_home cannot be combined"):
+    with pytest.raises(pw.InputError, match="start and from-home cannot be combined"):
         pw.route(kr270, small_plan, from_home=True, start=1)
     with pytest.raises(pw.InputError, match="start= 99 is not a pose of"):
         pw.route(kr270, small_plan, start=99)
@@ -140,9 +140,9 @@ def test_lists_that_other_programs_wrote_are_read_by_their_format(kr270, small_p
     file = tmp_path / "poses.npy"
     np.save(file, small_plan.configurations)
     settings = dict(candidates=60, restarts=1, method="exchange")
-    by_file = pw.evaluate(kr270, file, format="pybotics-npy", **settings)
+    by_file = pw.evaluate(kr270, file, from_="pybotics-npy", **settings)
     assert without_times(by_file.to_dict()) == without_times(pw.evaluate(kr270, small_plan, **settings).to_dict())
     with pytest.raises(pw.InputError, match="it belongs to the name of a pose list"):
-        pw.evaluate(kr270, small_plan, format="pybotics-npy")
+        pw.evaluate(kr270, small_plan, from_="pybotics-npy")
     with pytest.raises(pw.InputError, match="format"):
-        pw.route(kr270, file, format="nothing")
+        pw.route(kr270, file, from_="nothing")

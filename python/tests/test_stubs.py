@@ -2,6 +2,7 @@
 import ast
 import importlib.util
 import inspect
+import os
 import pathlib
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from posewright import _core
 
 STUBS = ast.parse(pathlib.Path(_core.__file__).with_name("_core.pyi").read_text())
 # Of classes: what the language gives every object.
-COMMON = {"__init__", "__repr__", "__module__", "__doc__", "__new__", "__weakref__"}
+COMMON = {"__init__", "__dict__", "__repr__", "__module__", "__doc__", "__new__", "__weakref__"}
 
 
 def members(value):
@@ -42,6 +43,16 @@ def test_stubs_name_the_arguments_and_which_need_their_name():
             names += [a.arg for a in node.args.kwonlyargs]
             written = [part.split(":")[0].strip() for part in arguments(signature)]
             assert written == names, node.name
+
+
+def test_every_option_of_a_command_is_a_keyword_of_its_function():
+    program = os.environ.get("POSEWRIGHT_PROGRAM")
+    if program is None:
+        pytest.skip("POSEWRIGHT_PROGRAM does not name the program")
+    done = subprocess.run([ROOT / "scripts" / "count-structure", program], capture_output=True, text=True, check=True,
+                          env={**os.environ, "PYTHONPATH": str(pathlib.Path(posewright.__file__).parents[1])})
+    missing = done.stdout.splitlines()[-1].split(": ", 2)[2].split(", ")
+    assert {name.split()[0] for name in missing} == {"compensate"}, missing
 
 
 def arguments(signature):

@@ -130,6 +130,30 @@ def test_a_compensation_is_that_of_the_command_line(program, examples, tmp_path)
         pw.compensate(problem, poses, most=0)
 
 
+def test_options_of_a_command_do_the_same_as_keywords(program, kr270, small_plan, data, tmp_path):
+    small_plan.save(tmp_path / "plan.json")
+    words = ["--draws", 6, "--truth-repeatability", "0.05 mm", "--outliers", 0.1, "--outlier-size", 10, "--no-prior"]
+    theirs = program("simulate", kr270.file, tmp_path / "plan.json", *words)
+    named = dict(draws=6, outliers=0.1, outlier_size=10, no_prior=True)
+    for length in (5e-5, "0.05 mm"):
+        assert pw.simulate(kr270, small_plan, truth_repeatability=length, **named).to_dict() == theirs
+    assert pw.simulate(kr270, small_plan, **named).to_dict() != theirs
+    calibration = pw.calibrate(kr270, data, dh="proximal", no_prior=True)
+    assert calibration.to_dict() == program("calibrate", kr270.file, data, "--dh", "proximal", "--no-prior")
+    assert "dh" not in str(pw.calibrate(kr270, data).to_dict().keys()) and "enavit" in calibration.summary()
+    for wrong in (dict(outlier_size=10), dict(truth_nominal=True), dict(truth_repeatability="5 deg"), dict(draws=2.5)):
+        with pytest.raises(pw.InputError, match=next(iter(wrong))):
+            pw.simulate(kr270, small_plan, **wrong)
+    with pytest.raises(TypeError, match="force"):  # an option of the program alone
+        pw.simulate(kr270, small_plan, force=True)
+
+
+def test_poses_for_validation_come_with_the_plan(kr270):
+    plan = pw.plan(kr270, poses=12, candidates=80, restarts=1, validation=3)
+    assert len(plan) == 12 and sum(not pose.measured for pose in plan.validation.poses) == 3
+    assert pw.plan(kr270, poses=12, candidates=80, restarts=1).validation is None
+
+
 def test_stations_need_a_number_of_places(examples):
     cell = pw.Problem(examples / "cell" / "problem.yaml")
     with pytest.raises(pw.InputError):

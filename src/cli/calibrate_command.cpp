@@ -6,6 +6,7 @@
 #include "posewright/lists/compliance_list.hpp"
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/dh_table.hpp"
 #include "posewright/support/json.hpp"
@@ -13,55 +14,24 @@
 #include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
-#include "weighting.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
 
-po::options_description calibrate_command_options() {
-  po::options_description options("Options");
-  options.add_options()  //
-      ("variant", po::value<Words>()->value_name("V")->composing(),
-       "variant to calibrate (design: variant, or the first); a list A,B compares them in one table")  //
-      ("weights", text("KIND"),
-       "ols: equal weights; wls: weights by the instrument's noise; robust: small weights for gross errors (wls)")  //
-      ("no-prior", "plain least squares, without manufacturing tolerances as prior knowledge")                      //
-      ("validate", text("FILE"), "more measured data, for validation; they are not fitted")                         //
-      ("moved", text("WHAT"),
-       "frames that moved between files: base, as of an instrument; tool, with all that the tip carries; both; "
-       "nothing; "
-       "auto: the base, and the tool if the residuals show it (auto)")                   //
-      ("hold-back", text("K"), "keep every K-th pose for validation; it is not fitted")  //
-      ("in-steps", "also estimate base and tool, geometry, and stiffness in turn")       //
-      ("profile", text("WHICH"),
-       "intervals by profile likelihood: auto (parameters with a large curvature), none, all, or a list of names and "
-       "globs (auto)")  //
-      ("interpolate",
-       "add the residuals, interpolated between the poses, to predictions (variant with `unmodelled`); refused unless "
-       "cross-validation shows a gain");
-  options.add_options()                                                                                //
-      ("output,o", text("FILE"), "calibrated parameters as YAML, for --parameters of other commands")  //
-      ("deformation", text("FILE.svg"),
-       "picture of the motion of a platform's joint centres, if the data contain them")              //
-      ("urdf", text("FILE"), "the robot's URDF with the calibrated kinematics")                      //
-      ("dh", text("KIND"), "table of Denavit-Hartenberg parameters: distal or proximal (modified)")  //
-      ("force", "replace files that posewright did not write; write even an estimate that is not fit for use");
-  options.add(problem_options());
-  return options;
-}
+po::options_description calibrate_command_options() { return described(calibrate_options()).add(problem_options()); }
 
 /// Output files for users of the robot.
 struct Results {
   std::filesystem::path parameters, urdf, deformation;  ///< empty: not asked for
-  std::string dh;
+  std::optional<DhConvention> dh;
 
-  Results(const po::variables_map& values, const Problem& problem, const CalibrateOptions& calibrate)
+  Results(const po::variables_map& values, const Problem& problem, const CalibrateCall& calibrate)
       : parameters(values.count("output") > 0 ? output_file(values, "output", "") : ""),
         urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : ""),
         deformation(values.count("deformation") > 0 ? output_file(values, "deformation", "") : ""),
-        dh(choice_of(values, "dh", {"distal", "proximal"})) {
-    if ((!urdf.empty() || !dh.empty()) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
+        dh(calibrate.dh) {
+    if ((!urdf.empty() || dh) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
     std::vector<std::filesystem::path> inputs = files_of(problem);
     inputs.push_back(calibrate.data);
@@ -71,12 +41,6 @@ struct Results {
   }
 };
 
-std::vector<CalibratedValue> values_of(const Calibration& result) {
-  std::vector<CalibratedValue> values;
-  for (const EstimatedValue& estimated : result.values) values.push_back(estimated.value);
-  return values;
-}
-
 /// The robot's files; what a URDF cannot say goes to `notes`.
 std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& problem, const Calibration& result,
                                         std::vector<std::string>& notes) {
@@ -84,7 +48,7 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
   const VariantSpec& variant = find_variant(problem, result.variant);
   if (!wanted.urdf.empty()) {
     const auto& arm = std::get<SerialArmSpec>(problem.robot);
-    const CorrectedUrdf urdf = corrected_urdf(arm, problem.at(arm.line), variant.convention, values_of(result));
+    const CorrectedUrdf urdf = corrected_urdf(arm, problem.at(arm.line), variant.convention, estimated_values(result));
     for (const std::string& left_out : urdf.left_out) notes.push_back("not in the URDF: " + left_out);
     files.push_back({wanted.urdf, urdf.text});
   }
@@ -93,41 +57,20 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
   return files;
 }
 
-std::optional<DhTable> table_of(const Results& wanted, const Problem& problem, const Calibration& result) {
-  if (wanted.dh.empty()) return std::nullopt;
-  const auto& arm = std::get<SerialArmSpec>(problem.robot);
-  return dh_table(arm, problem.at(arm.line), find_variant(problem, result.variant).convention, values_of(result),
-                  wanted.dh == "distal" ? DhConvention::distal : DhConvention::proximal);
-}
-
-CalibrateOptions options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
+CalibrateCall options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
   if (positional.size() < 2)
     throw InputError({}, positional.empty() ? "PROBLEM is missing" : "DATA.csv is missing",
                      "see posewright help calibrate");
-  CalibrateOptions calibrate;
+  CalibrateCall calibrate;
   calibrate.data = positional[1];
   calibrate.campaigns.assign(positional.begin() + 2, positional.end());
-  if (values.count("moved") > 0) {
-    calibrate.moved = moved_between(text_of(values, "moved"));
-    if (calibrate.campaigns.empty()) throw InputError({}, "--moved with one file", "it is about further files");
-  }
-  if (const std::vector<std::string> variants = variants_of(values); variants.size() == 1)
-    calibrate.variant = variants.front();
-  calibrate.weighting = weighting_of(values);
-  calibrate.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
-  calibrate.validate = text_of(values, "validate");
-  calibrate.hold_back = whole_number(values, "hold-back", 2, 1000000).value_or(0);
-  calibrate.in_steps = values.count("in-steps") > 0;
-  calibrate.interpolate = values.count("interpolate") > 0;
-  if (values.count("profile") > 0) calibrate.profile = profile_choice(text_of(values, "profile"));
-  if (calibrate.profile.choice == ProfileChoice::named && calibrate.weighting == Weighting::robust)
-    throw InputError({}, "--profile with robust weights", "--weights ols or wls");
+  read_options(calibrate_options(), values, calibrate);
   calibrate.threads = common.threads;
   return calibrate;
 }
 
 void refuse_results(const Results& wanted, const std::string& why) {
-  if (!wanted.parameters.empty() || !wanted.urdf.empty() || !wanted.dh.empty() || !wanted.deformation.empty())
+  if (!wanted.parameters.empty() || !wanted.urdf.empty() || wanted.dh || !wanted.deformation.empty())
     throw InputError({}, "-o, --urdf, --dh and --deformation are for one calibration", why);
 }
 
@@ -165,12 +108,12 @@ int run_compliances(const CommonOptions& common, const Problem& problem, const C
 
 int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const CalibrateOptions calibrate = options_of(values, positional, common);
+  const CalibrateCall calibrate = options_of(values, positional, common);
   const Problem problem = given_problem(positional.front(), values);
   const Results wanted(values, problem, calibrate);
-  if (const std::vector<std::string> variants = variants_of(values); variants.size() > 1) {
+  if (calibrate.models.size() > 1) {
     refuse_results(wanted, "a single --variant");
-    return run_models(common, problem, calibrate, variants);
+    return run_models(common, problem, calibrate, calibrate.models);
   }
   if (lists_compliances(calibrate.data)) {
     refuse_results(wanted, "data that are readings of the instrument");
@@ -178,7 +121,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   }
   auto [result, was_interrupted] =
       watched(common, 0, [&](const Monitor& monitor) { return calibrate_problem(problem, calibrate, monitor); });
-  const std::optional<DhTable> table = table_of(wanted, problem, result);
+  const std::optional<DhTable> table = dh_table_of(problem, result, wanted.dh);
   std::vector<FileToWrite> files;
   if (!wanted.deformation.empty()) {
     if (!result.platform)

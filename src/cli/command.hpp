@@ -3,12 +3,11 @@
 #include <boost/program_options.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "posewright/options/option.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::cli {
@@ -77,8 +76,22 @@ std::optional<double> number_between(const po::variables_map& values, const std:
                                      double upper);
 /// The text of an option, empty if it is not given.
 std::string text_of(const po::variables_map& values, const std::string& option);
-/// One of the allowed words, or empty if the option is not given. Throws InputError for another word.
-std::string choice_of(const po::variables_map& values, const std::string& option,
-                      std::initializer_list<std::string_view> allowed);
+
+void add_option(po::options_description& options, const OptionRow& row);
+/// What the user wrote for an option; none if it is not given.
+std::optional<GivenOption> given_option(const po::variables_map& values, const OptionRow& row);
+
+/// The options of a table as those of the program.
+template <class Options>
+po::options_description described(const OptionTable<Options>& table) {
+  po::options_description options("Options");
+  for (const OptionRow& row : table.rows()) add_option(options, row);
+  return options;
+}
+/// Reads the options that are given into `options`.
+template <class Options>
+void read_options(const OptionTable<Options>& table, const po::variables_map& values, Options& options) {
+  table.read(options, [&](const OptionRow& row) { return given_option(values, row); });
+}
 
 }  // namespace posewright::cli

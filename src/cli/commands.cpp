@@ -1,10 +1,6 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <charconv>
 
 #include "command.hpp"
-#include "posewright/support/near_words.hpp"
 
 namespace posewright::cli {
 
@@ -50,39 +46,38 @@ std::string single(const Words& positional, const std::string& what) {
   return positional.front();
 }
 
+void add_option(po::options_description& options, const OptionRow& row) {
+  if (row.value.empty()) {
+    options.add_options()(row.name.c_str(), row.help.c_str());
+  } else if (row.kind == OptionKind::list) {
+    options.add_options()(row.name.c_str(), po::value<Words>()->value_name(row.value)->composing(), row.help.c_str());
+  } else {
+    options.add_options()(row.name.c_str(), text(row.value.c_str()), row.help.c_str());
+  }
+}
+
+std::optional<GivenOption> given_option(const po::variables_map& values, const OptionRow& row) {
+  const std::string name = row.long_name();
+  if (values.count(name) == 0) return std::nullopt;
+  GivenOption given{"--" + name, {}};
+  if (row.kind == OptionKind::list) given.values = values[name].as<Words>();
+  else if (!row.value.empty()) given.values = {text_of(values, name)};
+  return given;
+}
+
 std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
                                      double upper) {
   if (values.count(option) == 0) return std::nullopt;
-  const std::string text = text_of(values, option);
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || code != std::errc() || end != text.data() + text.size() || !(value >= lower && value <= upper))
-    throw InputError({}, "--" + option + " " + text, fmt::format("a number from {} to {} is allowed", lower, upper));
-  return value;
+  return number_of({"--" + option, {text_of(values, option)}}, lower, upper);
 }
 
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper) {
-  const std::string text = text_of(values, option);
   if (values.count(option) == 0) return std::nullopt;
-  long number = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (code != std::errc() || end != text.data() + text.size() || number < lower || number > upper)
-    throw InputError({}, "--" + option + " " + text,
-                     "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper) + " is allowed");
-  return int(number);
+  return whole_of({"--" + option, {text_of(values, option)}}, lower, upper);
 }
 
 std::string text_of(const po::variables_map& values, const std::string& option) {
   return values.count(option) > 0 ? values[option].as<std::string>() : std::string();
-}
-
-std::string choice_of(const po::variables_map& values, const std::string& option,
-                      std::initializer_list<std::string_view> allowed) {
-  if (values.count(option) == 0) return {};
-  const std::string text = text_of(values, option);
-  if (std::find(allowed.begin(), allowed.end(), text) != allowed.end()) return text;
-  throw InputError({}, "--" + option + " " + text + meant_instead(text, {allowed.begin(), allowed.end()}),
-                   fmt::format("allowed: {}", fmt::join(allowed, ", ")));
 }
 
 }  // namespace posewright::cli

@@ -2,8 +2,8 @@
 
 #include "command.hpp"
 #include "design_options.hpp"
-#include "planners/registry.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/comparison.hpp"
 #include "posewright/study/variant.hpp"
@@ -19,22 +19,15 @@ namespace {
 DesignOptions compare_keys() { return {"poses", "method", "candidates", "restarts"}; }
 
 po::options_description compare_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                              //
-      ("variant", po::value<Words>()->value_name("V")->composing(), "variants to compare, one or a list A,B (all)")  //
-      ("truth", text("V"), "effects of this variant on the others, by parameter, tolerances included")               //
-      ("from", text("FORMAT"), ("format of every PLAN: " + readable_format_names()).c_str());
-  options.add_options()("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str());
-  add_design_options(options, {"poses", "candidates", "restarts"});
-  options.add(resume_option()).add(problem_options());
-  return options;
+  po::options_description options = described(compare_options());
+  add_design_options(options, compare_keys());
+  return options.add(resume_option()).add(problem_options());
 }
 
 CompareOptions options_of(const Problem& problem, const po::variables_map& values, const Words& positional,
                           const CommonOptions& common) {
   CompareOptions compare;
-  compare.variants = variants_of(values);
-  compare.truth = text_of(values, "truth");
+  read_options(compare_options(), values, compare);
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
   const bool given = positional.size() > 1;

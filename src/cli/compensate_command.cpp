@@ -213,7 +213,7 @@ struct RobotFiles {
       : urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : fs::path()),
         xacro(values.count("xacro") > 0 ? output_file(values, "xacro", "") : fs::path()),
         kinematics(values.count("ur-kinematics") > 0 ? output_file(values, "ur-kinematics", "") : fs::path()),
-        dh_(choice_of(values, "dh", {"distal", "proximal"})) {}
+        dh_(values.count("dh") > 0 ? word_of({"--dh", {text_of(values, "dh")}}, {"distal", "proximal"}) : "") {}
 
   bool any() const { return !urdf.empty() || !xacro.empty() || !kinematics.empty() || !dh_.empty(); }
 

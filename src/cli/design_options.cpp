@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "option_facts.hpp"
 #include "planners/registry.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
@@ -34,6 +36,11 @@ std::string option_help(const DesignKey& key) {
   if (key.standard.empty() || key.value.empty()) return text;
   const Json standard = Json::parse(key.standard);
   return text + " (" + (standard.is_string() ? standard.get<std::string>() : key.standard) + ")";
+}
+
+const char* type_name(OptionKind kind) {
+  constexpr std::array names{"flag", "whole", "number", "text", "list", "blocks", "file", "poses", "size", "program"};
+  return names[std::size_t(kind)];
 }
 
 bool is_among(const DesignKey& key, const DesignOptions& names) {
@@ -69,7 +76,14 @@ std::string design_keys_json() {
     schema["description"] = key.help;
     rows.push_back({{"path", key.path}, {"option", key.option}, {"poses", key.lists_poses}, {"schema", schema}});
   }
-  return json_text(rows);
+  Json commands;
+  for (const CommandRows& command : option_rows()) {
+    Json options = Json::array();
+    for (const OptionRow& row : command.rows)
+      options.push_back({{"option", row.long_name()}, {"keyword", row.keyword()}, {"type", type_name(row.kind)}});
+    commands[command.function] = {{"command", command.command}, {"options", options}};
+  }
+  return json_text(Json{{"design", rows}, {"functions", commands}});
 }
 
 }  // namespace posewright::cli

@@ -18,7 +18,7 @@ void add_design_options(po::options_description& options, const DesignOptions& n
 Problem designed_problem(const std::filesystem::path& file, const po::variables_map& values,
                          const DesignOptions& names);
 
-/// Rows of the table of keys as JSON: path, option, schema, default, description.
+/// Rows of the table of keys (path, option, schema, default, description) and of the options of each command, as JSON.
 std::string design_keys_json();
 
 }  // namespace posewright::cli

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "command.hpp"
-#include "posewright/controller/known_controllers.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/json.hpp"
@@ -23,60 +23,15 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t plan_limit = 200'000'000;
 
-po::options_description export_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                          //
-      ("to", text("FORMAT"), "format; list, or no --to: print the table of formats")                             //
-      ("output,o", text("FILE|DIR"), "file or folder to write (a default name of the format; - for stdout)")     //
-      ("force", "replace files that posewright did not write")                                                   //
-      ("name", text("NAME"), "name of the program (as the file), or of the robot in an SRDF")                    //
-      ("speed", text("%"), "speed in whole percent of full speed (10; joint-trajectory: of the route's speed)")  //
-      ("settle", text("S"), "seconds at rest before a measurement (the route's, else 2)")                        //
-      ("wait", text("S"), "seconds for a measurement, instead of waiting for an input")                          //
-      ("digital-output", text("N"),
-       "output that triggers the instrument: number, or name for abb-rapid and staubli-val3")                      //
-      ("digital-input", text("N"), "input that reports the end of a measurement")                                  //
-      ("tool", text("N"), "tool of the controller: number, or name of the tooldata for abb-rapid")                 //
-      ("payload", text("N|KG,X,Y,Z"), "load: payload schedule for fanuc-tp; kg and m of its centre for urscript")  //
-      ("base", text("N"), "base or user frame of the controller")                                                  //
-      ("coupling", text("F"), "J3 of the controller is J3 - F*J2 of the plan; 0: no coupling")                     //
-      ("controller", text("NAME"),
-       "known name, or YAML file: sign, zero_deg, range_deg, pulses_per_degree, coupling, axes, decimals, pivot_mm")  //
-      ("station", text("NAME"), "station whose targets a list of targets contains")                                   //
-      ("group", text("NAME"), "planning group of an SRDF (manipulator)")                                              //
-      ("problem", text("FILE"),
-       "problem file for the check of the program (the one named by the plan)")  //
-      ("unchecked", "write the program without a check of limits and velocities");
-  options.add(problem_options());
-  return options;
-}
+po::options_description export_command_options() { return described(export_options()).add(problem_options()); }
 
-std::vector<std::string> given_options(const po::variables_map& values) {
+ExportOptions options_of(const PoseFormat& format, const po::variables_map& values, const fs::path& output) {
   std::vector<std::string> given;
-  for (const char* option : {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload",
-                             "base", "coupling", "controller", "group", "station"})
-    if (values.count(option) > 0) given.emplace_back(option);
-  return given;
-}
-
-ExportOptions export_options(const PoseFormat& format, const po::variables_map& values, const fs::path& output) {
-  require_read(format, given_options(values));
+  for (const auto& row : export_options().rows())
+    if (row.read && values.count(row.name) > 0) given.push_back(row.name);
+  require_read(format, given);
   ExportOptions result;
-  if (const auto speed = whole_number(values, "speed", 1, 100)) result.speed = *speed;
-  result.settle = number_between(values, "settle", 0, 3600);
-  // Programs say hundredths of a second.
-  result.wait = number_between(values, "wait", 0.01, 3600);
-  result.coupling = number_between(values, "coupling", -10, 10);
-  result.digital_output = text_of(values, "digital-output");
-  result.digital_input = text_of(values, "digital-input");
-  result.name = text_of(values, "name");
-  result.group = text_of(values, "group");
-  result.station = text_of(values, "station");
-  result.tool = text_of(values, "tool");
-  result.payload = text_of(values, "payload");
-  result.base = whole_number(values, "base", 0, 255);
-  if (const std::string name = text_of(values, "controller"); !name.empty())
-    result.controller = controller_settings(name);
+  read_options(export_options(), values, result);
   // A program is called as its file.
   if (result.name.empty() && format.controller && !format.extension.empty() && output.extension() == format.extension &&
       std::find(format.options.begin(), format.options.end(), "name") != format.options.end())
@@ -227,7 +182,7 @@ int run_export(const po::variables_map& values, const Words& positional) {
     throw InputError({}, format.several_files ? format.name + " has several files" : "--json and -o - both need stdout",
                      "give -o a file or folder");
   const fs::path output = to_stdout ? fs::path() : fs::path(given);
-  const ExportOptions export_settings = export_options(format, values, output);
+  const ExportOptions export_settings = options_of(format, values, output);
   require_ending(format, output);
   const PoseSequence sequence = parse_sequence(read_text(plan, plan_limit), plan.string());
   const std::optional<Problem> problem = problem_of(format, plan, values);

@@ -30,7 +30,7 @@ std::string general_help() {
       "Exit status: 0 done; 1 well-formed but cannot be done; 2 bad usage or input; 130 interrupted (best plan "
       "written).\n",
       "help COMMAND", "Options of a command.", "help --man", "The manual page, for man -l.", "help --keys",
-      "Keys of a problem's design, as JSON.", "completion bash|zsh",
+      "Keys of design and options of commands, as JSON.", "completion bash|zsh",
       "Completion for a shell: source <(posewright completion bash)", general_example);
   return text;
 }

@@ -4,11 +4,9 @@
 
 #include "command.hpp"
 #include "next_files.hpp"
-#include "posewright/criterion/registry.hpp"
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/problem/units.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/next.hpp"
-#include "posewright/search/search.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
@@ -20,57 +18,11 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description next_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                           //
-      ("data", text("FILE"), "CSV of the readings so far; rows may be appended (none: no pose is measured yet)")  //
-      ("poses,k", text("k"), "number of next poses (1)")                                                          //
-      ("required", text("LENGTH"), "required error at the test poses (design: require: accuracy)")                //
-      ("watch", "repeat whenever the file grows, until the requirement is met, the curve is flat, or Ctrl-C")     //
-      ("variant", text("V"), "model variant to fit (design: variant, else the first)")                            //
-      ("criterion", text("NAME"),
-       ("criterion for the next poses: " + criterion_names() + " (the problem's; else o1, later test_pose)").c_str())(
-          "no-prior", "fit without manufacturing tolerances as prior knowledge")(
-          "candidates", text("n"),
-          help_with_default("feasible configurations to choose from", default_candidates).c_str())(
-          "candidates-from", text("POSES"),
-          "choose among these configurations instead (CSV, plan.json, measured data)");
-  options.add_options()  //
-      ("state", text("FILE"),
-       "file that keeps the state between calls (DATA.next-state.json beside the data; - for none)")(
-          "restart", "discard the state, after a change of problem or data file")         //
-      ("output,o", text("FILE"), "next poses as CSV")                                     //
-      ("result", text("FILE"), "file for the output of --json, rewritten at every step")  //
-      ("force", "replace files that posewright did not write");
-  options.add(problem_options());
-  return options;
-}
-
-std::optional<double> required_of(const po::variables_map& values) {
-  if (values.count("required") == 0) return std::nullopt;
-  const std::string text = text_of(values, "required");
-  const std::string allowed = "a length above 0 with its unit is expected: " + allowed_units({Quantity::length});
-  Measured given;
-  try {
-    given = parse_measured(text, {Quantity::length});
-  } catch (const InputError&) {
-    throw InputError({}, "--required " + text, allowed);
-  }
-  if (!(given.value > 0) || given.quantity != Quantity::length) throw InputError({}, "--required " + text, allowed);
-  return given.value;
-}
+po::options_description next_command_options() { return described(next_options()).add(problem_options()); }
 
 NextOptions options_of(const po::variables_map& values, const CommonOptions& common) {
   NextOptions next;
-  next.data = text_of(values, "data");
-  if (values.count("data") > 0 && next.data.empty()) throw InputError({}, "--data is empty", "name a file");
-  next.variant = text_of(values, "variant");
-  next.criterion = text_of(values, "criterion");
-  if (!next.criterion.empty()) require_known(next.criterion, "auto", {}, {});
-  next.poses = whole_number(values, "poses", 1, 1000).value_or(1);
-  next.required = required_of(values);
-  next.prior = values.count("no-prior") > 0 ? Prior::none : Prior::manufactured;
-  next.candidates = whole_number(values, "candidates", 1, 10000000);
+  read_options(next_options(), values, next);
   next.seed = common.seed;
   next.threads = common.threads;
   if (values.count("watch") > 0 && next.data.empty()) throw InputError({}, "--watch follows a file", "--data FILE");

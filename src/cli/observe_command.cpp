@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/observation.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
@@ -10,24 +11,13 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description observe_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                              //
-      ("variant", text("V"), "only this variant (all)")                              //
-      ("candidates", text("n"), "number of feasible configurations to draw (2000)")  //
-      ("poses", text("N"), "number of poses for the predicted σ (design: poses)")    //
-      ("spectrum", "print the singular values of G too");
-  options.add(problem_options());
-  return options;
-}
+po::options_description observe_command_options() { return described(observe_options()).add(problem_options()); }
 
 int run_observe(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   ObserveOptions observe;
-  observe.variant = text_of(values, "variant");
-  observe.candidates = whole_number(values, "candidates", 1, 1000000).value_or(observe.candidates);
-  observe.poses = whole_number(values, "poses", 1, 1000000);
+  read_options(observe_options(), values, observe);
   observe.seed = common.seed;
   observe.threads = common.threads;
   const auto [observations, was_interrupted] =

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "design_options.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "problem_source.hpp"
 #include "task_options.hpp"
@@ -14,36 +15,25 @@ DesignOptions plan_keys() {
 }
 
 po::options_description plan_command_options() {
-  po::options_description options("Options");
+  po::options_description options = described(plan_options());
   add_design_options(options, plan_keys());
-  options.add_options()  //
-      ("validation", text("k"), "k additional poses for validation: plan-validation.json, poses-validation.csv")(
-          "gap", text("P"), "stop the workspace proof at this gap, in percent (0.1)")(
-          "proof-time", text("S"),
-          "time limit of the workspace proof in seconds; 0: no proof (an amount of work, some seconds)");
-  options.add(output_options(true)).add(resume_option());
-  options.add(problem_options());
-  return options;
+  return options.add(output_options(true)).add(resume_option()).add(problem_options());
 }
 
 int run_plan(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  RunOptions run;
-  if (const auto gap = number_below(values, "gap", 100, "percent, above 0 and below 100, are allowed"))
-    run.proof.gap = *gap / 100;
-  run.proof.seconds = text_of(values, "proof-time") == "0"
-                          ? 0.0
-                          : number_below(values, "proof-time", 1e9, "a number of seconds is allowed; 0: no proof");
+  PlanCall call;
+  read_options(plan_options(), values, call);
+  RunOptions& run = call.run;
   run.seed = common.seed;
   run.threads = common.threads;
   const Problem problem = designed_problem(single(positional, "PROBLEM"), values, plan_keys());
-  const std::optional<int> validation = whole_number(values, "validation", 1, 1000000);
   const auto engine = engine_of(values, "plan");
-  const Outputs outputs(values, files_of(problem), true, validation.has_value());
+  const Outputs outputs(values, files_of(problem), true, call.validation.has_value());
   std::function<Plan(const Plan&, const Monitor&)> validate;
-  if (validation)
+  if (call.validation)
     validate = [&](const Plan& plan, const Monitor& monitor) {
-      return plan_validation(problem, run, plan, *validation, monitor);
+      return plan_validation(problem, run, plan, *call.validation, monitor);
     };
   return outputs.search_and_write(
       common, time_limit(values), [&](const Monitor& monitor) { return plan_problem(problem, run, monitor); }, validate,

@@ -60,18 +60,10 @@ po::options_description problem_options() {
 }
 
 std::vector<std::string> variants_of(const po::variables_map& values) {
-  std::vector<std::string> names;
-  if (values.count("variant") == 0) return names;
+  if (values.count("variant") == 0) return {};
   const boost::any& given = values["variant"].value();
-  for (const std::string& word : given.type() == typeid(Words) ? boost::any_cast<const Words&>(given)
-                                                               : Words{boost::any_cast<const std::string&>(given)})
-    for (std::size_t begin = 0; begin <= word.size();) {
-      const std::size_t end = std::min(word.find(',', begin), word.size());
-      if (end == begin) throw InputError({}, "--variant " + word + " has an empty name", "names of variants");
-      names.push_back(word.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  return names;
+  const auto* several = boost::any_cast<Words>(&given);
+  return names_of({"--variant", several != nullptr ? *several : Words{boost::any_cast<const std::string&>(given)}});
 }
 
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {

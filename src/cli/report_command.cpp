@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "command.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/report_result.hpp"
 #include "problem_source.hpp"
@@ -18,19 +19,7 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description report_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                               //
-      ("output,o", text("FILE"), "the page (report.html; - for none)")                                //
-      ("route", text("FILE"), "route of the plan; the page shows its order and motions (none)")       //
-      ("problem", text("FILE"), "problem file (the one named by the plan)")                           //
-      ("brief", "leave out the slow parts: other numbers of poses, gain of candidates, moved poses")  //
-      ("watch", "result: rewrite the page whenever the file changes; the open page reloads")          //
-      ("force", "replace files that posewright did not write")                                        //
-      ("time-limit", text("S"), "stop after S seconds with the parts that are finished");
-  options.add(problem_options());
-  return options;
-}
+po::options_description report_command_options() { return described(report_options()).add(problem_options()); }
 
 /// Writes the page, or its data to stdout.
 template <class Report>
@@ -61,8 +50,7 @@ GivenPlan given_plan(const po::variables_map& values, const std::filesystem::pat
 int report_plan(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
                 const std::filesystem::path& file) {
   ReportOptions options;
-  options.route = text_of(values, "route");
-  options.sizes = options.candidates = options.moves = values.count("brief") == 0;
+  read_options(report_options(), values, options);
   options.threads = common.threads;
   std::vector<std::filesystem::path> inputs{file};
   const GivenPlan plan = given_plan(values, file, inputs);

@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/route.hpp"
 #include "posewright/study/variant.hpp"
@@ -15,44 +16,17 @@
 namespace posewright::cli {
 namespace {
 
-po::options_description route_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                              //
-      ("from-home", "begin at home (workspace: motion: home, else zero)")                            //
-      ("closed", "return to the start at the end")                                                   //
-      ("start", text("ID"), "pose to begin with")                                                    //
-      ("problem", text("FILE"), "problem file (the one named by the plan)")                          //
-      ("replace", "take the next best poses in place of those that no motion reaches")               //
-      ("milestones", text("n"), "configurations in the roadmap for motions around obstacles (200)")  //
-      ("settle", text("S"), "seconds at rest before a pose is read (workspace: motion: settle, 0)")  //
-      ("reading", text("S"),
-       "seconds of one reading; per target, where targets are read in turn (workspace: motion: reading, 0)")  //
-      ("output,o", text("FILE"), "route as JSON (route.json; - for none)")                                    //
-      ("poses-csv", text("FILE"), "poses in measuring order as CSV (none)")                                   //
-      ("force", "replace files that posewright did not write")                                                //
-      ("time-limit", text("S"), "stop after S seconds with the best order so far")                            //
-      ("from", text("FORMAT"), ("format of PLAN if it is not a plan: " + readable_format_names()).c_str());
-  options.add(problem_options());
-  return options;
-}
+po::options_description route_command_options() { return described(route_options()).add(problem_options()); }
 
 int run_route(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path plan = single(positional, "PLAN");
-  RouteOptions route_options;
+  RouteOptions options;
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
-  route_options.from_home = values.count("from-home") > 0;
-  route_options.closed = values.count("closed") > 0;
-  route_options.replace = values.count("replace") > 0;
-  route_options.start = whole_number(values, "start", 1, 1000000);
-  route_options.milestones = whole_number(values, "milestones", 1, 100000).value_or(200);
-  route_options.settle = number_between(values, "settle", 0, 3600);
-  route_options.reading = number_between(values, "reading", 0, 3600);
-  route_options.seed = common.seed;
-  route_options.threads = common.threads;
-  if (route_options.from_home && route_options.start)
-    throw InputError({}, "--start and --from-home cannot be combined", "leave one of them out");
+  read_options(route_options(), values, options);
+  options.seed = common.seed;
+  options.threads = common.threads;
   if (!from.empty() && text_of(values, "problem").empty())
     throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
   const std::filesystem::path file = problem_file(values, plan);
@@ -64,7 +38,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
   check_output_files(values, {json, csv}, inputs);
   const PoseList poses = read_poses(plan, pose_coordinates(problem), from);
   const auto [route, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {
-    return route_problem(problem, poses, route_options, monitor);
+    return route_problem(problem, poses, options, monitor);
   });
   print_notes(route.notes);
   std::vector<FileToWrite> files;
@@ -77,7 +51,7 @@ int run_route(const po::variables_map& values, const Words& positional) {
   if (was_interrupted) return interrupted;
   if (!route.unreachable.empty())
     throw CannotDo(plan.string() + ": " + route_loss(route) +
-                   (route_options.replace ? "" : "; --replace takes the next best poses in their place"));
+                   (options.replace ? "" : "; --replace takes the next best poses in their place"));
   return done;
 }
 

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "command.hpp"
-#include "planners/registry.hpp"
-#include "posewright/criterion/registry.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/tasks/select_blocks.hpp"
 #include "task_options.hpp"
 #include "terminal.hpp"
@@ -14,40 +11,7 @@ namespace posewright::cli {
 namespace {
 
 po::options_description select_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                            //
-      ("poses", text("N"), "number of blocks to choose (required)")                                                //
-      ("rows", text("r"), "rows of a block; needed for CSV and two-dimensional .npy")                              //
-      ("nuisance", text("k"), "the first k columns are nuisance parameters, estimated along with the others (0)")  //
-      ("criterion", text("NAME"), ("criterion to maximise: " + criterion_names() + " (o1)").c_str())               //
-      ("method", text("NAME"), ("planner: " + planner_names() + " (exchange)").c_str())                            //
-      ("restarts", text("k"), "starts of the search (10, or what --time-limit allows)")                            //
-      ("fixed", text("ROWS"), "blocks that must be chosen: 3,17,25, counted from 0")                               //
-      ("augment", text("ROWS"), "already measured blocks; chooses N additional ones")                              //
-      ("repeats", text("allow|forbid|k"), "how often a block may be chosen (forbid)")(
-          "gap", text("P"), "gap in percent at which branch_and_bound stops (proved to rounding)")(
-          "reserve", "optimise for the loss of the worst single block")(
-          "spread", "spread the blocks over the processes (mpirun, srun), if one memory cannot hold them");
-  options.add(output_options(false)).add(task_options());
-  return options;
-}
-
-/// "3,17,25"; empty if the option is not given.
-std::vector<int> row_list(const po::variables_map& values, const std::string& option) {
-  std::vector<int> rows;
-  if (values.count(option) == 0) return rows;
-  const std::string text = text_of(values, option);
-  const char *at = text.data(), *const end = at + text.size();
-  while (true) {
-    int row = 0;
-    const auto [next, code] = std::from_chars(at, end, row);
-    if (code != std::errc() || row < 0 || (next != end && *next != ','))
-      throw InputError({}, "--" + option + " '" + text.substr(0, 40) + "'",
-                       "numbers of blocks from 0, separated by commas: 3,17,25");
-    rows.push_back(row);
-    if (next == end) return rows;
-    at = next + 1;
-  }
+  return described(select_options()).add(output_options(false)).add(task_options());
 }
 
 /// Traffic between the processes for each exchange.
@@ -76,20 +40,8 @@ int run_select(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path file = single(positional, "BLOCKS");
   SelectOptions select;
-  select.rows = whole_number(values, "rows", 1, 100000);
-  const auto poses = whole_number(values, "poses", 1, 1000000);
-  if (!poses) throw InputError({}, "--poses is missing", "give the number of blocks to choose");
-  select.poses = *poses;
-  select.nuisance = whole_number(values, "nuisance", 0, 100000).value_or(0);
-  if (values.count("criterion") > 0) select.criterion = text_of(values, "criterion");
-  if (values.count("method") > 0) select.method = text_of(values, "method");
-  select.restarts = whole_number(values, "restarts", 1, 1000000);
-  select.fixed = row_list(values, "fixed");
-  select.measured = row_list(values, "augment");
-  select.repeats = repeats_of(values).value_or(Repeats{});
-  if (const auto gap = number_below(values, "gap", 100, "percent, above 0 and below 100, are allowed"))
-    select.gap = *gap / 100;
-  select.reserve = values.count("reserve") > 0;
+  read_options(select_options(), values, select);
+  if (select.poses == 0) throw InputError({}, "--poses is missing", "give the number of blocks to choose");
   select.seed = common.seed;
   select.threads = common.threads;
   const bool spread = values.count("spread") > 0;

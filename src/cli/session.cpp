@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "signals.hpp"
@@ -59,19 +58,11 @@ void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) print_aside("posewright: note: " + note + "\n");
 }
 
-std::optional<double> number_below(const po::variables_map& values, const std::string& option, double most,
-                                   const std::string& allowed) {
-  if (values.count(option) == 0) return std::nullopt;
-  const std::string text = text_of(values, option);
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || !(value > 0) || !(value < most))
-    throw InputError({}, "--" + option + " " + text, allowed);
-  return value;
-}
-
 double time_limit(const po::variables_map& values) {
-  return number_below(values, "time-limit", 1e9, "a number of seconds above 0 is allowed").value_or(0.0);
+  if (values.count("time-limit") == 0) return 0.0;
+  const double seconds = number_of({"--time-limit", {text_of(values, "time-limit")}}, 0, 1e9);
+  if (seconds > 0) return seconds;
+  throw InputError({}, "--time-limit 0", "a number of seconds above 0 is allowed");
 }
 
 }  // namespace posewright::cli

@@ -68,9 +68,6 @@ auto watched(const CommonOptions& common, double seconds, const Work& work, Task
 /// Notes of a result, on stderr.
 void print_notes(const std::vector<std::string>& notes);
 
-/// The value of an option, above 0 and below `most`; none if it is not given. InputError saying what is allowed.
-std::optional<double> number_below(const po::variables_map& values, const std::string& option, double most,
-                                   const std::string& allowed);
 /// Seconds of --time-limit; 0 if it is not given.
 double time_limit(const po::variables_map& values);
 

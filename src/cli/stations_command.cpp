@@ -2,7 +2,7 @@
 
 #include "command.hpp"
 #include "design_options.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/stations.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
@@ -16,29 +16,18 @@ namespace {
 DesignOptions stations_keys() { return {"poses", "variant", "criterion", "candidates", "restarts"}; }
 
 po::options_description stations_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                      //
-      ("choose", text("k"), "number of stations to use (workspace: stations: choose, 1)")                    //
-      ("pairs", "score every pair of places; without it, beyond 100 pairs, only pairs with the best place")  //
-      ("full", text("n"), "number of best places that get a full plan (3)")                                  //
-      ("time-limit", text("S"), "stop after S seconds with the results so far");
+  po::options_description options = described(station_options());
+  options.add_options()("time-limit", text("S"), "stop after S seconds with the results so far");
   add_design_options(options, stations_keys());
-  options.add(task_options()).add(problem_options());
-  return options;
+  return options.add(task_options()).add(problem_options());
 }
 
 int run_stations(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   StationOptions stations;
-  stations.choose = whole_number(values, "choose", 1, 100);
-  stations.full = whole_number(values, "full", 0, 10000).value_or(3);
+  read_options(station_options(), values, stations);
   stations.run.seed = common.seed;
   stations.run.threads = common.threads;
-  stations.every_set = values.count("pairs") > 0;
-  if (stations.every_set) {
-    if (stations.choose) throw InputError({}, "--choose and --pairs cannot be combined", "one of them");
-    stations.choose = 2;
-  }
   const auto engine = engine_of(values, "stations");
   const Problem problem = designed_problem(single(positional, "PROBLEM"), values, stations_keys());
   const auto [ranks, was_interrupted] = watched(

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "posewright/outputs/write_plan.hpp"
-#include "posewright/support/repeats.hpp"
 #include "processes.hpp"
 #include "result_files.hpp"
 #include "terminal.hpp"
@@ -20,13 +19,6 @@ po::options_description output_options(bool poses) {
       ("force", "replace files that posewright did not write")  //
       ("time-limit", text("S"), "stop after S seconds with the best plan so far");
   return options;
-}
-
-std::optional<Repeats> repeats_of(const po::variables_map& values) {
-  const std::string text = text_of(values, "repeats");
-  if (text.empty()) return std::nullopt;
-  if (const auto repeats = posewright::repeats_of(text)) return repeats;
-  throw InputError({}, "--repeats " + text, repeats_allowed);
 }
 
 std::filesystem::path output_file(const po::variables_map& values, const std::string& option, const char* standard) {

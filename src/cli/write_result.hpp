@@ -13,8 +13,6 @@ namespace posewright::cli {
 
 /// -o, --poses-csv (if there are configurations), --force, --time-limit.
 po::options_description output_options(bool poses);
-/// The value of --repeats; InputError for anything but allow, forbid and a number.
-std::optional<Repeats> repeats_of(const po::variables_map& values);
 
 /// The file that an output option names: `standard` if it is not given, empty for "-". InputError for an empty name.
 std::filesystem::path output_file(const po::variables_map& values, const std::string& option, const char* standard);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "posewright/model/variant.hpp"
 #include "posewright/outputs/table.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
@@ -33,6 +35,21 @@ Json frame_json(const Eigen::Isometry3d& X) {
 }
 
 }  // namespace
+
+std::vector<CalibratedValue> estimated_values(const Calibration& calibration) {
+  std::vector<CalibratedValue> values;
+  for (const EstimatedValue& estimated : calibration.values) values.push_back(estimated.value);
+  return values;
+}
+
+std::optional<DhTable> dh_table_of(const Problem& problem, const Calibration& calibration,
+                                   std::optional<DhConvention> convention) {
+  if (!convention) return std::nullopt;
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) throw InputError({}, "a Denavit-Hartenberg table is for serial arms", "robot: urdf");
+  return dh_table(*arm, problem.at(arm->line), find_variant(problem, calibration.variant).convention,
+                  estimated_values(calibration), *convention);
+}
 
 std::string dh_table_text(const DhTable& table) {
   using A = Table::Align;

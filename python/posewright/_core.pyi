@@ -644,6 +644,8 @@ class Compensation:
     @property
     def failures(self) -> list[str]: ...
     @property
+    def text(self) -> Optional[str]: ...
+    @property
     def notes(self) -> list[str]: ...
     def _repr_html_(self) -> str: ...
 
@@ -748,12 +750,24 @@ def compensate(
     problem: Problem,
     poses: _Poses,
     *,
-    base: bool = False,
-    tool: bool = True,
+    # options
+    partial: bool = False,
+    from_: Optional[str] = None,
+    controller: Optional[_Path] = None,
+    coupling: Optional[float] = None,
+    tool: Union[str, Sequence[str], None] = None,
+    base: Union[str, Sequence[str], None] = None,
+    world: Union[str, Sequence[str], None] = None,
+    flange: Union[str, Sequence[str], None] = None,
+    near: Union[str, Sequence[str], None] = None,
+    line_deviation: Union[float, str, None] = None,
+    with_base: bool = False,
+    without_tool: bool = False,
     position_only: bool = False,
     elastic_target: bool = False,
-    most: float = 0.17453292519943295,
-    format: str = "",
+    most: Union[float, str, None] = None,
+    dh: Optional[str] = None,
+    # own
     threads: int = 0,
     progress: _Report = None,
 ) -> Compensation: ...

@@ -1,40 +1,61 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "arguments.hpp"
 #include "arrays.hpp"
+#include "keywords.hpp"
 #include "made.hpp"
+#include "posewright/model/calibrated_values.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/results/compensation.hpp"
+#include "posewright/results/dh_table.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/tasks/compensate_documents.hpp"
 
 namespace posewright::python {
 
-using MadeCompensation = Made<Compensation, CompensateOptions>;
+using MadeCompensation = Made<CompensatedDocuments, CompensateCall>;
 
-static std::string text_of(const MadeCompensation& m) { return compensation_text(m.value); }
-static auto json_of(const MadeCompensation& m) { return compensation_json(m.problem->problem, m.value); }
+static std::optional<DhTable> table_of(const MadeCompensation& m) {
+  if (!m.options.dh) return std::nullopt;
+  const Problem& problem = m.problem->problem;
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) throw InputError({}, "dh is for serial arms", "robot: urdf");
+  const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
+  return dh_table(*arm, problem.at(arm->line), variant.convention,
+                  calibrated_values(problem, variant, *make_model(problem, variant), {}), *m.options.dh);
+}
+static std::string text_of(const MadeCompensation& m) {
+  const std::optional<DhTable> table = table_of(m);
+  return compensation_text(m.value.result) + (table ? "\n" + dh_table_text(*table) : "");
+}
+static auto json_of(const MadeCompensation& m) {
+  auto json = compensation_json(m.problem->problem, m.value.result);
+  if (const std::optional<DhTable> table = table_of(m)) json["denavit_hartenberg"] = dh_table_json(*table);
+  return json;
+}
 
 namespace {
 
-MadeCompensation compensate(const Shared& problem, const py::object& poses, bool base, bool tool, bool position_only,
-                            bool elastic_target, double most, const std::string& format, long long threads,
-                            py::object progress) {
+MadeCompensation compensate(const Shared& problem, const py::object& poses, const py::kwargs& named) {
   if (!problem->problem.parameters)
     throw InputError({}, "problem has no calibrated parameters", "Problem(..., parameters=FILE)");
-  CompensateOptions options;
-  options.solver.with_base = base;
-  options.solver.with_tool = tool;
-  options.solver.position_only = position_only;
-  options.elastic_target = elastic_target;
-  if (!(most > 0 && most <= 3.15)) throw InputError({}, "most is a largest turn in rad", "above 0, at most 3.15");
-  // A joint that slides may move a millimetre where one that turns may turn by a tenth of a degree.
-  options.solver.most_length = options.solver.most_length * most / options.solver.most_angle;
-  options.solver.most_angle = most;
-  options.threads = checked("threads", threads, 0, most_threads);
-  const PoseList list =
-      pose_list(poses, with_places(*problem, [&] { return compensation_coordinates(problem->problem); }), format);
-  return MadeCompensation::of(problem, options, {}, std::move(progress),
-                              [&](const Problem& p, const CompensateOptions& o, const Monitor& monitor) {
-                                return compensate_problem(p, {list}, o, monitor);
+  Keywords keywords(named);
+  CompensateCall call;
+  keywords.read(compensate_options(), call);
+  call.threads = keywords.threads;
+  keywords.finish();
+  std::vector<std::filesystem::path> files;
+  if (const auto file = file_name(poses)) files.push_back(*file);
+  PoseList list;
+  if (files.empty())
+    list = pose_list(poses, with_places(*problem, [&] { return compensation_coordinates(problem->problem); }),
+                     call.reading.format);
+  return MadeCompensation::of(problem, call, {}, keywords.progress,
+                              [&](const Problem& p, const CompensateCall& o, const Monitor& monitor) {
+                                if (!files.empty()) return compensate_documents(p, files, o, monitor);
+                                return CompensatedDocuments{compensate_problem(p, {list}, o, monitor), true, {}};
                               });
 }
 
@@ -47,16 +68,17 @@ py::array_t<double> pose_rows(const Compensation& c, std::size_t columns, Row ro
 }
 
 py::array_t<double> commanded_configurations(const MadeCompensation& made) {
-  return pose_rows(made.value, made.value.coordinates.size(), [](const CompensatedList& list, std::size_t i) {
-    const auto q = list.configuration(i);
-    return std::vector<double>(q.begin(), q.end());
-  });
+  return pose_rows(made.value.result, made.value.result.coordinates.size(),
+                   [](const CompensatedList& list, std::size_t i) {
+                     const auto q = list.configuration(i);
+                     return std::vector<double>(q.begin(), q.end());
+                   });
 }
 
 py::object commanded_actuators(const MadeCompensation& made) {
-  if (!made.value.parallel) return py::none();
-  const std::size_t width = made.value.axes.size();
-  return pose_rows(made.value, width, [&](const CompensatedList& list, std::size_t i) {
+  if (!made.value.result.parallel) return py::none();
+  const std::size_t width = made.value.result.axes.size();
+  return pose_rows(made.value.result, width, [&](const CompensatedList& list, std::size_t i) {
     const auto first = list.actuators.begin() + std::ptrdiff_t(i * width);
     return std::vector<double>(first, first + std::ptrdiff_t(width));
   });
@@ -68,7 +90,7 @@ void bind_compensation(py::module_& m) {
   using C = MadeCompensation;
   const auto errors = [](TipError CommandSolver::Solution::*which) {
     return [which](const C& c) {
-      return pose_rows(c.value, 2, [&](const CompensatedList& list, std::size_t i) {
+      return pose_rows(c.value.result, 2, [&](const CompensatedList& list, std::size_t i) {
         const TipError& e = list.solutions[i].*which;
         return std::vector<double>{e.position, e.rotation};
       });
@@ -83,7 +105,7 @@ void bind_compensation(py::module_& m) {
           "compensated",
           [](const C& c) {
             std::vector<bool> reached;
-            for (const auto& s : c.value.lists.front().solutions)
+            for (const auto& s : c.value.result.lists.front().solutions)
               reached.push_back(s.outcome == CommandSolver::Outcome::reached);
             return reached;
           },
@@ -95,24 +117,27 @@ void bind_compensation(py::module_& m) {
           "failures",
           [](const C& c) {
             std::vector<std::string> texts;
-            for (const NotCompensated& n : c.value.failures) texts.push_back(n.text());
+            for (const NotCompensated& n : c.value.result.failures) texts.push_back(n.text());
             return texts;
           },
           "poses that cannot be commanded, and why")
-      .def_property_readonly("notes", [](const C& c) { return c.value.notes; })
+      .def_property_readonly(
+          "text",
+          [](const C& c) { return c.value.texts.empty() ? py::object(py::none()) : py::cast(c.value.texts.front()); },
+          "the file with the joints to command; None for an array, a plan, or where poses are not compensated")
+      .def_property_readonly("notes", [](const C& c) { return c.value.result.notes; })
       .def("__repr__", [](const C& c) {
         return py::str("<Compensation of {} poses, {} not compensated>")
-            .format(c.value.lists.front().solutions.size(), c.value.failures.size());
+            .format(c.value.result.lists.front().solutions.size(), c.value.result.failures.size());
       });
-  const py::none none;
-  m.def("compensate", &compensate, py::arg("problem"), py::arg("poses"), py::kw_only(), py::arg("base") = false,
-        py::arg("tool") = true, py::arg("position_only") = false, py::arg("elastic_target") = false,
-        py::arg("most") = CommandSolver::Options{}.most_angle, py::arg("format") = "", py::arg("threads") = 0,
-        py::arg("progress") = none,
-        R"(Commands for the calibrated robot, so that it stands where the nominal one was meant to (docs/compensate.md).
-
-problem: with parameters; base, tool: what was found of them counts; position_only: orientations may be what they will;
-elastic_target: the poses were found with the nominal springs; most: largest turn that is a correction, rad.)");
+  define(
+      m, "compensate", &compensate,
+      documentation("compensate", "problem: Problem, poses: object, *", rows_of(compensate_options()), {}, false,
+                    ", threads: int = 0, progress: object = None", "Compensation",
+                    "Commands for the calibrated robot, so that it reaches the poses that were meant for the nominal "
+                    "one (docs/compensate.md). problem: with parameters; poses: an array, a plan, or the name of a "
+                    "pose list or robot program."),
+      py::arg("problem"), py::arg("poses"));
 }
 
 }  // namespace posewright::python

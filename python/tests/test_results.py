@@ -132,7 +132,7 @@ def test_bad_arguments_of_a_route(kr270, small_plan):
         pw.route(kr270, small_plan, from_home=True, start=1)
     with pytest.raises(pw.InputError, match="start= 99 is not a pose of"):
         pw.route(kr270, small_plan, start=99)
-    with pytest.raises(pw.InputError, match="milestones is 0"):
+    with pytest.raises(pw.InputError, match="milestones 0"):
         pw.route(kr270, small_plan, milestones=0)
 
 

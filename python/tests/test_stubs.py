@@ -51,8 +51,7 @@ def test_every_option_of_a_command_is_a_keyword_of_its_function():
         pytest.skip("POSEWRIGHT_PROGRAM does not name the program")
     done = subprocess.run([ROOT / "scripts" / "count-structure", program], capture_output=True, text=True, check=True,
                           env={**os.environ, "PYTHONPATH": str(pathlib.Path(posewright.__file__).parents[1])})
-    missing = done.stdout.splitlines()[-1].split(": ", 2)[2].split(", ")
-    assert {name.split()[0] for name in missing} == {"compensate"}, missing
+    assert done.stdout.splitlines()[-1].startswith("options missing in Python: 0:"), done.stdout.splitlines()[-1]
 
 
 def arguments(signature):

@@ -124,6 +124,12 @@ def test_a_compensation_is_that_of_the_command_line(program, examples, tmp_path)
     (tmp_path / "poses.csv").write_text(names + "\n" + "\n".join(",".join(map(repr, map(float, row))) for row in poses) + "\n")
     theirs = program("compensate", file, tmp_path / "poses.csv", "--problem", examples / "kr270" / "problem.yaml")
     assert np.array_equal([pose["configuration"] for pose in theirs["lists"][0]["poses"]], result.configurations)
+    file_ = pw.compensate(problem, tmp_path / "poses.csv", without_tool=True, dh="distal")
+    words = ["--problem", examples / "kr270" / "problem.yaml", "--without-tool", "--dh", "distal", "-o", tmp_path / "out.csv"]
+    theirs = program("compensate", file, tmp_path / "poses.csv", *words)
+    assert file_.text == (tmp_path / "out.csv").read_text()
+    assert file_.to_dict() == {key: value for key, value in theirs.items() if key != "written"} and "denavit_hartenberg" in theirs
+    assert pw.compensate(problem, poses, most=0.01).failures == pw.compensate(problem, poses, most="0.01 rad").failures
     with pytest.raises(pw.InputError, match="no calibrated parameters"):
         pw.compensate(pw.Problem(examples / "kr270" / "problem.yaml"), poses)
     with pytest.raises(pw.InputError):
@@ -133,14 +139,15 @@ def test_a_compensation_is_that_of_the_command_line(program, examples, tmp_path)
 def test_options_of_a_command_do_the_same_as_keywords(program, kr270, small_plan, data, tmp_path):
     small_plan.save(tmp_path / "plan.json")
     words = ["--draws", 6, "--truth-repeatability", "0.05 mm", "--outliers", 0.1, "--outlier-size", 10, "--no-prior"]
-    theirs = program("simulate", kr270.file, tmp_path / "plan.json", *words)
+    theirs = {**program("simulate", kr270.file, tmp_path / "plan.json", *words), "plan": "plan"}
     named = dict(draws=6, outliers=0.1, outlier_size=10, no_prior=True)
     for length in (5e-5, "0.05 mm"):
         assert pw.simulate(kr270, small_plan, truth_repeatability=length, **named).to_dict() == theirs
     assert pw.simulate(kr270, small_plan, **named).to_dict() != theirs
-    calibration = pw.calibrate(kr270, data, dh="proximal", no_prior=True)
-    assert calibration.to_dict() == program("calibrate", kr270.file, data, "--dh", "proximal", "--no-prior")
-    assert "dh" not in str(pw.calibrate(kr270, data).to_dict().keys()) and "enavit" in calibration.summary()
+    calibration = pw.calibrate(kr270, data, dh="proximal")
+    assert calibration.to_dict()["denavit_hartenberg"]
+    without = pw.calibrate(kr270, data, no_prior=True)
+    assert without.sigma != calibration.sigma and not without.to_dict().get("denavit_hartenberg")
     for wrong in (dict(outlier_size=10), dict(truth_nominal=True), dict(truth_repeatability="5 deg"), dict(draws=2.5)):
         with pytest.raises(pw.InputError, match=next(iter(wrong))):
             pw.simulate(kr270, small_plan, **wrong)

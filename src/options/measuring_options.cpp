@@ -129,9 +129,7 @@ const OptionTable<CalibrateCall>& calibrate_options() {
                  "picture of the motion of a platform's joint centres, if the data contain them");
     t.of_program("urdf", "FILE", "the robot's URDF with the calibrated kinematics");
     t.row({"dh", "KIND", "table of Denavit-Hartenberg parameters: distal or proximal (modified)"},
-          [](C& o, const GivenOption& given) {
-            o.dh = word_of(given, {"distal", "proximal"}) == "distal" ? DhConvention::distal : DhConvention::proximal;
-          });
+          [](C& o, const GivenOption& given) { o.dh = convention_of(given); });
     t.of_program("force", "",
                  "replace files that posewright did not write; write even an estimate that is not fit for use");
     return t;
@@ -264,13 +262,19 @@ const OptionTable<ReportOptions>& report_options() {
 }
 
 std::vector<CommandRows> option_rows() {
-  return {
-      {"observe", "observe", rows_of(observe_options())},    {"plan", "plan", rows_of(plan_options())},
-      {"select", "select", rows_of(select_options())},       {"evaluate", "evaluate", rows_of(evaluate_options())},
-      {"compare", "compare", rows_of(compare_options())},    {"stations", "stations", rows_of(station_options())},
-      {"simulate", "simulate", rows_of(simulate_options())}, {"calibrate", "calibrate", rows_of(calibrate_options())},
-      {"next", "next_poses", rows_of(next_options())},       {"route", "route", rows_of(route_options())},
-      {"export", "export", rows_of(export_options())},       {"report", "report", rows_of(report_options())}};
+  return {{"observe", "observe", rows_of(observe_options())},
+          {"plan", "plan", rows_of(plan_options())},
+          {"select", "select", rows_of(select_options())},
+          {"evaluate", "evaluate", rows_of(evaluate_options())},
+          {"compare", "compare", rows_of(compare_options())},
+          {"stations", "stations", rows_of(station_options())},
+          {"simulate", "simulate", rows_of(simulate_options())},
+          {"calibrate", "calibrate", rows_of(calibrate_options())},
+          {"next", "next_poses", rows_of(next_options())},
+          {"route", "route", rows_of(route_options())},
+          {"export", "export", rows_of(export_options())},
+          {"report", "report", rows_of(report_options())},
+          {"compensate", "compensate", rows_of(compensate_options())}};
 }
 
 }  // namespace posewright

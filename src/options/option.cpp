@@ -68,6 +68,10 @@ const std::string& word_of(const GivenOption& given, std::initializer_list<std::
                    fmt::format("allowed: {}", fmt::join(allowed, ", ")));
 }
 
+DhConvention convention_of(const GivenOption& given) {
+  return word_of(given, {"distal", "proximal"}) == "distal" ? DhConvention::distal : DhConvention::proximal;
+}
+
 std::vector<std::string> names_of(const GivenOption& given) {
   std::vector<std::string> names;
   for (const std::string& word : given.values)

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "posewright/model/dh_table.hpp"
 #include "posewright/problem/units.hpp"
 
 namespace posewright {
@@ -49,6 +50,8 @@ double percent_of(const GivenOption& given);
 Measured size_of(const GivenOption& given, std::initializer_list<Quantity> quantities, bool positive = false);
 /// One of the allowed words.
 const std::string& word_of(const GivenOption& given, std::initializer_list<std::string_view> allowed);
+/// "distal" or "proximal".
+DhConvention convention_of(const GivenOption& given);
 /// Names in "A,B", in one or several values. InputError for an empty name.
 std::vector<std::string> names_of(const GivenOption& given);
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "posewright/lists/pose_document.hpp"
-#include "posewright/model/dh_table.hpp"
 #include "posewright/options/option.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/study/run_options.hpp"
@@ -14,6 +13,7 @@
 namespace posewright {
 
 struct CompareOptions;
+struct CompensateCall;
 struct ExportOptions;
 struct NextOptions;
 struct ObserveOptions;
@@ -51,6 +51,7 @@ const OptionTable<SimulateOptions>& simulate_options();
 const OptionTable<CalibrateCall>& calibrate_options();
 const OptionTable<NextOptions>& next_options();
 const OptionTable<RouteOptions>& route_options();
+const OptionTable<CompensateCall>& compensate_options();
 const OptionTable<ExportOptions>& export_options();
 const OptionTable<ReportOptions>& report_options();
 

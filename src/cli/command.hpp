@@ -61,19 +61,11 @@ CommonOptions common_values(const po::variables_map& values);
 /// An option with a value, called `name` in the help.
 inline po::typed_value<std::string>* text(const char* name) { return po::value<std::string>()->value_name(name); }
 
-/// "what it is (default)", for the help.
-inline std::string help_with_default(const std::string& what, int standard) {
-  return what + " (" + std::to_string(standard) + ")";
-}
-
 /// The one positional argument, or an error that names it.
 std::string single(const Words& positional, const std::string& what);
 
 /// A whole number within [lower, upper] as an optional; InputError names the option and the range.
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper);
-/// A number within [lower, upper] likewise.
-std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
-                                     double upper);
 /// The text of an option, empty if it is not given.
 std::string text_of(const po::variables_map& values, const std::string& option);
 

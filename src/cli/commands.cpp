@@ -65,12 +65,6 @@ std::optional<GivenOption> given_option(const po::variables_map& values, const O
   return given;
 }
 
-std::optional<double> number_between(const po::variables_map& values, const std::string& option, double lower,
-                                     double upper) {
-  if (values.count(option) == 0) return std::nullopt;
-  return number_of({"--" + option, {text_of(values, option)}}, lower, upper);
-}
-
 std::optional<int> whole_number(const po::variables_map& values, const std::string& option, long lower, long upper) {
   if (values.count(option) == 0) return std::nullopt;
   return whole_of({"--" + option, {text_of(values, option)}}, lower, upper);

@@ -52,6 +52,14 @@ Json revisits_json(const Revisits& r) {
           {"drift", moved}};
 }
 
+Json visits_json(const std::optional<VisitErrors>& visits) {
+  if (!visits) return nullptr;
+  return {{"position", visits->translation},
+          {"rotation", visits->rotation},
+          {"noise", visits->noise},
+          {"probability", visits->probability}};
+}
+
 Json step_json(const std::optional<FrameStep>& step) {
   if (!step) return nullptr;
   return {{"frame", step->frame},
@@ -196,6 +204,7 @@ Json figures_json(const Calibration& c) {
             {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
           {"effects_left_out", effects_json(c)},
+          {"visit_errors", visits_json(c.visits)},
           {"frame_step", step_json(c.step)},
           {"smooth_effect", smooth_json(c)},
           {"revisits", revisits_json(c.revisits)},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "calibration_accuracy.hpp"
 #include "calibration_columns.hpp"
@@ -35,6 +36,8 @@ constexpr int most_rounds = 4;
 constexpr double prior_share = 1 / std::numbers::sqrt2;
 // So many intervals no effect that is one of several moves an estimate.
 constexpr double far_moved = 10.0;
+// Sizes of a visit's displacements that move by less, the estimate and they in turn.
+constexpr double settled_visits = 1e-2;
 
 class CalibrationRun {
  public:
@@ -82,6 +85,7 @@ class CalibrationRun {
     if (options_.interpolate) interpolate(fit_options);
     judge_noise();
     note_step();
+    note_visits();
     judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
     judge_frame();
     fill_parameters();
@@ -115,15 +119,77 @@ class CalibrationRun {
   /// With everything that the residuals say of it.
   void estimate(FitOptions& fit_options) {
     fit_canonical(fit_options);
-    result_.tests = test_residuals(result_.fit);
-    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
-    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
-                                       [this](const Problem& wider) { return model_of(wider); });
+    test_estimate();
+    if (count_visits(fit_options)) test_estimate();
     if (campaigns_.empty()) result_.step = frame_step(*model_, columns_, fitted_, result_.fit, frames_that_may_move());
     result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
     allow_for_unmodelled(fit_options);
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
     result_.orientations = orientations(*model_, columns_, result_.fit, stretch());
+  }
+
+  void test_estimate() {
+    result_.tests = test_residuals(result_.fit);
+    test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
+    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
+                                       [this](const Problem& wider) { return model_of(wider); });
+  }
+
+  /// True if the readings of a pose show displacements of a visit that nobody stated: the estimate counts them. An
+  /// effect that most of the residuals are is no chance of a visit.
+  bool count_visits(const FitOptions& fit_options) {
+    if (result_.visits || !std::holds_alternative<PointsMeasurement>(problem_.measurement.instrument) ||
+        !(result_.fit.noise_factor > 1) || fit_options.weighting != Weighting::weighted ||
+        std::ranges::any_of(result_.effects, &ScoreTest::dominates))
+      return false;
+    const Repeatability stated = problem_.measurement.repeatability;
+    std::unique_ptr<IdentificationModel> as_stated = std::exchange(model_, nullptr);
+    const auto found = [&] { return visit_errors(*as_stated, stated, columns_, fitted_, result_.fit, result_.prior); };
+    VisitErrors visits = found();
+    if (visits.contradicts()) contradicted_visits_ = visits.contradiction;
+    if (!visits.shown()) {
+      model_ = std::move(as_stated);
+      return false;
+    }
+    FitOptions again = fit_options;
+    for (int round = 0; round < most_rounds; ++round) {
+      count(visits, stated);
+      again.start = result_.fit.correction;
+      fit_canonical(again);
+      const VisitErrors before = std::exchange(visits, found());
+      if (settled(before.translation, visits.translation) && settled(before.rotation, visits.rotation)) break;
+    }
+    place_again(fit_options);
+    return true;
+  }
+
+  static bool settled(double before, double after) { return std::abs(after - before) <= settled_visits * before; }
+
+  /// The fit's noise factor counts all of the covariance, these displacements too.
+  void count(const VisitErrors& visits, Repeatability stated) {
+    result_.visits = visits;
+    stated.translation = std::hypot(stated.translation, visits.translation / visits.noise);
+    stated.rotation = std::hypot(stated.rotation, visits.rotation / visits.noise);
+    problem_.measurement.repeatability = stated;
+    model_ = model_of(problem_);
+    model_->take_loads_at(placed_);
+  }
+
+  void note_visits() {
+    if (contradicted_visits_)
+      note(
+          fmt::format("the readings contradict the stated repeatability (p {:.2g}): targets of a pose err together by "
+                      "more; the stated value is kept",
+                      *contradicted_visits_));
+    if (!result_.visits) return;
+    const VisitErrors& v = *result_.visits;
+    std::vector<std::string> parts;
+    if (v.translation > 0) parts.push_back("position " + shown_value(v.translation, "m"));
+    if (v.rotation > 0) parts.push_back("rotation " + shown_value(v.rotation, "rad"));
+    note(fmt::format(
+        "targets of a pose err together: counted as repeatability, {}; state it, or look for an effect left "
+        "out",
+        fmt::join(parts, ", ")));
   }
 
   /// Base and what is on the tip, as effects.
@@ -403,6 +469,7 @@ class CalibrationRun {
   GivenParameters given_;
   std::vector<double> placed_;
   ProfiledColumns profiled_;
+  std::optional<double> contradicted_visits_;  ///< chance that the stated repeatability gives the readings
   std::vector<RepeatedReadings> repeated_;
   OrientationForm orientation_{};
   Calibration result_;

@@ -6,13 +6,15 @@ import calibration_judgement as judgement
 import calibration_problems as drawn
 from calibration_estimate import Estimate, calibrated, rms_by_kind
 from statistics_by_definition import displaced
+from visit_errors_by_definition import compare_visits, with_visits
 
 # What may differ. Both sides solve equations; the program takes the covariance at the solution after two rounds, before noise and
 # estimate settle, so the last thousandths of σ are its own. Everything but the last line is judged at the noise that it states.
 ALLOWED = {"model / m": 1e-12, "tolerance": 1e-12, "rank": 0, "estimate / σ": 1e-2, "turned / σ": 1e-2, "σ": 1e-3, "interval": 1e-6,
            "covariance": 2e-3, "file / tolerance": 1e-9, "residual / RMS": 1e-2, "RMS": 1e-3, "placed RMS": 5e-3, "held-out RMS": 5e-3,
            "χ²": 1e-3, "freedom": 0, "p of χ²": 1e-3, "lack of fit": 1e-2, "within a pose": 1e-2, "serial": 1e-2, "normality": 1e-2,
-           "spread": 1e-6, "left out": 1e-2, "decision": 0, "noise factor": 1e-2}
+           "spread": 1e-6, "left out": 1e-2, "decision": 0, "noise factor": 1e-2,
+           "visits: −2 ln likelihood": 1e-2, "visits: chance": 3e-2, "visits: stated": 0}
 
 
 MOST_DEPENDENT = 1e5  # Beyond that derivatives by differences say nothing of σ.
@@ -212,6 +214,9 @@ def compare(run, brute_force):
     stated, names, counts = estimated_names(run, check)
     # How many times assumed tolerances count is the program's: the readings told it, all together.
     run.arm.times = {p["name"]: p["tolerance_times"] for p in stated}
+    visits, stated_arm = run.result["visit_errors"], run.arm
+    if visits:
+        run.arm = with_visits(run.arm, visits)
     poses, z = run.fitted()
     check.note("model / m", run.arm.differs_from_arm(poses.Q[0], {n: v for n, v in run.truth.items() if not n.startswith("station")}))
     # From where the robot was drawn: base, tool and targets; everything else from its nominal value.
@@ -225,6 +230,8 @@ def compare(run, brute_force):
         noise = stated_noise(run, estimate)
         estimate = Estimate(run.arm, run.variant, names, poses, z, counts, run.weights, noise, start)
     check_noise(run, first, estimate, check)
+    if visits:
+        compare_visits(stated_arm, estimate, visits, check)
     roles = {p["name"]: p["role"] for p in stated}
     places = [n for n in names if n.split(".")[0] in ("base", "tool", "target", "station") or roles[n] == "nuisance"]
     # Noise and tolerances may agree at more than one noise: small, with the robot where the readings have it, or large, with the

@@ -37,7 +37,7 @@ def main(program, source, count="20", seed="1"):
     seed = secrets.randbelow(10**9) if seed == "fresh" else int(seed)
     print(f"seed {seed}")
     program, good = pathlib.Path(program).resolve(), True
-    runs = refusals = silent = 0
+    runs = refusals = silent = visits = 0
     with tempfile.TemporaryDirectory() as name:
         here = pathlib.Path(name)
         for k in range(-1, int(count)):
@@ -60,11 +60,12 @@ def main(program, source, count="20", seed="1"):
                     silent += 1
                     continue
                 runs, refusals = runs + 1, refusals + (run.result["verdict"] != "use it")
+                visits += run.result["visit_errors"] is not None
                 wrong = check.wrong()
                 good = good and not wrong
                 told += ", ".join(f"{what} {off:.0e}" for what, off in check.worst.items() if off > 0.1 * ALLOWED[what])
                 print(told + (f"  FAILED: {'; '.join(wrong)}" if wrong else ""), flush=True)
-    print(f"{runs} calibrations, {refusals} of them refused; {silent} not judged")
+    print(f"{runs} calibrations, {refusals} of them refused, {visits} with displacements of a visit that are not stated; {silent} not judged")
     sys.exit(0 if good and silent < runs else 1)
 
 

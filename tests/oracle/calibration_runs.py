@@ -11,7 +11,7 @@ import calibration_problems as drawn
 def random_way(random, arm, variant, small):
     """How the data differ from what the problem states, and how they are given and fitted."""
     way = {"options": [], "larger": 1.0, "hidden_shift": 0.0, "independent": False, "missing": 0.0, "lines": 1, "hold": None, "off": 1.0}
-    way |= [{}, {}, {"larger": 5.0}, {"hidden_shift": 2e-4}, {"independent": True}][random.integers(5)]
+    way |= [{}, {}, {"larger": 5.0}, {"hidden_shift": 5e-4}, {"independent": True}][random.integers(5)]
     way["options"] = [[], [], ["--no-prior"], ["--weights", "ols"], ["--weights", "ols", "--no-prior"]][random.integers(5)]
     if small:
         # Few poses, each left out; half of the robots are as good as nominal: nothing is to be gained there.

@@ -19,6 +19,7 @@
 #include "posewright/calibration/score_tests.hpp"
 #include "posewright/calibration/smooth_effect.hpp"
 #include "posewright/calibration/tip_errors.hpp"
+#include "posewright/calibration/visit_errors.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/placed_frames.hpp"
 #include "posewright/problem/problem.hpp"
@@ -139,9 +140,10 @@ struct Calibration {
   LeaveOut left_out;                ///< does the estimate predict poses that it has not seen?
   std::string weakest;              ///< weakest_combination()
   ResidualTests tests;
-  std::vector<ScoreTest> effects;   ///< not fitted, beside the fit that counts no smooth effect; best first
-  std::optional<FrameStep> step{};  ///< of a file alone: a frame that stands elsewhere from some pose on
-  SmoothEffect smooth;              ///< that the residuals of a fit hold which counts none
+  std::vector<ScoreTest> effects;       ///< not fitted, beside the fit that counts no smooth effect; best first
+  std::optional<VisitErrors> visits{};  ///< counted beside the stated repeatability
+  std::optional<FrameStep> step{};      ///< of a file alone: a frame that stands elsewhere from some pose on
+  SmoothEffect smooth;                  ///< that the residuals of a fit hold which counts none
   /// Unmodelled effect of the fit; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
   Revisits revisits;                             ///< configurations measured again after others

@@ -27,6 +27,7 @@ class Measured(plans.Problem):
         self.set, arm = s, s.arm
         self.judges = s.folds()[0][1] if s.description["name"] == "ur5" else None
         keep = np.arange(len(s.q)) if self.judges is None else s.folds()[0][0]
+        self.kept = keep
         low, high = s.q.min(0), s.q.max(0)
 
         class Pool:
@@ -59,12 +60,14 @@ class Measured(plans.Problem):
 NAMES = ("ur5", "fanuc", "franka", "positioner")
 
 
-def planned(program, s, folder, N):
-    """Members of the program's plan of N of the set's poses, all parameters estimated."""
-    made = subprocess.run([program, "plan", s.problem, "--candidates-from", s.table(range(len(s.q)), folder / "poses.csv"), "--poses", str(N),
-                           "--json", "-o", "-", "--poses-csv", "-", "--quiet", "--threads", "1", "--variant", "everything", "--criterion", "bias"],
+def planned(program, s, kept, folder, N):
+    """The program's choice of a criterion, and the members among the kept poses of its plan of N, all parameters estimated."""
+    variant = "geometric" if s.description["name"] == "ur5" else "everything"
+    made = subprocess.run([program, "plan", s.problem, "--candidates-from", s.table(kept, folder / "poses.csv"), "--poses", str(N), "--json", "-o",
+                           "-", "--poses-csv", "-", "--quiet", "--threads", "1", "--variant", variant, "--criterion", "auto"],
                           check=True, capture_output=True, text=True)
-    return [int(pose["listed"]["id"]) - 1 for pose in json.loads(made.stdout)["poses"]]
+    plan = json.loads(made.stdout)
+    return plan["criterion"]["name"], [int(pose["listed"]["id"]) - 1 for pose in plan["poses"]]
 
 
 def sets(data, words, folder):
@@ -94,9 +97,10 @@ def compare(s, options, folder):
                 continue
             error = problem.error(plans.exchange(criterion, start))
             print(f"    {word:14s} {error:.4f}  {100 * (random < error).mean():3.0f} %", flush=True)
-        if options.program and name != "ur5":
-            error = problem.error(planned(options.program, s, folder, N))
-            print(f"    posewright     {error:.4f}  {100 * (random < error).mean():3.0f} %", flush=True)
+        if options.program:
+            criterion, members = planned(options.program, s, problem.kept, folder, N)
+            error = problem.error(members)
+            print(f"    posewright     {error:.4f}  {100 * (random < error).mean():3.0f} %  ({criterion})", flush=True)
 
 
 def main():
@@ -104,7 +108,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--criteria", default="")
     parser.add_argument("--sets", default="")
-    parser.add_argument("--program", help="plans of this program by criterion bias, too")
+    parser.add_argument("--program", help="plans of this program by criterion auto, too")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for s in sets(options.data, options.sets, pathlib.Path(folder)):

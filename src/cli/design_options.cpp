@@ -11,6 +11,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/problem/design_keys.hpp"
+#include "posewright/study/study.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 
@@ -21,7 +22,11 @@ using Json = nlohmann::ordered_json;
 
 /// Names that the registries of later stages give; empty for other keys.
 std::vector<std::string> names_for(const DesignKey& key) {
-  if (key.path == "design.criterion") return registered_names(criterion_registry());
+  if (key.path == "design.criterion") {
+    std::vector<std::string> names = registered_names(criterion_registry());
+    names.emplace_back(automatic_criterion);
+    return names;
+  }
   if (key.path == "design.method") return registered_names(planner_registry());
   return {};
 }

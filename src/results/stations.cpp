@@ -97,7 +97,7 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
   }
   Json json = begin_document("posewright/stations/1", problem, options.run.seed);
   json["variant"] = find_variant(problem, "").name;
-  json["criterion"] = problem.design.criterion.value;
+  json["criterion"] = criterion_of_places(problem);
   json["base"] = base_json(problem);
   json["obstacles"] = obstacles_json(problem);
   json["interrupted"] = !ended_early(ranks).empty();

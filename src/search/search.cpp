@@ -201,11 +201,11 @@ std::vector<std::string> names_in(const Registry& registry) {
 }  // namespace
 
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
-                   const SourcePlace& method_place) {
+                   const SourcePlace& method_place, std::string_view other) {
   if (find_criterion(criterion) == nullptr)
     throw InputError(criterion_place,
                      "unknown criterion '" + criterion + "'" + meant_instead(criterion, names_in(criterion_registry())),
-                     "available: " + criterion_names());
+                     fmt::format("available: {}{}{}", criterion_names(), other.empty() ? "" : ", ", other));
   if (make_planner(method) == nullptr)
     throw InputError(method_place,
                      "unknown method '" + method + "'" + meant_instead(method, names_in(planner_registry())),

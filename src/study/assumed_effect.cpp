@@ -21,11 +21,13 @@ BlockArray along_the_tip(const Study& study, int threads) {
   return build_blocks(model, tip, thinned(study.configurations, noise_places), threads);
 }
 
+bool contain_the_tip(const BlockArray& along) { return along.count() > 0 && !along.all().isZero(0); }
+
 std::shared_ptr<const UnmodelledEffect> effect_of(const Study& study, int threads) {
   const Variant& variant = study.first();
   if (variant.effect != nullptr) return variant.effect;
   const BlockArray along = along_the_tip(study, threads);
-  if (along.count() == 0 || along.all().isZero(0))
+  if (!contain_the_tip(along))
     throw CannotDo(
         "criterion bias assumes an effect that moves the tip, but these readings contain no tip position: set design: "
         "truth, or another criterion");
@@ -66,6 +68,8 @@ Eigen::MatrixXd known_with_features(const Study& study, const EffectFeatures& fe
 }
 
 }  // namespace
+
+bool moves_the_tip(const Study& study, int threads) { return contain_the_tip(along_the_tip(study, threads)); }
 
 SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads) {
   const Variant& variant = study.first();

@@ -9,4 +9,7 @@ namespace posewright {
 /// count where the candidates are, as readings in units of their noise. Throws CannotDo if the readings contain no tip.
 SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads);
 
+/// Whether the readings contain a position of the tip, so that an assumed effect shows.
+bool moves_the_tip(const Study& study, int threads);
+
 }  // namespace posewright

@@ -1,3 +1,4 @@
+#include "criterion_choice.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
@@ -7,10 +8,7 @@ namespace {
 
 // Columns of an assumed effect make each candidate several times as costly, and more of them gain little: what the
 // robot's effect is like is not known so well.
-constexpr int candidates_with_effect = 1000, restarts_with_effect = 2;
-
-/// Whether the criterion counts an effect that nobody stated.
-bool assumes_effect(const Settings& s) { return find_criterion(s.criterion)->needs_truth && s.truth.value.empty(); }
+constexpr int candidates_with_effect = 700, restarts_with_effect = 2;
 
 std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, bool several) {
   const DesignSpec& design = problem.design;
@@ -24,10 +22,10 @@ std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, bool sever
   return all;
 }
 
-Located<std::string> truth_of(const Problem& problem) {
+Located<std::string> truth_of(const Problem& problem, const std::string& criterion) {
   const DesignSpec& design = problem.design;
   const Located<std::string> truth = design.truth.value_or(Located<std::string>{});
-  const CriterionEntry& entry = *find_criterion(design.criterion.value);
+  const CriterionEntry& entry = *find_criterion(criterion);
   // Without a truth, bias counts an effect that is assumed.
   if (entry.needs_residual && truth.value.empty())
     throw InputError(problem.at(design.criterion.line),
@@ -64,10 +62,12 @@ void require_number_of_poses(const Problem& problem) {
 Settings settings_of(const Problem& problem, const RunOptions& run) {
   const DesignSpec& design = problem.design;
   Settings s;
-  s.criterion = design.criterion.value;
-  s.criterion_stated = design.criterion.line != 0;
+  s.criterion_automatic = design.criterion.value == automatic_criterion;
+  s.criterion = s.criterion_automatic ? "o1" : design.criterion.value;
+  s.criterion_stated = design.criterion.line != 0 && !s.criterion_automatic;
   s.method = design.method.value;
-  require_known(s.criterion, s.method, problem.at(design.criterion.line), problem.at(design.method.line));
+  require_known(s.criterion, s.method, problem.at(design.criterion.line), problem.at(design.method.line),
+                automatic_criterion);
   if (design.poses) s.poses = design.poses->value;
   s.candidates = design.candidates.value;
   s.candidates_from = run.candidates_from;
@@ -77,7 +77,7 @@ Settings settings_of(const Problem& problem, const RunOptions& run) {
   s.repeats = design.repeats;
   s.scaling = design.scaling;
   s.variants = variants_of(problem, find_criterion(s.criterion)->several_variants);
-  s.truth = truth_of(problem);
+  s.truth = truth_of(problem, s.criterion);
   // Candidates of a user's list are places that count, and so are those of a variant that lacks an effect.
   const bool places = design.test_poses || s.candidates_from || !s.candidates_file.empty() ||
                       find_variant(problem, s.variants.front().name.value).unmodelled;
@@ -92,13 +92,17 @@ Settings settings_of(const Problem& problem, const RunOptions& run) {
   s.same_robot = run.same_robot;
   s.proof = run.proof;
   s.planner.threads = run.threads;
-  if (assumes_effect(s)) {
-    if (design.candidates.line == 0) s.candidates = candidates_with_effect;
-    if (!s.planner.restarts_stated) s.planner.restarts = restarts_with_effect;
-    if (design.method.line == 0) s.method = "exchange";
-    s.planner.kicks = 0;
-  }
+  const bool with_effect = assumes_effect(s);
+  if (with_effect) limit_search_with_effect(design, s);
+  const bool may_be = with_effect || (s.criterion_automatic && why_not_bias(problem, s).empty());
+  if (may_be && design.candidates.line == 0) s.candidates = candidates_with_effect;
   return s;
+}
+
+void limit_search_with_effect(const DesignSpec& design, Settings& settings) {
+  if (!settings.planner.restarts_stated) settings.planner.restarts = restarts_with_effect;
+  if (design.method.line == 0) settings.method = "exchange";
+  settings.planner.kicks = 0;
 }
 
 void take_robust(const Problem& problem, Settings& settings) {

@@ -18,7 +18,8 @@ Settings comparison_settings(const Problem& problem, const CompareOptions& optio
   if (design.method.line >= 0) design.method = {"exchange", 0};
   // Each variant is planned for alone.
   if (const CriterionEntry* entry = find_criterion(design.criterion.value);
-      entry != nullptr && (entry->several_variants || entry->needs_truth))
+      design.criterion.value == automatic_criterion ||
+      (entry != nullptr && (entry->several_variants || entry->needs_truth)))
     design.criterion = {"o1", design.criterion.line};
   const bool given = !options.plans.empty();
   if (!given && design.smallest)

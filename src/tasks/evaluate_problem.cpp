@@ -56,7 +56,8 @@ class ListEvaluation {
     if (!near.empty()) notes_.push_back(margin_note(list.name, near));
     settings_.poses = int(poses_.count());
     fill_pool();
-    if (std::string note = choose_form(problem, study_, settings_); !note.empty()) notes_.push_back(std::move(note));
+    if (std::string note = choose_criterion(problem, study_, settings_); !note.empty())
+      notes_.push_back(std::move(note));
   }
 
   PoseListEvaluation evaluate(const Problem& problem) {

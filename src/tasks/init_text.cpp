@@ -294,11 +294,12 @@ std::string design_text(const InitFacts& facts) {
     text += fmt::format("  require: {{accuracy: \"{:g} mm\"}}        # after calibration, at the test poses\n",
                         *facts.accuracy * 1e3);
   if (!hand_eye) text += "  test_poses: {random: 20}             # where accuracy after calibration is predicted\n";
+  if (facts.accuracy && !facts.poses)
+    return text +
+           "  # A search for each number of poses that is tried: few candidates and starts.\n"
+           "  candidates: 500\n  restarts: 2\n  method: exchange\n";
   return text +
-         "  # A first look in seconds. Without the next three lines: 10000 candidates, ten starts, and poses that are "
-         "moved\n"
-         "  # between the candidates; minutes, some per cent better.\n"
-         "  candidates: 500\n  restarts: 2\n  method: exchange\n";
+         "  criterion: auto                      # best on robots that have more than their model; o1 has a proof\n";
 }
 
 }  // namespace

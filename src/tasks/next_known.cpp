@@ -62,8 +62,10 @@ void KnownSoFar::settle() {
   for (const MeasuredPose& pose : fit_.poses) measured.configurations.push_back(pose.q);
   settings_ = settings_of_search(fit_.problem, options_, std::move(measured));
   const DesignSpec& design = nominal_.design;
-  settings_.criterion_stated = !options_.criterion.empty() || design.criterion.line != 0;
-  settings_.criterion = options_.criterion.empty() ? design.criterion.value : options_.criterion;
+  const std::string& named = options_.criterion.empty() ? design.criterion.value : options_.criterion;
+  settings_.criterion_stated =
+      named != automatic_criterion && (!options_.criterion.empty() || design.criterion.line != 0);
+  settings_.criterion = named == automatic_criterion ? "o1" : named;
   require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
   const CriterionEntry& entry = *find_criterion(settings_.criterion);
   if (entry.several_variants || (entry.needs_truth && !settings_.truth.value.empty()))

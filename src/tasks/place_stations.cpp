@@ -11,6 +11,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/problem/design_keys.hpp"
+#include "posewright/study/study.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -114,6 +115,7 @@ StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
 /// Places are compared by what they are worth to the nominal robot.
 Problem planned_in_full(Problem problem) {
   problem.design.robust.reset();
+  problem.design.criterion.value = criterion_of_places(problem);
   return problem;
 }
 
@@ -144,7 +146,7 @@ class Ranking {
         options_(options),
         monitor_(monitor),
         places_(problem.workspace.stations->list) {
-    const std::string& criterion = problem.design.criterion.value;
+    const std::string criterion = criterion_of_places(problem);
     const auto* entry = find_criterion(criterion);
     if (entry != nullptr && entry->several_variants)
       throw CannotDo("criterion " + criterion +
@@ -313,6 +315,11 @@ class Ranking {
 };
 
 }  // namespace
+
+std::string criterion_of_places(const Problem& problem) {
+  const std::string& named = problem.design.criterion.value;
+  return named == automatic_criterion ? "o1" : named;
+}
 
 std::vector<StationRank> place_stations(const Problem& problem, const StationOptions& options, const Monitor& monitor) {
   if (!problem.workspace.stations)

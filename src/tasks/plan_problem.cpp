@@ -45,7 +45,7 @@ class PlanSearch {
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
                       minimum_distance_));
-    if (std::string note = choose_form(problem_, study_, settings_); !note.empty())
+    if (std::string note = choose_criterion(problem_, study_, settings_); !note.empty())
       study_.notes.push_back(std::move(note));
   }
 

@@ -110,7 +110,7 @@ class ReportBuilder {
       if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
     settings_.measured = std::move(before);
     study_ = make_study(problem, settings_, monitor_);
-    choose_form(problem, study_, settings_);
+    choose_criterion(problem, study_, settings_);
     // A shortened set of candidates would be shown as if it were whole.
     if (monitor.should_stop()) throw CannotDo("the report was stopped before its first part was finished");
     all_.dimension = new_.dimension = study_.configurations.dimension;

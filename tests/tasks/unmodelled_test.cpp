@@ -393,6 +393,42 @@ TEST_F(UnmodelledEffects, FormFollowsTheNumberOfPosesUnlessACriterionIsNamed) {
   EXPECT_EQ(criterion_of("{variant: short, poses: 3, candidates: 200, criterion: o1}", ""), "o1");
 }
 
+TEST_F(UnmodelledEffects, AutoPlansByBiasFromHalfAsMuchAgainAsTheSmallestNumberAndByTheDeterminantElse) {
+  const auto last_note = [](const Plan& plan) {
+    return plan.statistics.notes.empty() ? "" : plan.criterion + ": " + plan.statistics.notes.back();
+  };
+  const auto chosen = [&](const std::string& design) {
+    return last_note(planned(problem("", "{variant: plain, candidates: 100, criterion: auto, " + design + "}"), {}));
+  };
+  // Three parameters, two readings a pose: two poses determine them.
+  EXPECT_EQ(chosen("poses: 2"), "o1: Criterion o1, since 2 poses are few where 2 determine the parameters.");
+  EXPECT_THAT(chosen("poses: 3"), HasSubstr("bias: Criterion bias, since 3 poses are enough where 2 determine"));
+  EXPECT_THAT(chosen("poses: 3, method: branch_and_bound"), HasSubstr("o1: Criterion o1, since method branch_and_bou"));
+  EXPECT_THAT(chosen("poses: 3, truth: geared"), HasSubstr("o1: Criterion o1, since a truth is named"));
+  EXPECT_THAT(chosen("poses: 3, robust: 3"), HasSubstr("o1: Criterion o1, since plans over drawn robots"));
+  EXPECT_THAT(chosen("poses: auto, require: {sigma: {tool.x: 1 mm}}"), HasSubstr("o1: Criterion o1, since the number"));
+  const Plan stated = planned(problem("auto", "{variant: short, candidates: 100, criterion: auto, poses: 4}"), {});
+  EXPECT_THAT(last_note(stated), HasSubstr("test_pose: Criterion test_pose"));
+  const Plan obeyed = planned(problem("", "{variant: plain, candidates: 100, criterion: bias, poses: 2}"), {});
+  EXPECT_EQ(obeyed.criterion, "bias");
+}
+
+TEST_F(UnmodelledEffects, AutoIsThePlanOfTheCriterionThatItNames) {
+  const auto values = [&](const std::string& criterion, int poses) {
+    DesignEdits options;
+    options.edit("criterion", criterion);
+    options.edit("poses", poses);
+    return planned_poses(
+               problem("", "{variant: plain, poses: 8, candidates: 100, restarts: 2, method: exchange}"),
+               planned(problem("", "{variant: plain, poses: 8, candidates: 100, restarts: 2, method: exchange}"),
+                       options))
+        .configurations;
+  };
+  EXPECT_EQ(values("auto", 8), values("bias", 8));
+  EXPECT_EQ(values("auto", 2), values("o1", 2));
+  EXPECT_NE(values("o1", 8), values("bias", 8));
+}
+
 TEST_F(UnmodelledEffects, SizeAutoIsTheNoiseOrWhatOtherVariantsEstimate) {
   // Of q1.gear 1e-3, what offsets and the tool leave; a file without that variant has nothing but the noise.
   const Plan geared = judged(problem("auto"), eight);
@@ -446,6 +482,17 @@ TEST(UnmodelledEffect, OfAllLengthsThatTheParametersTakeUpIsRefused) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("problem.yaml:7: an unmodelled effect with a length of"));
   }
+}
+
+TEST(UnmodelledEffect, WithoutATipInTheReadingsIsNoneThatAutoPlansFor) {
+  Problem problem = example("kr270/compensator_geometry.yaml");
+  DesignEdits options;
+  options.edit("criterion", "auto");
+  options.edit("candidates", 100);
+  const Plan plan = planned(problem, options);
+  EXPECT_EQ(plan.criterion, "o1");
+  EXPECT_EQ(plan.statistics.notes.back(),
+            "Criterion o1, since the readings contain no tip position that an effect could move.");
 }
 
 TEST(UnmodelledEffect, IsRefusedWhereNoTipIsSeen) {

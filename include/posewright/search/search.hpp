@@ -62,9 +62,10 @@ struct SearchResult {
   bool stopped = false;
 };
 
-/// Throws InputError if no criterion or planner has that name. `place` is where the name was written.
+/// Throws InputError if no criterion or planner has that name. `place` is where the name was written; `other` is a word
+/// that may be in place of a criterion's name, for the message.
 void require_known(const std::string& criterion, const std::string& method, const SourcePlace& criterion_place,
-                   const SourcePlace& method_place);
+                   const SourcePlace& method_place, std::string_view other = {});
 
 /// Whitens, solves for the bounds, searches. One part, unless the criterion is over several variants. Memory: the
 /// blocks and a few vectors of their number.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewright/planning/configuration_space.hpp"
@@ -15,11 +16,15 @@
 
 namespace posewright {
 
+/// Name in place of a criterion's: choose_criterion() takes one.
+inline constexpr std::string_view automatic_criterion = "auto";
+
 /// The problem's design and the options of a run.
 struct Settings {
   std::string criterion, method;
-  bool criterion_stated = false;  ///< by the problem; else see choose_form()
-  int poses = 0;                  ///< 0: the smallest number that suffices
+  bool criterion_stated = false;     ///< by the problem; else see choose_criterion()
+  bool criterion_automatic = false;  ///< criterion: auto; `criterion` is o1 until it is chosen
+  int poses = 0;                     ///< 0: the smallest number that suffices
   int candidates = 0;
   bool prior = false, reserve = false;
   Repeats repeats;
@@ -78,11 +83,16 @@ enum class Unidentifiable { refuse, keep };
 Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
                  Unidentifiable unidentifiable = Unidentifiable::refuse);
 
-/// For a variant that lacks an effect, if nobody named a criterion: the determinant for few poses, and from 1.5 times
-/// the smallest number on the accuracy at the test poses (without any: at 200 candidates) of a fit that estimates the
-/// effect, too. A criterion that needs test poses counts candidates if there are none, where settings_of() lets it.
+/// The one place where a criterion is chosen, by the number of poses. Few poses: o1. From 1.5 times the smallest number
+/// on, for `auto`: bias, and o1 where bias has nothing to count; for a variant with `unmodelled` and no criterion
+/// named: accuracy at the test poses (without any: at 200 candidates) of a fit that estimates the effect, too. A
+/// criterion that needs test poses counts candidates if there are none, where settings_of() lets it.
 /// @return which and why, for messages; empty: nothing was chosen
-std::string choose_form(const Problem& problem, Study& study, Settings& settings);
+std::string choose_criterion(const Problem& problem, Study& study, Settings& settings);
+
+/// Columns of an assumed effect make each candidate several times as costly: fewer starts, and no moves between
+/// candidates, where nobody stated them.
+void limit_search_with_effect(const DesignSpec& design, Settings& settings);
 
 /// Request for a search of this number of poses, among blocks alone.
 SearchRequest search_request(const Settings& settings, int poses);

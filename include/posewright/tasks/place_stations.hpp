@@ -32,6 +32,9 @@ struct StationOptions {
   bool every_set = false;     ///< every set of so many stations is tried, however many there are
 };
 
+/// Criterion that places are compared by: `auto` is o1, whose differences are ratios of σ.
+std::string criterion_of_places(const Problem& problem);
+
 /// Chooses among the places of workspace.stations: a quick plan from each, full ones from the best. All sets of so many
 /// stations are tried if they are at most 100 or all are asked for; else the best one gets the best second, and so on.
 /// Best first. If the search is stopped, what is known by then is ranked, and the rest is marked. Throws InputError if

@@ -1,0 +1,110 @@
+#include "criterion_choice.hpp"
+
+#include <fmt/format.h>
+
+#include "assumed_effect.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/study/unmodelled.hpp"
+
+namespace posewright {
+namespace {
+
+// From so many times the smallest number of poses on, an effect that the model lacks matters more than the noise; for
+// fewer, plans by o1 are better on measured robots.
+constexpr double enough_poses = 1.5;
+constexpr std::size_t places_at_candidates = 200;
+
+/// Number of poses against the smallest one.
+struct EnoughPoses {
+  int poses = 0;
+  std::optional<int> smallest;
+  bool enough() const { return smallest && poses >= enough_poses * *smallest; }
+  std::string few() const {
+    return fmt::format("{} poses are few where {} determine the parameters", poses, smallest.value_or(poses));
+  }
+};
+
+EnoughPoses enough_poses_of(const Study& study, const Settings& settings) {
+  const Variant& variant = study.first();
+  return {settings.poses + int(study.measured.count()),
+          smallest_number_of_poses(*variant.model, study.configurations, variant.columns, settings.planner.threads)};
+}
+
+std::string why_not_bias(const Problem& problem, const Study& study, const Settings& settings) {
+  if (std::string why = why_not_bias(problem, settings); !why.empty()) return why;
+  if (!moves_the_tip(study, settings.planner.threads))
+    return "the readings contain no tip position that an effect could move";
+  const EnoughPoses poses = enough_poses_of(study, settings);
+  return poses.enough() ? "" : poses.few();
+}
+
+/// For `auto` and a variant without `unmodelled`.
+std::string choose_bias(const Problem& problem, const Study& study, Settings& settings) {
+  if (const std::string why = why_not_bias(problem, study, settings); !why.empty())
+    return fmt::format("Criterion {}, since {}.", settings.criterion, why);
+  settings.criterion = "bias";
+  limit_search_with_effect(problem.design, settings);
+  const EnoughPoses poses = enough_poses_of(study, settings);
+  return fmt::format(
+      "Criterion bias, since {} poses are enough where {} determine the parameters: least error of a plain fit if the "
+      "robot has an effect that the model lacks (criterion: o1 has proofs).",
+      poses.poses, *poses.smallest);
+}
+
+/// Accuracy at test poses, of a fit that estimates the stated effect.
+std::string choose_accuracy(const Problem& problem, Study& study, Settings& settings) {
+  Variant& variant = study.first();
+  if (!(variant.effect->size().translation > 0))
+    return fmt::format("Criterion {}, since the unmodelled effect has size 0.", settings.criterion);
+  if (settings.poses == 0) return {};
+  std::string why = "something is known before";
+  if (!variant.known_before) {
+    const EnoughPoses poses = enough_poses_of(study, settings);
+    if (!poses.enough()) return fmt::format("Criterion {}, since {}.", settings.criterion, poses.few());
+    why = fmt::format("{} poses are enough where {} determine the parameters", poses.poses, *poses.smallest);
+  }
+  const bool stated = !variant.test_points.empty();
+  // Two tips of one reading stand at no single place.
+  if (!stated && variant.effect->tips() > 1) return {};
+  settings.criterion = "test_pose";
+  if (!stated)
+    variant.test_points = test_points_at_candidates(problem, study.configurations, variant, variant.test_places);
+  return fmt::format("Criterion test_pose, since {}: accuracy at {} {}, the effect estimated, too.", why,
+                     variant.test_points.size(), stated ? "test poses" : "of the candidates");
+}
+
+}  // namespace
+
+bool assumes_effect(const Settings& settings) {
+  return find_criterion(settings.criterion)->needs_truth && settings.truth.value.empty();
+}
+
+std::string why_not_bias(const Problem& problem, const Settings& settings) {
+  const std::string& method = problem.design.method.value;
+  if (settings.poses == 0) return "the number of poses is searched";
+  if (problem.design.robust) return "plans over drawn robots (robust) are for the determinant";
+  if (!settings.truth.value.empty()) return "a truth is named";
+  if (method == "continuous" || method == "branch_and_bound") return fmt::format("method {} is not for bias", method);
+  if (find_variant(problem, settings.variants.front().name.value).unmodelled) return "the effect is estimated, too";
+  return {};
+}
+
+std::vector<TestPoint> test_points_at_candidates(const Problem& problem, const Configurations& candidates,
+                                                 const Variant& variant, std::vector<TestPlace>& test_places) {
+  const Configurations some = thinned(candidates, places_at_candidates);
+  std::vector<std::vector<double>> places;
+  for (std::size_t i = 0; i < some.count(); ++i)
+    places.emplace_back(some[i].begin(), some[i].begin() + std::ptrdiff_t(variant.model->tip_coordinates()));
+  return test_points_at(problem, *variant.spec, *variant.model, variant.columns, places, &test_places);
+}
+
+std::string choose_criterion(const Problem& problem, Study& study, Settings& settings) {
+  Variant& variant = study.first();
+  if (!settings.criterion_stated && variant.effect != nullptr) return choose_accuracy(problem, study, settings);
+  if (settings.criterion_automatic) return choose_bias(problem, study, settings);
+  if (!find_criterion(settings.criterion)->needs_test_poses || !variant.test_points.empty()) return {};
+  variant.test_points = test_points_at_candidates(problem, study.configurations, variant, variant.test_places);
+  return fmt::format("Accuracy counts at {} of the candidates.", variant.test_points.size());
+}
+
+}  // namespace posewright

@@ -64,6 +64,8 @@ export function reproduceSection(report) {
       fact('seed', String(plan.seed)),
       fact('criterion, method', `${plan.criterion.name}, ${plan.method}`),
     ),
+    // Far below the picture, which they would push out of the first screen.
+    ...(plan.statistics.notes ?? []).map((text) => h('p', { class: 'note' }, text)),
     h('pre', { tabindex: '0' }, commands(report).join('\n')),
     h(
       'p',

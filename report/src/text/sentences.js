@@ -162,7 +162,6 @@ export function warnings(report) {
       'There is a single test pose: the plan crowds around it and tells little of other places. Give several.',
     route?.problem_changed &&
       'The problem file has changed since the plan was made; the route belongs to the new one. Plan again.',
-    ...(plan.statistics.notes ?? []),
     ...(report.notes ?? []),
     ...(route?.unreachable ?? []).map((u) => `Pose ${u.pose} is left out of the route: ${u.reason}.`),
     route?.worth && `The poses of the route have ${percentDown(route.worth.efficiency, 1)} of the plan's information.`,

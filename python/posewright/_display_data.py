@@ -55,7 +55,7 @@ def simulation(result: Simulation) -> str:
 def next_poses(result: NextPoses) -> str:
     json = result.to_dict()
     curve = [point for point in json["curve"] if point["expected"] is not None]
-    rows = [(point["poses"], _shown(point["expected"], "m"), _shown(point["upper"], "m")) for point in curve]
+    rows = [(point["poses"], _shown(point["expected"], "m"), None if point["upper"] is None else _shown(point["upper"], "m")) for point in curve]
     return shown(
         result.reason,
         listed(result.notes),

@@ -201,6 +201,10 @@ std::string next_text(const NextPoses& r) {
     text += fmt::format(
         "The residuals contain a smooth effect of {} that no parameter describes; the figures include it.\n",
         length(r.effect->size));
+  if (r.effect_below)
+    text += fmt::format(
+        "The limit includes a missing effect: these readings leave errors up to {} by it possible (95 %).\n",
+        length(*r.effect_below));
   const bool stop = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
   text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "To continue anyway" : "Next", r.criterion,
                       r.candidates, table_of(r.poses));
@@ -222,6 +226,7 @@ Json next_json(const Problem& problem, const NextOptions& options, const NextPos
   json["fitted"] = r.fitted;
   json["noise"] = r.fitted ? Json{{"scale", r.noise}, {"freedom", r.freedom}} : Json(nullptr);
   json["unmodelled"] = r.effect ? Json{{"size", r.effect->size}, {"length", r.effect->length}} : Json(nullptr);
+  json["unmodelled_below"] = optional(r.effect_below);
   json["places"] = {{"count", r.places}, {"test_poses", r.places_stated}};
   json["required"] = optional(r.required);
   json["requirements"] = Json::array();

@@ -3,36 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "correlated_rows.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/dense.hpp"
-#include "posewright/support/distributions.hpp"
 
 namespace posewright {
 namespace {
 
 // Share of a column's norm; below, the poses do not tell the column from the others.
 constexpr double told_at_all = 1e-7;
-constexpr double confidence = 0.95;
-// With an effect the errors of so many places say how many degrees of freedom all of them have.
-constexpr Eigen::Index places_that_say = 100;
 
 std::vector<int> with_effect(const Variant& variant) {
   std::vector<int> selected = variant.columns.selected;
   if (variant.effect != nullptr)
     selected.insert(selected.end(), variant.effect->columns().begin(), variant.effect->columns().end());
   return selected;
-}
-
-/// Rows of one pose and another, correlated by the effect.
-Eigen::MatrixXd between(const UnmodelledEffect& effect, const Eigen::MatrixXd& along_a, const Eigen::MatrixXd& place_a,
-                        const Eigen::MatrixXd& along_b, const Eigen::MatrixXd& place_b) {
-  const int each = effect.twists();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(along_a.rows(), along_b.rows());
-  for (Eigen::Index a = 0; a < place_a.cols(); ++a)
-    for (Eigen::Index b = 0; b < place_b.cols(); ++b)
-      sum.noalias() += effect.correlation(place_a.col(a), place_b.col(b)) * along_a.middleCols(a * each, each) *
-                       along_b.middleCols(b * each, each).transpose();
-  return sum;
 }
 
 }  // namespace
@@ -55,22 +40,6 @@ std::vector<PoseRows> rows_of(const Variant& variant, const Configurations& conf
   for (std::size_t k = 0; k < configurations.count(); ++k)
     rows.push_back({{configurations[k].begin(), configurations[k].end()}, blocks.block(k)});
   return rows;
-}
-
-double upper_error(double sum, double squares, double freedom) {
-  if (!(sum > 0)) return 0.0;
-  if (!(freedom > 0)) return std::numeric_limits<double>::infinity();
-  const double d = sum * sum / squares;
-  const double quantile =
-      std::isinf(freedom) ? chi_square_quantile(confidence, d) / d : fisher_upper_quantile(1 - confidence, d, freedom);
-  return std::sqrt(sum * quantile);
-}
-
-double upper_of_axis(double sigma, double freedom) { return upper_error(sigma * sigma, std::pow(sigma, 4), freedom); }
-
-double upper_of_sigma(double sigma, double freedom) {
-  if (!(freedom > 0)) return std::numeric_limits<double>::infinity();
-  return std::isinf(freedom) ? sigma : sigma * std::sqrt(freedom / chi_square_quantile(1 - confidence, freedom));
 }
 
 Eigen::MatrixXd known_information(const Variant& variant, const std::vector<PoseRows>& poses, Prior prior,
@@ -158,28 +127,17 @@ class ForecastOfError::Sum {
     return noise_.factor * most.cwiseMax(0.0).cwiseSqrt();
   }
 
-  std::optional<ForecastError> error() const {
+  std::optional<double> error() const {
     if (!determined()) return std::nullopt;
     // A_ M⁻¹ A_ᵀ = X Xᵀ, M = RᵀR.
     const Eigen::MatrixXd X =
         R_.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd(A_.transpose())).transpose();
-    double sum = X.squaredNorm(), squares = 0;
-    if (Y_.size() == 0) {
-      squares = (X.transpose() * X).squaredNorm();
-    } else {
+    double sum = X.squaredNorm();
+    if (Y_.size() > 0) {
       const Eigen::MatrixXd follows = R_.triangularView<Eigen::Upper>().transpose().solve(C_);
       sum += K_.trace() - 2 * X.transpose().cwiseProduct(follows).sum();
-      const Eigen::Index some = said_.size();
-      const Eigen::MatrixXd Xs = X(said_, Eigen::all), cross = Xs * follows(Eigen::all, said_);
-      const Eigen::MatrixXd S = Xs * Xs.transpose() - cross - cross.transpose() + K_(said_, said_);
-      const double part = S.trace();
-      squares = some > 0 && part > 0 ? S.squaredNorm() * std::pow(sum / part, 2) : sum * sum;
     }
-    const double factor = std::pow(noise_.factor, 2);
-    ForecastError result{std::sqrt(factor * sum), 0.0};
-    const double worse = std::max(factor, std::pow(std::max(1.0, noise_.scale), 2));
-    result.upper = upper_error(worse * sum, worse * worse * squares, noise_.freedom);
-    return result;
+    return noise_.factor * std::sqrt(sum);
   }
 
  private:
@@ -198,52 +156,31 @@ class ForecastOfError::Sum {
   /// once.
   void correlate(const std::vector<PoseRows>& poses) {
     const UnmodelledEffect& effect = *variant_.effect;
-    std::vector<Eigen::MatrixXd> along, places;
+    std::vector<MovedByEffect> moved;
     for (const PoseRows& pose : poses) {
-      along.emplace_back(pose.block.rightCols(pose.block.cols() - m_));
-      effect.take_sizes(along.back());
-      places.push_back(effect.places(pose.q));
+      moved.push_back({pose.block.rightCols(pose.block.cols() - m_), effect.places(pose.q)});
+      effect.take_sizes(moved.back().along);
     }
-    Eigen::MatrixXd S = Eigen::MatrixXd::Identity(first_.back(), first_.back());
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      for (std::size_t j = 0; j <= i; ++j)
-        S.block(first_[i], first_[j], along[i].rows(), along[j].rows()) +=
-            between(effect, along[i], places[i], along[j], places[j]);
-    const Eigen::LLT<Eigen::MatrixXd> root(S);
+    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd::Identity(first_.back(), first_.back()) +
+                                           covariance_between(effect, moved, moved));
     root.matrixL().solveInPlace(J_);
-    fill_places(along, places);
+    fill_places(moved);
     root.matrixL().solveInPlace(Y_);
   }
 
   /// Y_ = A K_x before whitening, K_ = K_xx, weighted.
-  void fill_places(const std::vector<Eigen::MatrixXd>& along, const std::vector<Eigen::MatrixXd>& places) {
+  void fill_places(const std::vector<MovedByEffect>& moved) {
     const UnmodelledEffect& effect = *variant_.effect;
-    const Eigen::Index tests = weights_.size();
-    std::vector<Eigen::MatrixXd> moved, there;
-    for (Eigen::Index t = 0; t < tests; ++t) {
+    std::vector<MovedByEffect> there;
+    for (Eigen::Index t = 0; t < weights_.size(); ++t) {
       const TestPlace& place = variant_.test_places[std::size_t(t)];
-      Eigen::MatrixXd B = std::sqrt(weights_[t]) * place.twists.block(turns_ ? 3 : 0, 0, 3, effect.twists());
-      effect.take_sizes(B);
-      moved.push_back(std::move(B));
-      there.emplace_back(effect.place(place.q));
+      there.push_back(
+          {std::sqrt(weights_[t]) * place.twists.block(turns_ ? 3 : 0, 0, 3, effect.twists()), effect.place(place.q)});
+      effect.take_sizes(there.back().along);
     }
-    Y_.resize(first_.back(), 3 * tests);
-    K_.resize(3 * tests, 3 * tests);
-    for (Eigen::Index t = 0; t < tests; ++t) {
-      const auto u = std::size_t(t);
-      for (std::size_t k = 0; k < along.size(); ++k)
-        Y_.block(first_[k], 3 * t, along[k].rows(), 3) = between(effect, along[k], places[k], moved[u], there[u]);
-      for (Eigen::Index s = 0; s <= t; ++s) {
-        K_.block<3, 3>(3 * t, 3 * s) =
-            between(effect, moved[u], there[u], moved[std::size_t(s)], there[std::size_t(s)]);
-        K_.block<3, 3>(3 * s, 3 * t) = K_.block<3, 3>(3 * t, 3 * s).transpose().eval();
-      }
-    }
-    C_ = Eigen::MatrixXd::Zero(m_, 3 * tests);
-    const Eigen::Index some = std::min(places_that_say, tests);
-    said_.resize(3 * some);
-    for (Eigen::Index i = 0; i < some; ++i)
-      for (Eigen::Index k = 0; k < 3; ++k) said_[3 * i + k] = int(3 * (i * tests / some) + k);
+    Y_ = covariance_between(effect, moved, there);
+    K_ = covariance_between(effect, there, there);
+    C_ = Eigen::MatrixXd::Zero(m_, Y_.cols());
   }
 
   const Variant& variant_;
@@ -255,7 +192,6 @@ class ForecastOfError::Sum {
   std::vector<Eigen::Index> first_{0};
   Eigen::MatrixXd J_, A_, R_;
   Eigen::MatrixXd Y_, K_, C_;  // with an effect alone
-  Eigen::VectorXi said_;
 };
 
 ForecastOfError::ForecastOfError(const Variant& variant, const ForecastNoise& noise)
@@ -270,7 +206,6 @@ std::optional<ForecastSigmas> ForecastOfError::sigmas(const std::vector<PoseRows
   for (std::size_t k = 0; k < poses.size(); ++k) sum.add(k);
   if (!sum.determined()) return std::nullopt;
   result.parameters = sum.sigmas();
-  result.worse = std::max(noise_.factor, std::max(1.0, noise_.scale)) / noise_.factor;
   if (!axes || weights_.size() == 0) return result;
   const Eigen::Vector3d along = sum.worst_axes();
   std::copy(along.begin(), along.end(), result.axes.begin());
@@ -284,9 +219,9 @@ std::optional<ForecastSigmas> ForecastOfError::sigmas(const std::vector<PoseRows
   return result;
 }
 
-std::vector<std::optional<ForecastError>> ForecastOfError::after_each(const std::vector<PoseRows>& poses,
-                                                                      std::size_t from) const {
-  std::vector<std::optional<ForecastError>> result;
+std::vector<std::optional<double>> ForecastOfError::after_each(const std::vector<PoseRows>& poses,
+                                                               std::size_t from) const {
+  std::vector<std::optional<double>> result;
   Sum sum(*this, poses);
   if (from == 0) result.push_back(sum.error());
   for (std::size_t k = 0; k < poses.size(); ++k) {

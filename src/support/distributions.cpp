@@ -37,10 +37,6 @@ double fisher_exceeded(double value, double numerator_freedom, double denominato
   return exceeded(bm::fisher_f(numerator_freedom, denominator_freedom), value);
 }
 
-double fisher_upper_quantile(double tail, double numerator_freedom, double denominator_freedom) {
-  return bm::quantile(bm::complement(bm::fisher_f(numerator_freedom, denominator_freedom), tail));
-}
-
 double normal_exceeded(double value) { return exceeded(bm::normal(), value); }
 
 double normal_upper_quantile(double tail) { return bm::quantile(bm::complement(bm::normal(), tail)); }

@@ -103,7 +103,9 @@ class FitSoFar {
     result_.effect = found.counted;
     for (const EstimatedValue& value : found.values)
       if (value.sigma) result_.estimates.push_back(value);
-    result_.noise = {options_.prior, found.fit.noise_factor, found.fit.scale, found.fit.left};
+    result_.noise = {options_.prior, found.fit.noise_factor};
+    result_.scale = found.fit.scale;
+    result_.freedom = found.fit.left;
     result_.problem = at_values(std::move(counting), spec_.name, found, options_.data);
     allow(variant_in(result_.problem, spec_.name).unmodelled, found);
     result_.fitted = true;

@@ -19,6 +19,7 @@ struct NextFit {
   int readings = 0;        ///< single ones that were read
   bool fitted = false;     ///< else at nominal values
   ForecastNoise noise;
+  double scale = 1.0, freedom = 0.0;  ///< of the residuals, in units of the stated noise
   std::optional<CalibratedEffect> effect{};
   std::vector<EstimatedValue> estimates{};
   std::vector<std::string> notes{};

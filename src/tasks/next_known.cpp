@@ -44,6 +44,8 @@ KnownSoFar::KnownSoFar(const Problem& problem, const NextOptions& options, const
   fit_.problem = nominal_;
   fit_.fitted = false;
   fit_.noise = {};
+  fit_.scale = 1.0;
+  fit_.freedom = 0.0;
   fit_.effect.reset();
   prepare();
 }

@@ -13,6 +13,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/variant.hpp"
 #include "posewright/search/search.hpp"
+#include "posewright/study/error_limits.hpp"
 #include "posewright/study/forecast.hpp"
 #include "posewright/support/error.hpp"
 
@@ -53,8 +54,8 @@ class NextRun {
     result_.parameters = known_.columns();
     result_.told = known_.told();
     result_.fitted = known_.fit().fitted;
-    result_.noise = known_.fit().noise.scale;
-    result_.freedom = known_.fit().fitted ? known_.fit().noise.freedom : 0;
+    result_.noise = known_.fit().scale;
+    result_.freedom = known_.fit().freedom;
     result_.effect = known_.fit().effect;
     if (known_.fit().fitted) result_.estimates = known_.fit().estimates;
     result_.kept = known_.kept();
@@ -138,8 +139,8 @@ class NextRun {
         known.push_back(more[i]);
         const auto after = error.after_each(known, known.size()).back();
         known.pop_back();
-        if (after && after->expected < least) {
-          least = after->expected;
+        if (after && *after < least) {
+          least = *after;
           best = i;
         }
       }
@@ -156,14 +157,6 @@ class NextRun {
     return noise;
   }
 
-  NextPoint point(std::size_t poses, const std::optional<ForecastError>& error) const {
-    NextPoint point{int(poses)};
-    if (!error) return point;
-    point.expected = error->expected;
-    if (std::isfinite(error->upper)) point.upper = error->upper;
-    return point;
-  }
-
   void forecast(const Configurations& chosen) {
     if (result_.places == 0) return;
     const ForecastOfError error(study_.first(), noise());
@@ -172,14 +165,14 @@ class NextRun {
       all.push_back(std::move(row));
     const auto errors = error.after_each(all);
     for (std::size_t n = 0; n < errors.size(); ++n)
-      (n <= known_.rows().size() ? result_.curve : result_.ahead).push_back(point(n, errors[n]));
+      (n <= known_.rows().size() ? result_.curve : result_.ahead).push_back({int(n), errors[n]});
     if (!known_.determined()) return;
     const int ahead = std::min(poses_looked_ahead, int(study_.configurations.count()));
     const Configurations three = search_for(parts_for("test_pose"), "test_pose", ahead);
     all.resize(known_.rows().size());
     for (PoseRows& row : rows_of(study_.first(), three, known_.settings().planner.threads))
       all.push_back(std::move(row));
-    result_.with_three = point(all.size(), error.after_each(all, all.size()).back());
+    result_.with_three = NextPoint{int(all.size()), error.after_each(all, all.size()).back()};
   }
 
   void fill_poses(const Configurations& chosen) {
@@ -193,43 +186,41 @@ class NextRun {
     }
   }
 
+  /// Limits with whatever effect the residuals leave possible, and requirements against them.
   void fill_requirements() {
     const RequirementSpec& require = known_.fit().problem.design.require;
     if (!judged()) return;
+    const std::vector<PossibleEffects> effects =
+        possible_effects(*study_.first().model, study_.first().columns, known_.fit().poses);
+    const ErrorLimits limits = error_limits(study_.first(), noise(), known_.fit().poses, effects, require.of_axes());
+    result_.effect_below = limits.effect;
+    if (!result_.curve.empty()) result_.curve.back().upper = limits.error;
     if (result_.required && !result_.curve.empty())
       result_.requirements.push_back(
           {"accuracy", "m", *result_.required, result_.curve.back().expected, result_.curve.back().upper});
     if (!require.of_axes() && require.sigma.empty()) return;
     const auto sigmas = ForecastOfError(study_.first(), noise()).sigmas(known_.rows(), require.of_axes());
     if (!sigmas) return;
-    require_axes(require, *sigmas);
-    require_sigmas(require, *sigmas);
+    require_axes(require, *sigmas, limits);
+    require_sigmas(require, *sigmas, limits);
   }
 
-  void require_axes(const RequirementSpec& require, const ForecastSigmas& sigmas) {
+  void require_axes(const RequirementSpec& require, const ForecastSigmas& sigmas, const ErrorLimits& limits) {
     constexpr std::array<const char*, 6> names = {"position x", "position y", "position z",
                                                   "rotation x", "rotation y", "rotation z"};
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      if (!require.axes[k]) continue;
-      NextRequirement one{names[k], k < 3 ? "m" : "rad", *require.axes[k], sigmas.axes[k]};
-      if (one.expected) one.upper = finite(upper_of_axis(sigmas.worse * *one.expected, noise().freedom));
-      result_.requirements.push_back(one);
-    }
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (require.axes[k])
+        result_.requirements.push_back(
+            {names[k], k < 3 ? "m" : "rad", *require.axes[k], sigmas.axes[k], limits.axes[k]});
   }
 
-  void require_sigmas(const RequirementSpec& require, const ForecastSigmas& sigmas) {
+  void require_sigmas(const RequirementSpec& require, const ForecastSigmas& sigmas, const ErrorLimits& limits) {
     const VariantColumns& columns = study_.first().columns;
     const auto wanted = values_by_pattern(columns, require.sigma, known_.fit().problem, "the required σ");
-    for (std::size_t j = 0; j < wanted.size(); ++j) {
-      if (!wanted[j]) continue;
-      const double sigma = sigmas.parameters[Eigen::Index(j)];
-      result_.requirements.push_back({"sigma " + columns.parameters[j].name, columns.parameters[j].unit, *wanted[j],
-                                      sigma, finite(upper_of_sigma(sigmas.worse * sigma, noise().freedom))});
-    }
-  }
-
-  static std::optional<double> finite(double value) {
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    for (std::size_t j = 0; j < wanted.size(); ++j)
+      if (wanted[j])
+        result_.requirements.push_back({"sigma " + columns.parameters[j].name, columns.parameters[j].unit, *wanted[j],
+                                        sigmas.parameters[Eigen::Index(j)], limits.parameters[Eigen::Index(j)]});
   }
 
   bool judged() const { return known_.determined() && known_.fit().fitted; }

@@ -129,7 +129,7 @@ TEST(Profile, IntervalsOfThePuromycinDataAreThePublishedOnesWhichABruteSearchFin
   };
   double least = 1e300;
   for (double K = 0.03; K < 0.12; K += 1e-6) least = std::min(least, at_K(K));
-  const double limit = least * (1 + fisher_upper_quantile(0.05, 1, 10) / 10);
+  const double limit = least * (1 + std::pow(student_upper_quantile(0.025, 10), 2) / 10);
   const auto crossing = [&](const std::function<double(double)>& profile, double inside, double outside) {
     for (int i = 0; i < 40; ++i) (profile((inside + outside) / 2) < limit ? inside : outside) = (inside + outside) / 2;
     return inside;

@@ -139,7 +139,7 @@ with tempfile.TemporaryDirectory() as scratch:
 
     # A watch ends by itself where the poses suffice.
     data.write_text(whole)
-    watch = Watched(folder, *common, "--restart", "--required", "0.11mm")
+    watch = Watched(folder, *common, "--restart", "--required", "0.14mm")
     watch.wait_for(9)
     for row in rows[9:]:
         if watch.process.poll() is None:

@@ -15,8 +15,6 @@ double chi_square_upper_quantile(double tail, double freedom);
 double noncentral_chi_square_exceeded(double value, double freedom, double noncentrality);
 /// Chance that Fisher's F of these degrees of freedom is larger than `value`.
 double fisher_exceeded(double value, double numerator_freedom, double denominator_freedom);
-/// Value that Fisher's F of these degrees of freedom exceeds with the probability `tail`.
-double fisher_upper_quantile(double tail, double numerator_freedom, double denominator_freedom);
 /// Chance that a standard normal number is larger than `value`.
 double normal_exceeded(double value);
 /// Value that a standard normal number exceeds with the probability `tail`.

@@ -50,7 +50,8 @@ enum class NextVerdict {
 /// Error at the test poses after so many poses, m; none: these poses do not tell all parameters.
 struct NextPoint {
   int poses = 0;
-  std::optional<double> expected{}, upper{};  ///< upper: 95 %; none where nothing was left to judge the noise by
+  std::optional<double> expected{};
+  std::optional<double> upper{};  ///< 95 %, whatever effect the residuals leave possible; of all measured poses alone
 };
 
 /// One of the things that a problem requires, after the measured poses. SI.
@@ -59,7 +60,7 @@ struct NextRequirement {
   std::string unit;
   double required = 0.0;
   std::optional<double> expected{};  ///< ρ0; 1σ along or about the axis at the worst test pose; σ of the parameter
-  std::optional<double> upper{};     ///< 95 %, the compared value; none: no degrees of freedom for the noise
+  std::optional<double> upper{};     ///< 95 %, the compared value
 
   bool met() const { return upper && *upper <= required; }
 };
@@ -75,12 +76,13 @@ struct NextPoses {
   bool fitted = false;              ///< the rest is at calibrated values; else at nominal ones
   double noise = 1.0, freedom = 0;  ///< of the residuals, in units of the stated noise; their degrees of freedom
   std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
-  std::vector<EstimatedValue> estimates;     ///< of the parameters, if there was a fit
-  int places = 0;                            ///< where accuracy counts
-  bool places_stated = false;                ///< test poses of the problem; else places through the workspace
-  std::vector<NextPoint> curve;              ///< of the measured poses, by today's estimate; the last: all
-  std::vector<NextPoint> ahead;              ///< with 1, 2, … of `poses`
-  std::optional<NextPoint> with_three{};     ///< with the three that lower the error most
+  std::optional<double> effect_below{};   ///< error by a missing effect, below it with 95 % confidence, m; none: no fit
+  std::vector<EstimatedValue> estimates;  ///< of the parameters, if there was a fit
+  int places = 0;                         ///< where accuracy counts
+  bool places_stated = false;             ///< test poses of the problem; else places through the workspace
+  std::vector<NextPoint> curve;           ///< of the measured poses, by today's estimate; the last: all
+  std::vector<NextPoint> ahead;           ///< with 1, 2, … of `poses`
+  std::optional<NextPoint> with_three{};  ///< with the three that lower the error most
   std::optional<double> required{};
   /// All that is required, if the poses determine all parameters and there was a fit: reached means that each is met.
   std::vector<NextRequirement> requirements;

@@ -1,6 +1,5 @@
 import { around, curve, dots, figure, level, logGrid, logValues } from './figure.js';
 import { number, quantity } from '../text/units.js';
-import { colour } from '../theme.js';
 
 const mm = (value) => (value === null || value === undefined ? null : 1e3 * value);
 
@@ -23,9 +22,8 @@ export function nextPlot(n) {
   const said = (n.history ?? []).filter((p) => p.poses >= first);
   const series = [
     [curve('expected, mm', 'plan', true), at(n.curve, 'expected')],
-    [curve(`${100 * n.confidence} % bound, mm`, 'ink-soft'), at(n.curve, 'upper')],
+    [dots(`${100 * n.confidence} % bound at the time, mm`, 'ink-soft', 8), at([...said, ...(now ? [now] : [])], 'upper')],
     [ahead('with the next, mm', 'accent'), at(coming, 'expected')],
-    [ahead('its bound, mm', 'bar'), at(coming, 'upper')],
     ...(said.length > 1 ? [[dots('said at the time, mm', 'yours', 8), at(said, 'expected')]] : []),
     ...(n.required === null ? [] : [[level('required, mm', 'good'), x.map(() => mm(n.required))]]),
   ];
@@ -35,10 +33,9 @@ export function nextPlot(n) {
     caption:
       `Root mean square of the position error at ${n.places.count} ${n.places.test_poses ? 'test poses' : 'poses throughout the workspace'}, from the poses measured in their order and, dashed, with those to come` +
       (n.required === null ? '.' : `; enough is measured if the bound is at or below ${quantity(n.required, 'm', 3)}.`) +
-      ' Between the line and its bound lies what chance may add.',
+      ' The bound covers chance and any missing effect that the readings leave possible.',
     options: {
       series: [{ label: 'poses' }, ...series.map(([s]) => s)],
-      bands: [{ series: [2, 1], fill: () => `color-mix(in srgb, ${colour('plan')} 14%, transparent)` }],
       scales: { x: { time: false, range: around }, y: { distr: 3 } },
       axes: [
         { label: 'poses measured', incrs: [1, 2, 5, 10, 20, 50, 100] },

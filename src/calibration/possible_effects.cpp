@@ -27,6 +27,7 @@ constexpr double least_lever = 1e-3;  // m
 
 std::vector<double> logarithmic(double from, double to, int count) {
   std::vector<double> values;
+  values.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i) values.push_back(from * std::pow(to / from, double(i) / (count - 1)));
   return values;
 }

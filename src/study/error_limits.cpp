@@ -187,6 +187,7 @@ class Places {
     for (Eigen::Index t = 0; t < weights_.size(); ++t)
       for (Eigen::Index k = 0; k < 3; ++k) {
         std::vector<double> effect;
+        effect.reserve(E.size());
         for (const Eigen::MatrixXd& one : E) effect.push_back(one(3 * t + k, 3 * t + k) / weights_[t]);
         double& limit = limits[std::size_t(k)];
         limit = std::max(limit, upper_normal(effects, noise_(3 * t + k, 3 * t + k) / weights_[t], effect));
@@ -216,6 +217,7 @@ class Places {
 
 std::vector<Eigen::MatrixXd> by_effects(const Places& places, const std::vector<Shape>& shapes) {
   std::vector<Eigen::MatrixXd> all;
+  all.reserve(shapes.size());
   for (const Shape& shape : shapes) all.push_back(places.by_effect(shape));
   return all;
 }
@@ -259,6 +261,7 @@ ErrorLimits error_limits(const Variant& variant, const ForecastNoise& noise, con
   limits.parameters.resize(m);
   for (Eigen::Index j = 0; j < m; ++j) {
     std::vector<double> effect;
+    effect.reserve(shapes.size());
     for (const Shape& shape : shapes) effect.push_back(X.row(j) * shape.estimates * X.row(j).transpose());
     limits.parameters[j] = upper_sigma(effects, X.row(j) * fitted.by_noise() * X.row(j).transpose(), effect);
   }
@@ -267,6 +270,7 @@ ErrorLimits error_limits(const Variant& variant, const ForecastNoise& noise, con
   const std::vector<Eigen::MatrixXd> E = by_effects(places, shapes);
   const Eigen::MatrixXd& N = places.by_noise();
   std::vector<ErrorParts> parts;
+  parts.reserve(E.size());
   for (const Eigen::MatrixXd& one : E)
     parts.push_back({N.trace(), one.trace(), N.squaredNorm(), N.cwiseProduct(one).sum(), one.squaredNorm()});
   limits.error = upper_error(effects, parts);

@@ -30,21 +30,18 @@ EnoughPoses enough_poses_of(const Study& study, const Settings& settings) {
           smallest_number_of_poses(*variant.model, study.configurations, variant.columns, settings.planner.threads)};
 }
 
-std::string why_not_bias(const Problem& problem, const Study& study, const Settings& settings) {
-  if (std::string why = why_not_bias(problem, settings); !why.empty()) return why;
-  if (!moves_the_tip(study, settings.planner.threads))
-    return "the readings contain no tip position that an effect could move";
-  const EnoughPoses poses = enough_poses_of(study, settings);
-  return poses.enough() ? "" : poses.few();
-}
-
 /// For `auto` and a variant without `unmodelled`.
 std::string choose_bias(const Problem& problem, const Study& study, Settings& settings) {
-  if (const std::string why = why_not_bias(problem, study, settings); !why.empty())
+  const auto stays = [&](const std::string& why) {
     return fmt::format("Criterion {}, since {}.", settings.criterion, why);
+  };
+  if (const std::string why = why_not_bias(problem, settings); !why.empty()) return stays(why);
+  if (!moves_the_tip(study, settings.planner.threads))
+    return stays("the readings contain no tip position that an effect could move");
+  const EnoughPoses poses = enough_poses_of(study, settings);
+  if (!poses.enough()) return stays(poses.few());
   settings.criterion = "bias";
   limit_search_with_effect(problem.design, settings);
-  const EnoughPoses poses = enough_poses_of(study, settings);
   return fmt::format(
       "Criterion bias, since {} poses are enough where {} determine the parameters: least error of a plain fit if the "
       "robot has an effect that the model lacks (criterion: o1 has proofs).",

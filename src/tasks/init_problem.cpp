@@ -1,9 +1,12 @@
 #include "posewright/tasks/init_problem.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -28,6 +31,8 @@ constexpr std::uint64_t home_seed = 1618;
 constexpr double most_room = 0.3;    // m from the nearest body: more makes no home better
 constexpr double to_grid = 20;       // places are on a grid of 50 mm
 constexpr double least_scale = 0.9;  // m
+constexpr std::size_t stands_tried = 6;
+constexpr std::uint64_t stand_seed = 1414;
 constexpr int drawn_collisions = 200;
 constexpr std::uint64_t collision_seed = 2718;
 // Share of configurations with a collision from which collisions are what leaves none, and how many causes are left
@@ -36,7 +41,13 @@ constexpr double nearly_all = 0.98;
 constexpr std::size_t most_left_out = 6;
 constexpr double most_turns = 8;  // of a joint: more are degrees
 
-/// Possible places, best first; one if it is given. Shares of the reach.
+/// Where the instrument, or what a camera on the hand looks at, may stand.
+struct Stand {
+  Eigen::Vector3d position;
+  Eigen::Vector3d view{0, 0, -1};  ///< unit, from the camera to the board
+};
+
+/// Places that suit an arm that can turn its hand to them, best first. Shares of the reach.
 std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& robot) {
   if (facts.place) return {*facts.place};
   const double floor = floor_of(facts, robot).value_or(robot.lowest);
@@ -57,21 +68,78 @@ std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& rob
   return result;
 }
 
+/// Point at which camera or board is mounted, and its outward direction, both in the base frame.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> hand_at(const InitFacts& facts, const InitRobot& robot,
+                                                    const std::vector<double>& q) {
+  Frame<double> tip;
+  for (const ChainJoint& joint : robot.chain.joints) {
+    tip.then(joint.X_ParentJoint);
+    const double value = joint.multiplier * q[std::size_t(joint.coordinate)] + joint.offset;
+    if (joint.prismatic) tip.then_translate(joint.axis * value);
+    else tip.then_rotate(joint.axis, value);
+  }
+  tip.then(robot.chain.X_LastTip);
+  return {tip.p + tip.R * mounted_at(facts, robot), tip.R * robot.outward};
+}
+
+/// Stands straight before the hand in the middle of the ranges and in some random configurations, for arms with too few
+/// joints to turn their hand to a place. A place that is given is looked at from there.
+std::vector<Stand> stands_before_hand(const InitFacts& facts, const InitRobot& robot) {
+  const auto [nearest, farthest] = sight_range(facts);
+  const double distance = std::sqrt(nearest * farthest);
+  Random random(stand_seed, 0);
+  std::vector<Stand> stands;
+  for (std::size_t i = 0; i < stands_tried; ++i) {
+    std::vector<double> q;
+    for (const Coordinate& c : robot.chain.coordinates) {
+      const double turn = c.unit == "rad" ? std::numbers::pi : std::numeric_limits<double>::infinity();
+      const double lower = std::max(c.lower, -turn), upper = std::min(c.upper, turn);
+      q.push_back(i == 0 ? 0.5 * (lower + upper) : random.uniform(lower, upper));
+    }
+    const auto [hand, outward] = hand_at(facts, robot, q);
+    const Eigen::Vector3d position = facts.place.value_or(hand + distance * outward);
+    const Eigen::Vector3d from_hand = (position - hand).normalized();
+    stands.push_back({position, facts.on_hand ? from_hand : -from_hand});
+  }
+  return stands;
+}
+
+/// Possible stands, best first. The board of a camera on the hand lies face up; a fixed camera looks back at the robot.
+std::vector<Stand> stands(const InitFacts& facts, const InitRobot& robot) {
+  std::vector<Stand> result;
+  for (const Eigen::Vector3d& place : places(facts, robot)) {
+    const Eigen::Vector3d back(-place.x(), -place.y(), 0);
+    const bool level = facts.camera && !facts.on_hand && back.norm() > 0;
+    result.push_back({place, level ? back.normalized() : -Eigen::Vector3d::UnitZ()});
+  }
+  if (facts.camera)
+    for (const Stand& stand : stands_before_hand(facts, robot)) result.push_back(stand);
+  return result;
+}
+
 /// Checks that a plan is possible: throws as observe_problem(). Motions from home take longest.
-void try_out(const std::string& text, const fs::path& file, const InitFacts& facts, const Monitor& monitor) {
+/// @return parameters of the hand-eye variant that no motion separates from the others
+std::vector<std::string> try_out(const std::string& text, const fs::path& file, const InitFacts& facts,
+                                 const Monitor& monitor) {
   const Problem problem = without_roadmap(parse_problem(text, file, facts.packages));
   ObserveOptions options;
   if (problem.design.variant) options.variant = problem.design.variant->value;
   options.candidates = tried_configurations;
   options.poses = facts.poses.value_or(default_poses(facts));
   const std::vector<Observation> found = observe_problem(problem, options, monitor);
-  if (!found.front().practical) throw CannotDo("the planned parameters cannot be identified");
+  const Observation& seen = found.front();
+  if (!seen.practical) throw CannotDo("the planned parameters cannot be identified");
+  std::vector<std::string> held;
+  if (!facts.camera || facts.arm) return held;
+  for (const Dependency& dependency : seen.identifiability.dependencies)
+    held.push_back(seen.parameters[std::size_t(dependency.dropped)].name);
+  return held;
 }
 
 /// A place that is inside none of the robot's bodies, be they in millimetres.
 InitPlace far_away(const InitRobot& robot) {
   const double far = std::min(300 * robot.reach, 900.0);
-  return {{far, 0, far}, true, {}, {}};
+  return {.position = {far, 0, far}};
 }
 
 /// Looks at the bodies of the robot, if its meshes are there; why not, else nothing.
@@ -170,23 +238,31 @@ std::string left_out_note(const InitObstacle& obstacle, const std::string& text,
                      line_of(text, line));
 }
 
-/// The first place from which a plan can be made; empty, and why, if there is none.
+/// The first stand from which a plan with all parameters can be made, else with most; empty, and why, if there is none.
 std::string place_instrument(const InitFacts& facts, const InitRobot& robot, InitPlace& place, const fs::path& file,
                              const Monitor& monitor) {
-  const std::vector<Eigen::Vector3d> candidates = places(facts, robot);
-  for (std::size_t i = 0;; ++i) {
-    place.position = candidates[i];
-    const bool last = i + 1 == candidates.size();
+  std::optional<InitPlace> best;
+  std::exception_ptr inside;
+  std::string why;
+  for (const Stand& stand : stands(facts, robot)) {
+    place.position = stand.position;
+    place.view = stand.view;
+    place.held.clear();
     try {
-      try_out(init_text(facts, robot, place), file, facts, monitor);
-      return {};
+      place.held = try_out(init_text(facts, robot, place), file, facts, monitor);
+      if (!best || place.held.size() < best->held.size()) best = place;
+      if (best->held.empty()) break;
     } catch (const StationInside&) {
-      if (last) throw;
+      inside = std::current_exception();
     } catch (const CannotDo& error) {
       if (monitor.should_stop()) throw;
-      if (last) return error.what();
+      why = error.what();
     }
   }
+  if (!best && why.empty()) std::rethrow_exception(inside);
+  if (!best) return why;
+  place = *best;
+  return {};
 }
 
 /// Limits so wide that they were not meant as radians.
@@ -244,6 +320,10 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
     if (!obstacle || (obstacle->is_floor() && facts.floor)) throw CannotDo(why);
     place.left_out.push_back(*obstacle);
   }
+  if (!place.held.empty())
+    result.notes.push_back(
+        fmt::format("no motion of this arm separates {} from the other parameters: held at the values in the file",
+                    fmt::join(place.held, ", ")));
   if (!no_home.empty()) result.notes.push_back("reachability of poses is not checked: " + no_home);
   if (facts.files_beside) result.expanded = expanded_robot(facts, robot, file);
   result.text = init_text(facts, robot, place, result.expanded.file.filename());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "posewright/model/placement.hpp"
 #include "posewright/support/json.hpp"
 
 namespace posewright {
@@ -30,7 +31,8 @@ std::string vector(const Eigen::Vector3d& v) {
 
 std::string angles(const Eigen::Vector3d& rpy) {
   const auto one = [](double angle) {
-    const double rounded = std::round(angle * in_degrees * 100) / 100 + 0.0;
+    const double degrees = std::round(angle * in_degrees * 100) / 100 + 0.0;
+    const double rounded = degrees == -180 ? 180 : degrees;
     return rounded == 0 ? std::string("0") : fmt::format("\"{:g} deg\"", rounded);
   };
   return fmt::format("[{}, {}, {}]", one(rpy.x()), one(rpy.y()), one(rpy.z()));
@@ -44,16 +46,18 @@ Eigen::Vector3d turn_z_to(const Eigen::Vector3d& axis) {
   return {axis.z() > 0 ? 0 : 2 * quarter, 0, 0};
 }
 
-Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
+/// Frame with z along a direction and y as far down as it can be; along the vertical, x is that of the base.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& z) {
+  const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d x = across.norm() > 1e-6 ? across.normalized() : Eigen::Vector3d::UnitX();
+  Eigen::Matrix3d R;
+  R << x, z.cross(x), z;
+  return R;
 }
 
 /// A point before the flange: across it at an angle, and out from it.
 Eigen::Vector3d before_flange(const Eigen::Vector3d& outward, double across, double angle, double out) {
-  const Eigen::Matrix3d R = rotation(turn_z_to(outward));
-  return R * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), out);
+  return rotation_of_rpy(turn_z_to(outward)) * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), out);
 }
 
 std::string schema_line(const std::string& schema) {
@@ -118,12 +122,10 @@ std::string tracker_text(const InitRobot& robot, const InitPlace& place) {
              vector(place.position));
 }
 
-/// The board on the table, its columns across the robot's view; points face up, so the board's z, which goes into it,
-/// points down.
+/// The board's z goes into it, so it is along the view of a camera that looks straight at it.
 std::string camera_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
   const BoardFacts& board = facts.board;
   const Eigen::Vector3d middle(0.5 * (board.columns - 1) * board.spacing, 0.5 * (board.rows - 1) * board.spacing, 0);
-  const Eigen::Vector3d out = turn_z_to(robot.outward), down(std::numbers::pi, 0, 0);
   std::string text = fmt::format(
       "\n# 2. Instrument: camera {} and a board of {} x {} points. {}\n# Lens: {}.\n# Angles of view {:.1f} x {:.1f} "
       "deg. "
@@ -132,18 +134,15 @@ std::string camera_text(const InitFacts& facts, const InitRobot& robot, const In
       facts.on_hand ? "The camera is on the hand, the board stands in the cell."
                     : "The camera stands in the cell, the board is on the hand.",
       facts.lens.source, facts.lens.horizontal_view() * in_degrees, facts.lens.vertical_view() * in_degrees);
-  Eigen::Vector3d camera_at, camera_rpy, board_at, board_rpy;
-  if (facts.on_hand) {
-    camera_at = before_flange(robot.outward, 0.06, std::numbers::pi / 2, robot.face + 0.03), camera_rpy = out;
-    board_at = place.position - rotation(down) * middle, board_rpy = down;
-  } else {
-    // Looks back at the robot, x to the right.
-    const double yaw = std::atan2(-place.position.y(), -place.position.x());
-    camera_at = place.position, camera_rpy = {-std::numbers::pi / 2, 0, yaw - std::numbers::pi / 2};
-    // Points face away from the flange, so the board's z points at it.
-    const Eigen::Vector3d in = turn_z_to(-robot.outward);
-    board_at = before_flange(robot.outward, 0, 0, robot.face + 0.05) - rotation(in) * middle, board_rpy = in;
-  }
+  // Camera and board face each other: the frame of the mounted one is seen from the tip, that of the other from the
+  // base.
+  const Eigen::Matrix3d mounted = rotation_of_rpy(turn_z_to(facts.on_hand ? robot.outward : -robot.outward));
+  const Eigen::Matrix3d standing = frame_along(place.view);
+  const Eigen::Vector3d mount = mounted_at(facts, robot);
+  const Eigen::Vector3d camera_at = facts.on_hand ? mount : place.position;
+  const Eigen::Vector3d board_at = facts.on_hand ? place.position - standing * middle : mount - mounted * middle;
+  const Eigen::Vector3d camera_rpy = rpy_of(facts.on_hand ? mounted : standing);
+  const Eigen::Vector3d board_rpy = rpy_of(facts.on_hand ? standing : mounted);
   return text + fmt::format(
                     "  mount: {}\n  camera:\n    focal: [{}, {}]\n    centre: [{:g}, {:g}]\n    size: [{}, {}]\n"
                     "    distortion: [0, 0, 0, 0, 0]\n"
@@ -157,8 +156,10 @@ std::string camera_text(const InitFacts& facts, const InitRobot& robot, const In
                     0.5 * facts.lens.height, facts.lens.width, facts.lens.height,
                     facts.on_hand ? "From the tip, z along the view" : "From the base, z along the view",
                     vector(camera_at), angles(camera_rpy),
-                    facts.on_hand ? "it lies face up" : "it faces away from the flange", board.rows, board.columns,
-                    length(board.spacing), vector(board_at), angles(board_rpy));
+                    !facts.on_hand         ? "it faces away from the flange"
+                    : place.view.z() == -1 ? "it lies face up"
+                                           : "it faces the hand",
+                    board.rows, board.columns, length(board.spacing), vector(board_at), angles(board_rpy));
 }
 
 std::string sight_text(const InitFacts& facts) {
@@ -168,10 +169,7 @@ std::string sight_text(const InitFacts& facts) {
            "    range: [\"0.8 m\", \"30 m\"]\n"
            "    # If nobody turns the reflectors towards the tracker at each pose, say where they face:\n"
            "    # acceptance: \"30 deg\"\n    # normals: {\"*\": [0, 0, 1]}\n";
-  // From where the board fills half of the image to where its points are some 12 px apart.
-  const double size = facts.board.spacing * (std::max(facts.board.rows, facts.board.columns) - 1);
-  const double nearest = 1.2 * size * facts.lens.focal / std::min(facts.lens.width, facts.lens.height);
-  const double farthest = std::max(3 * nearest, std::min(facts.board.spacing * facts.lens.focal / 12, 5 * nearest));
+  const auto [nearest, farthest] = sight_range(facts);
   return fmt::format(
       "  line_of_sight:\n"
       "    range: [{}, {}]   # from where the board fills the image to where a corner finder still finds it\n"
@@ -264,7 +262,17 @@ std::string cell_text(const InitFacts& facts, const InitRobot& robot, const Init
   return text + sight_text(facts);
 }
 
-std::string variants_text(const InitFacts& facts) {
+/// Parameters that this arm's motions do not separate from the others.
+std::string held_text(const InitPlace& place) {
+  std::string names;
+  for (const std::string& name : place.held) names += (names.empty() ? "" : ", ") + quoted(name);
+  if (names.empty()) return names;
+  return fmt::format(
+      "    # No motion of this arm separates these from the others: measure them by other means.\n    fixed: [{}]\n",
+      names);
+}
+
+std::string variants_text(const InitFacts& facts, const InitPlace& place) {
   std::string text = "\n# 4. Plan: what is to be identified, and by how many poses.\nvariants:\n";
   if (!facts.camera)
     return text +
@@ -274,7 +282,8 @@ std::string variants_text(const InitFacts& facts) {
   return text +
          "  hand_eye:                            # where the camera is; the arm is taken as it is\n"
          "    parameters: [\"camera.?\", \"camera.r?\"]\n"
-         "    nuisance: [\"board.*\"]\n"
+         "    nuisance: [\"board.*\"]\n" +
+         held_text(place) +
          "  hand_eye_and_arm:                    # the arm's geometric parameters too: posewright plan --variant\n"
          "    parameters: auto\n"
          "    nuisance: [\"board.*\", \"camera.?\", \"camera.r?\"]\n"
@@ -304,6 +313,18 @@ std::string design_text(const InitFacts& facts) {
 
 }  // namespace
 
+Eigen::Vector3d mounted_at(const InitFacts& facts, const InitRobot& robot) {
+  if (facts.on_hand) return before_flange(robot.outward, 0.06, std::numbers::pi / 2, robot.face + 0.03);
+  return before_flange(robot.outward, 0, 0, robot.face + 0.05);
+}
+
+std::pair<double, double> sight_range(const InitFacts& facts) {
+  const BoardFacts& board = facts.board;
+  const double size = board.spacing * (std::max(board.rows, board.columns) - 1);
+  const double nearest = 1.2 * size * facts.lens.focal / std::min(facts.lens.width, facts.lens.height);
+  return {nearest, std::max(3 * nearest, std::min(board.spacing * facts.lens.focal / 12, 5 * nearest))};
+}
+
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
   if (facts.no_floor) return std::nullopt;
   // Rounded down: a plane that cuts the foot of the robot would forbid nothing less.
@@ -321,7 +342,7 @@ std::string init_text(const InitFacts& facts, const InitRobot& robot, const Init
              facts.robot.filename().string()) +
          robot_text(facts, robot, expanded) +
          (facts.camera ? camera_text(facts, robot, place) : tracker_text(robot, place)) +
-         cell_text(facts, robot, place) + variants_text(facts) + design_text(facts);
+         cell_text(facts, robot, place) + variants_text(facts, place) + design_text(facts);
 }
 
 }  // namespace posewright

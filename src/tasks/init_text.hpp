@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posewright/model/propose_chain.hpp"
@@ -48,8 +49,10 @@ struct InitObstacle {
 /// Place of the instrument or its target, and presence of a cell.
 struct InitPlace {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d view{0, 0, -1};   ///< unit, base frame: from the camera to the board
+  std::vector<std::string> held{};  ///< parameters of the hand-eye variant that no motion separates from the others
   bool cell = true;
-  std::string no_cell;  ///< why there is none
+  std::string no_cell{};  ///< why there is none
   /// Collision-free home, one value per joint; empty: no motions are searched.
   std::vector<double> home{};
   std::vector<InitObstacle> left_out{};  ///< written as comments, or ignored, so that a plan can be made
@@ -59,6 +62,13 @@ struct InitPlace {
 /// @param expanded  file beside it that xacro made; empty: the robot is named as the user did
 std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
                       const std::filesystem::path& expanded = {});
+
+/// Point of the tip's frame at which camera or board is mounted.
+Eigen::Vector3d mounted_at(const InitFacts& facts, const InitRobot& robot);
+
+/// Least and largest distance of camera and board, m: from where the board fills half of the image to where its points
+/// are some 12 px apart.
+std::pair<double, double> sight_range(const InitFacts& facts);
 
 /// Height of the floor, m in the base frame: what is said, else under the bodies that stand still; none: no floor.
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot);

@@ -1,11 +1,13 @@
 // `init` as a user meets it: a robot and an instrument in, a file that plans out; questions on a terminal alone.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -292,6 +294,40 @@ TEST(Init, PutsTheBoardWhereTheCameraOnTheHandSeesIt) {
       run_program(folder.path(), {"observe", "c.yaml", "--candidates", "50", "--variant", "hand_eye"});
   EXPECT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_THAT(seen.out, HasSubstr("6 of 6 parameters can be identified"));
+}
+
+/// Three slides and a turn about the vertical: the hand always looks up.
+std::string cart_urdf() {
+  std::string text = "<robot name='cart'><link name='base_link'/>";
+  std::string parent = "base_link";
+  for (const auto& [name, type, axis, range] :
+       {std::array{"px", "prismatic", "1 0 0", "0.3"}, std::array{"py", "prismatic", "0 1 0", "0.3"},
+        std::array{"pz", "prismatic", "0 0 1", "0.3"}, std::array{"rz", "revolute", "0 0 1", "3.2"}}) {
+    text += fmt::format(
+        "<link name='{0}_link'/><joint name='{0}' type='{1}'><parent link='{2}'/><child link='{0}_link'/>"
+        "<axis xyz='{3}'/><limit lower='-{4}' upper='{4}' effort='1' velocity='1'/></joint>",
+        name, type, parent, axis, range);
+    parent = std::string(name) + "_link";
+  }
+  return text + "</robot>";
+}
+
+TEST(Init, StandsCameraOrBoardBeforeAHandThatTurnsAboutOneAxisAndHoldsItsHeight) {
+  const TemporaryFolder folder;
+  folder.write("robot.urdf", cart_urdf());
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--fixed-camera"}, {}, {"--fixed-camera", "--at", "0,0,0.8"}}) {
+    std::vector<std::string> all = {"robot.urdf", "--camera", "realsense-d435", "--force"};
+    all.insert(all.end(), words.begin(), words.end());
+    const ProgramRun run = init(folder, all);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("no motion of this arm separates board.z from the other parameters"));
+    EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("    fixed: [\"board.z\"]\n"));
+    const ProgramRun plan =
+        run_program(folder.path(), {"plan", "problem.yaml", "--candidates", "100", "--restarts", "1", "--force"});
+    EXPECT_EQ(plan.exit_code, 0) << plan.err;
+    EXPECT_THAT(plan.out, HasSubstr("6 parameters and 5 nuisance parameters"));
+  }
 }
 
 TEST(Init, PlacesAndLinksThatAreSaidAreTaken) {

@@ -118,8 +118,10 @@ class ListEvaluation {
       if (entry.needs_truth && entry.name != settings_.criterion &&
           (study_.discrepancy == nullptr || study_.discrepancy->group.columns == 0))
         continue;
-      if (entry.needs_test_poses && study_.first().test_points.empty()) continue;
       const bool chosen = entry.name == settings_.criterion;
+      // Every list is as accurate where no identified parameter moves the robot.
+      const bool moves = std::ranges::any_of(study_.first().test_points, [](const auto& t) { return !t.A.isZero(0); });
+      if (entry.needs_test_poses && !moves && !chosen) continue;
       if (!chosen && monitor_.should_stop()) continue;
       const Bound bound = bound_of(entry.name);
       const double phi = phi_of(*bound.measure, entry.name, study_, poses_, settings_);

@@ -1,9 +1,7 @@
 # Every package is one of Debian 12 and 13; docs/dependencies.md gives the reason for each, package.xml its key of rosdep.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED CONFIG COMPONENTS program_options)
-find_package(urdfdom REQUIRED CONFIG)
-find_package(console_bridge REQUIRED CONFIG)   # urdfdom writes to it; its CMake file brings it in version 3 alone
-find_package(tinyxml2 REQUIRED CONFIG)         # 9 and 11: its CMake file refuses any other number than its own
+find_package(tinyxml2 REQUIRED CONFIG)   # 9 and 11: its CMake file refuses any other number than its own
 find_package(yaml-cpp 0.7 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(fmt 9 REQUIRED CONFIG)
@@ -29,5 +27,4 @@ if(NOT TARGET OMPL::ompl)
 endif()
 
 set(POSEWRIGHT_LIBRARIES
-  Boost::headers OMPL::ompl urdfdom::urdfdom_model console_bridge::console_bridge tinyxml2::tinyxml2 yaml-cpp::yaml-cpp
-  nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r Threads::Threads)
+  Boost::headers OMPL::ompl tinyxml2::tinyxml2 yaml-cpp::yaml-cpp nlohmann_json::nlohmann_json fmt::fmt NLopt::nlopt fcl assimp::assimp Qhull::qhull_r Threads::Threads)

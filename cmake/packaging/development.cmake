@@ -15,8 +15,8 @@ install(FILES ${package_files} DESTINATION ${debian_dir} ${to})
 
 # What cmake/dependencies.cmake finds.
 posewright_package(libposewright-dev debian_development SECTION libdevel
-  DEPENDS "libeigen3-dev, libompl-dev, libboost-dev, libboost-program-options-dev, liburdfdom-dev, libconsole-bridge-dev, \
-libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev, libfmt-dev, libnlopt-dev, libnlopt-cxx-dev, libfcl-dev, libassimp-dev, \
+  DEPENDS "libeigen3-dev, libompl-dev, libboost-dev, libboost-program-options-dev, libtinyxml2-dev, \
+libyaml-cpp-dev, nlohmann-json3-dev, libfmt-dev, libnlopt-dev, libnlopt-cxx-dev, libfcl-dev, libassimp-dev, \
 zlib1g-dev, libqhull-dev"
   SUMMARY "library that plans poses for robot calibration (development files)"
   TEXT "Headers, static library and CMake files: find_package(posewright) gives the

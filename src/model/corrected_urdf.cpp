@@ -1,7 +1,6 @@
 #include "posewright/model/corrected_urdf.hpp"
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include <algorithm>
 #include <map>
@@ -16,19 +15,14 @@
 namespace posewright {
 namespace {
 
-/// The tags of a URDF's joints by their names.
-std::map<std::string, std::size_t> joint_tags(const std::string& text) {
+/// The tags of a URDF's joints by their names: those of the tree in the order of the file.
+std::map<std::string, std::size_t> joint_tags(const UrdfDocument& urdf) {
+  const std::vector<XmlTag> tags = xml_tags(urdf.text());
+  std::vector<std::size_t> of_joints;
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    if (tags[i].depth == 1 && tags[i].name == "joint") of_joints.push_back(i);
   std::map<std::string, std::size_t> result;
-  const std::vector<XmlTag> tags = xml_tags(text);
-  // The scanner knows no entities; tinyxml2 tells the names of the same joints in the same order.
-  tinyxml2::XMLDocument document;
-  document.Parse(text.data(), text.size());
-  const auto* joint = document.RootElement()->FirstChildElement("joint");
-  for (std::size_t i = 0; i < tags.size() && joint != nullptr; ++i) {
-    if (tags[i].depth != 1 || tags[i].name != "joint") continue;
-    result.emplace(joint->Attribute("name") == nullptr ? "" : joint->Attribute("name"), i);
-    joint = joint->NextSiblingElement("joint");
-  }
+  for (const auto& [name, joint] : urdf.tree().joints()) result.emplace(name, of_joints.at(joint.index));
   return result;
 }
 
@@ -48,8 +42,8 @@ bool may_be(std::string_view pattern, std::string_view name) {
 /// The tags of a xacro file that make the joints of its URDF, each tag one joint and each joint of one tag.
 class XacroJoints {
  public:
-  XacroJoints(const std::string& text, const std::string& file, const urdf::ModelInterface& model)
-      : text_(text), file_(file), model_(model), tags_(xml_tags(text)) {}
+  XacroJoints(const std::string& text, const std::string& file, const UrdfTree& tree)
+      : text_(text), file_(file), tree_(tree), tags_(xml_tags(text)) {}
 
   std::size_t tag_of(const std::string& joint) const {
     std::vector<std::size_t> found;
@@ -57,7 +51,7 @@ class XacroJoints {
       if (is_joint(i) && may_be(name_of(i), joint)) found.push_back(i);
     if (found.empty()) refuse(joint, "is not in this file");
     if (found.size() > 1) refuse(joint, "is in this file more than once");
-    for (const auto& [other, any] : model_.joints_)
+    for (const auto& [other, any] : tree_.joints())
       if (other != joint && may_be(name_of(found.front()), other))
         refuse(joint, "is made by the same lines as '" + other + "'");
     for (std::size_t i = found.front() + 1; i < tags_.size(); ++i)
@@ -83,19 +77,18 @@ class XacroJoints {
 
   const std::string& text_;
   std::string file_;
-  const urdf::ModelInterface& model_;
+  const UrdfTree& tree_;
   std::vector<XmlTag> tags_;
 };
 
 /// Joints beside the chain that follow one of its joints: they read it without its new offset.
 std::vector<std::string> stray_mimics(const UrdfDocument& urdf, const std::vector<CalibratedValue>& values) {
   std::vector<std::string> notes;
-  for (const auto& [name, joint] : urdf.model().joints_) {
-    const bool in_chain =
-        std::any_of(urdf.joints().begin(), urdf.joints().end(), [&, &n = name](const auto& j) { return j->name == n; });
-    if (joint->mimic == nullptr || in_chain) continue;
+  for (const auto& [name, joint] : urdf.tree().joints()) {
+    const bool in_chain = std::ranges::find(urdf.joints(), &joint) != urdf.joints().end();
+    if (!joint.mimic || in_chain) continue;
     for (const CalibratedValue& value : values)
-      if (value.name == joint->mimic->joint_name + ".offset" && value.correction() != 0.0)
+      if (value.name == joint.mimic->master + ".offset" && value.correction() != 0.0)
         notes.push_back(left_out_text(value, "joint '" + name + "' outside the chain follows this joint as before"));
   }
   return notes;
@@ -116,22 +109,22 @@ ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place,
   const ChainDescription chain = read_urdf_chain(arm, place);
   const ChainCorrection correction = chain_correction(chain, convention, values);
   ChangedJoints result;
-  const auto change = [&](const urdf::Joint& joint, const Eigen::Isometry3d& X) {
-    const NewOrigin origin = new_origin(isometry(joint.parent_to_joint_origin_transform), X);
+  const auto change = [&](const UrdfJoint& joint, const Eigen::Isometry3d& X) {
+    const NewOrigin origin = new_origin(joint.X_ParentJoint, X);
     if (origin.xyz || origin.rpy) result.origins.emplace_back(joint.name, origin);
   };
   std::size_t next = 0;
-  for (const auto& joint : urdf.joints())
-    if (joint->type != urdf::Joint::FIXED) change(*joint, correction.joints[next++].X);
-  const auto& last = urdf.joints().back();
-  const bool has_tip = last->type == urdf::Joint::FIXED;
-  if (has_tip) change(*last, correction.tip.X);
+  for (const UrdfJoint* joint : urdf.joints())
+    if (joint->moves()) change(*joint, correction.joints[next++].X);
+  const UrdfJoint& last = *urdf.joints().back();
+  const bool has_tip = !last.moves();
+  if (has_tip) change(last, correction.tip.X);
 
   for (const CalibratedValue& v : correction.base.by)
     result.left_out.push_back(left_out_text(v, "the pose of the base is not part of the robot"));
   if (!has_tip)
     for (const CalibratedValue& v : correction.tip.by)
-      result.left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip() + "'"));
+      result.left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip().name + "'"));
   for (const CalibratedValue& v : correction.left_out) result.left_out.push_back(left_out_text(v, reason_of(v.name)));
   if (convention == VariantSpec::Convention::frames)
     for (std::string& note : stray_mimics(urdf, values)) result.left_out.push_back(std::move(note));
@@ -144,7 +137,7 @@ CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place,
                              const std::vector<CalibratedValue>& values) {
   const UrdfDocument urdf(arm, place);
   ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
-  OriginEditor editor(urdf.text(), arm.urdf.string(), joint_tags(urdf.text()));
+  OriginEditor editor(urdf.text(), arm.urdf.string(), joint_tags(urdf));
   for (const auto& [joint, origin] : changed.origins) editor.set(joint, origin);
   return {editor.text(), std::move(changed.left_out)};
 }
@@ -155,7 +148,7 @@ CorrectedUrdf corrected_xacro(const SerialArmSpec& arm, const SourcePlace& place
   const UrdfDocument urdf(arm, place);
   ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
   const std::string text = read_xml_text(arm.urdf, 20'000'000);
-  const XacroJoints joints(text, arm.urdf.string(), urdf.model());
+  const XacroJoints joints(text, arm.urdf.string(), urdf.tree());
   std::map<std::string, std::size_t> tags;
   for (const auto& [joint, origin] : changed.origins) tags.emplace(joint, joints.tag_of(joint));
   OriginEditor editor(text, arm.urdf.string(), std::move(tags));

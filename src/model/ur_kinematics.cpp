@@ -31,17 +31,17 @@ UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, V
   UrKinematics result;
   result.text = "kinematics:\n";
   std::size_t next = 0;
-  for (const auto& joint : urdf.joints()) {
-    if (joint->type == urdf::Joint::FIXED) continue;
+  for (const UrdfJoint* joint : urdf.joints()) {
+    if (!joint->moves()) continue;
     if (next >= ur_joints.size() || !joint->name.ends_with(ur_joints[next].second))
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
                      "' does not belong to a Universal Robots arm (shoulder_pan_joint, shoulder_lift_joint, "
                      "elbow_joint, wrist_1_joint, wrist_2_joint, wrist_3_joint)");
-    if (joint->axis.x != 0 || joint->axis.y != 0 || !(joint->axis.z > 0))
+    if (joint->axis.x() != 0 || joint->axis.y() != 0 || !(joint->axis.z() > 0))
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
                      "' does not turn about z: the file is for ur_description's arms, whose joints all do (use --urdf "
                      "for this one)");
-    const Eigen::Isometry3d X = isometry(joint->parent_to_joint_origin_transform) * correction.joints[next].X;
+    const Eigen::Isometry3d X = joint->X_ParentJoint * correction.joints[next].X;
     const Eigen::Vector3d p = X.translation(), rpy = rpy_of(X.linear());
     result.text += fmt::format("  {}:\n    x: {}\n    y: {}\n    z: {}\n    roll: {}\n    pitch: {}\n    yaw: {}\n",
                                ur_joints[next].first, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, rpy.x() + 0.0,

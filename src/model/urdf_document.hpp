@@ -1,15 +1,11 @@
 #pragma once
 
-#include <urdf_model/model.h>
-#include <urdf_world/types.h>
-
-#include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "posewright/problem/problem.hpp"
-#include "urdf_lines.hpp"
+#include "urdf_tree.hpp"
 
 namespace posewright {
 
@@ -25,23 +21,19 @@ class UrdfDocument {
   static UrdfDocument whole(const SerialArmSpec& arm);
 
   const std::string& text() const { return text_; }
-  const UrdfLines& lines() const { return lines_; }
-  const urdf::ModelInterface& model() const { return *model_; }
-  const std::string& base() const { return base_; }
-  const std::string& tip() const { return tip_; }
+  const UrdfTree& tree() const { return tree_; }
+  const UrdfLink& base() const { return *base_; }
+  const UrdfLink& tip() const { return *tip_; }
   /// Joints from base to tip, fixed ones included.
-  const std::vector<urdf::JointConstSharedPtr>& joints() const { return joints_; }
+  const std::vector<const UrdfJoint*>& joints() const { return joints_; }
 
  private:
   UrdfDocument(std::string text, const std::string& name);
 
   std::string text_;
-  UrdfLines lines_;
-  urdf::ModelInterfaceSharedPtr model_;
-  std::string base_, tip_;
-  std::vector<urdf::JointConstSharedPtr> joints_;
+  UrdfTree tree_;
+  const UrdfLink *base_, *tip_;
+  std::vector<const UrdfJoint*> joints_;
 };
-
-Eigen::Isometry3d isometry(const urdf::Pose& pose);
 
 }  // namespace posewright

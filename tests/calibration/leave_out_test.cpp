@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 /// Three parallel axes between two crossed ones, as lightweight arms have them: their zeros and lengths are told apart
 /// only where the arm is folded and stretched.
-const std::vector<UrdfJoint> parallel_axes = {
+const std::vector<WrittenJoint> parallel_axes = {
     {'R', "0 0 0.128", "0 0 0", "0 0 1"},      {'R', "0 0.176 0", "0 0 0", "0 1 0"},
     {'R', "0 -0.128 0.612", "0 0 0", "0 1 0"}, {'R', "0 0 0.572", "0 0 0", "0 1 0"},
     {'R', "0 0.1157 0", "0 0 0", "0 0 1"},     {'R', "0 0 0.1157", "0 0 0", "0 1 0"}};

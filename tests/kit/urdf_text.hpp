@@ -9,18 +9,18 @@
 /// URDF of a serial chain from a list of joints; links are base, link_1, …; the last joint is fixed and ends in `tip`.
 namespace posewright {
 
-struct UrdfJoint {
+struct WrittenJoint {
   char kind;  ///< R revolute, C continuous, P prismatic
   const char* xyz;
   const char* rpy;
   const char* axis;
 };
 
-inline std::string urdf_text(const std::vector<UrdfJoint>& joints, const char* tip_xyz = "0.1 0.05 0.2") {
+inline std::string urdf_text(const std::vector<WrittenJoint>& joints, const char* tip_xyz = "0.1 0.05 0.2") {
   std::string text = "<robot name=\"chain\">\n  <link name=\"base\"/>\n";
   std::string parent = "base";
   int n = 0;
-  for (const UrdfJoint& joint : joints) {
+  for (const WrittenJoint& joint : joints) {
     const std::string child = fmt::format("link_{}", ++n);
     text += fmt::format(
         "  <link name=\"{0}\"/>\n  <joint name=\"j{1}\" type=\"{2}\"><parent link=\"{3}\"/><child link=\"{0}\"/>"
@@ -43,7 +43,7 @@ inline std::string urdf_text(const std::vector<UrdfJoint>& joints, const char* t
 
 struct NamedChain {
   const char* name;
-  std::vector<UrdfJoint> joints;
+  std::vector<WrittenJoint> joints;
   int dh_deficit = 0;  ///< Denavit–Hartenberg parameters fewer than 4R + 2P + 6: where the convention is incomplete
 };
 

@@ -1,13 +1,14 @@
 #include "tests/kit/verify_cell.hpp"
 
 #include <fcl/fcl.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+
+#include "tests/kit/plain_urdf.hpp"
 
 namespace posewright {
 namespace {
@@ -54,14 +55,6 @@ std::vector<Eigen::Vector3d> box_corners(const Eigen::Vector3d& half) {
   return corners;
 }
 
-Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.linear() =
-      Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z).toRotationMatrix();
-  X.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
-  return X;
-}
-
 }  // namespace
 
 struct CellVerifier::Implementation {
@@ -71,61 +64,56 @@ struct CellVerifier::Implementation {
     std::vector<Eigen::Vector3d> corners;
     Eigen::Isometry3d X_LinkMesh;
   };
-  urdf::ModelInterfaceSharedPtr model;
+  PlainUrdf urdf;
   std::vector<Link> links;
   std::vector<std::pair<std::shared_ptr<fcl::CollisionGeometryd>, Eigen::Isometry3d>> boxes;
   std::vector<Wall> walls;
   std::set<std::string> skipped;
 
-  Eigen::Isometry3d pose(const urdf::Link& link, const std::map<std::string, double>& joints) const {
-    if (link.parent_joint == nullptr) return Eigen::Isometry3d::Identity();
-    const urdf::Joint& joint = *link.parent_joint;
-    Eigen::Isometry3d X =
-        pose(*model->getLink(joint.parent_link_name), joints) * pose_of(joint.parent_to_joint_origin_transform);
+  Eigen::Isometry3d pose(const std::string& link, const std::map<std::string, double>& joints) const {
+    const auto above = urdf.above.find(link);
+    if (above == urdf.above.end()) return Eigen::Isometry3d::Identity();
+    const PlainUrdf::Joint& joint = above->second;
+    Eigen::Isometry3d X = pose(joint.parent, joints) * joint.X_ParentJoint;
     const auto value = joints.find(joint.name);
-    const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
     if (value == joints.end()) return X;
-    if (joint.type == urdf::Joint::PRISMATIC) X.translate(axis.normalized() * value->second);
-    else X.rotate(Eigen::AngleAxisd(value->second, axis.normalized()));
+    if (joint.type == "prismatic") X.translate(joint.axis.normalized() * value->second);
+    else X.rotate(Eigen::AngleAxisd(value->second, joint.axis.normalized()));
     return X;
   }
 
   /// Moving joints between a link and the root: a base is where it stands.
-  int moving(const urdf::Link& link) const {
-    if (link.parent_joint == nullptr) return 0;
-    return (link.parent_joint->type == urdf::Joint::FIXED ? 0 : 1) +
-           moving(*model->getLink(link.parent_joint->parent_link_name));
+  int moving(const std::string& link) const {
+    const auto above = urdf.above.find(link);
+    if (above == urdf.above.end()) return 0;
+    return (above->second.type == "fixed" ? 0 : 1) + moving(above->second.parent);
   }
 
   /// The link that moves it: joints without a value stand.
-  std::string carrier(const std::string& name, const std::map<std::string, double>& joints) const {
-    urdf::LinkConstSharedPtr link = model->getLink(name);
-    while (link->parent_joint != nullptr && joints.count(link->parent_joint->name) == 0)
-      link = model->getLink(link->parent_joint->parent_link_name);
-    return link->name;
+  std::string carrier(const std::string& link, const std::map<std::string, double>& joints) const {
+    const auto above = urdf.above.find(link);
+    if (above == urdf.above.end() || joints.count(above->second.name) > 0) return link;
+    return carrier(above->second.parent, joints);
   }
 
   bool adjacent(const Link& a, const Link& b, const std::map<std::string, double>& joints) const {
     for (const auto& [child, parent] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-      const auto link = model->getLink(child->name);
-      if (link->parent_joint != nullptr && link->parent_joint->parent_link_name == parent->name) return true;
+      const auto above = urdf.above.find(child->name);
+      if (above != urdf.above.end() && above->second.parent == parent->name) return true;
     }
     return carrier(a.name, joints) == carrier(b.name, joints);
   }
 };
 
 CellVerifier::CellVerifier(const std::filesystem::path& urdf, const std::filesystem::path& package_root)
-    : implementation_(new Implementation) {
-  implementation_->model = urdf::parseURDF(bytes_of(urdf));
-  for (const auto& [name, link] : implementation_->model->links_) {
-    if (link->collision == nullptr) continue;
-    Implementation::Link entry{name, std::make_shared<Mesh>(), {}, pose_of(link->collision->origin)};
-    if (const auto* box = dynamic_cast<const urdf::Box*>(link->collision->geometry.get())) {
-      entry.corners = box_corners(0.5 * Eigen::Vector3d(box->dim.x, box->dim.y, box->dim.z));
+    : implementation_(new Implementation{PlainUrdf(urdf), {}, {}, {}, {}}) {
+  for (const auto& [name, shape] : implementation_->urdf.collision) {
+    Implementation::Link entry{name, std::make_shared<Mesh>(), {}, shape.X_LinkShape};
+    if (shape.mesh.empty()) {
+      entry.corners = box_corners(0.5 * shape.size);
     } else {
-      const auto& mesh = dynamic_cast<const urdf::Mesh&>(*link->collision->geometry);
-      entry.corners = stl_corners(package_root / mesh.filename.substr(std::strlen("package://")));
-      for (auto& c : entry.corners) c = c.cwiseProduct(Eigen::Vector3d(mesh.scale.x, mesh.scale.y, mesh.scale.z));
+      entry.corners = stl_corners(package_root / shape.mesh.substr(std::strlen("package://")));
+      for (auto& c : entry.corners) c = c.cwiseProduct(shape.scale);
     }
     entry.mesh->beginModel();
     for (std::size_t i = 0; i < entry.corners.size(); i += 3)
@@ -164,8 +152,8 @@ double CellVerifier::nearest(const std::map<std::string, double>& joints, const 
     least = std::min(least, result.min_distance);
   };
   for (const auto& link : own.links) {
-    if (own.moving(*own.model->getLink(link.name)) == 0) continue;
-    const Eigen::Isometry3d X = own.pose(*own.model->getLink(link.name), joints) * link.X_LinkMesh;
+    if (own.moving(link.name) == 0) continue;
+    const Eigen::Isometry3d X = own.pose(link.name, joints) * link.X_LinkMesh;
     for (const Wall& wall : own.walls) {
       const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(wall.normal).normalized();
       for (const auto& corner : link.corners)
@@ -177,7 +165,7 @@ double CellVerifier::nearest(const std::map<std::string, double>& joints, const 
       if (own.adjacent(link, other, joints) || own.skipped.count(tool + " and " + other.name) > 0 ||
           own.skipped.count(other.name + " and " + tool) > 0)
         continue;
-      look(*link.mesh, X, *other.mesh, own.pose(*own.model->getLink(other.name), joints) * other.X_LinkMesh);
+      look(*link.mesh, X, *other.mesh, own.pose(other.name, joints) * other.X_LinkMesh);
     }
   }
   return least;
@@ -188,8 +176,8 @@ std::string CellVerifier::violation(const std::map<std::string, double>& joints,
   std::vector<Eigen::Isometry3d> X;
   std::vector<int> moving;
   for (const auto& link : own.links) {
-    X.push_back(own.pose(*own.model->getLink(link.name), joints) * link.X_LinkMesh);
-    moving.push_back(own.moving(*own.model->getLink(link.name)));
+    X.push_back(own.pose(link.name, joints) * link.X_LinkMesh);
+    moving.push_back(own.moving(link.name));
   }
   for (std::size_t i = 0; i < own.links.size(); ++i) {
     if (moving[i] == 0) continue;

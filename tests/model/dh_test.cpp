@@ -113,7 +113,7 @@ TEST(Conventions, NumberOfIdentifiableParametersIs4RPlus2PPlus6InEveryOne) {
   std::vector<Parameter> labels;
   for (const NamedChain& named : named_chains()) {
     int expected = 6;
-    for (const UrdfJoint& joint : named.joints) expected += joint.kind == 'P' ? 2 : 4;
+    for (const WrittenJoint& joint : named.joints) expected += joint.kind == 'P' ? 2 : 4;
     ++chains;
     with_prismatic +=
         std::any_of(named.joints.begin(), named.joints.end(), [](const auto& j) { return j.kind == 'P'; });

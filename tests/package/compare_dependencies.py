@@ -11,9 +11,9 @@ source, build = map(pathlib.Path, sys.argv[1:])
 # Key of rosdep: Debian package, as rosdep/base.yaml of ros/rosdistro has them (ompl: Debian's name of what ROS releases itself).
 ROSDEP = {
     "assimp-dev": "libassimp-dev", "eigen": "libeigen3-dev", "fmt": "libfmt-dev", "libboost-dev": "libboost-dev",
-    "libboost-program-options-dev": "libboost-program-options-dev", "libconsole-bridge-dev": "libconsole-bridge-dev",
+    "libboost-program-options-dev": "libboost-program-options-dev",
     "libfcl-dev": "libfcl-dev", "libnlopt-cxx-dev": "libnlopt-cxx-dev", "libnlopt-dev": "libnlopt-dev", "libqhull": "libqhull-dev",
-    "liburdfdom-dev": "liburdfdom-dev", "nlohmann-json-dev": "nlohmann-json3-dev", "ompl": "libompl-dev", "tinyxml2": "libtinyxml2-dev",
+    "nlohmann-json-dev": "nlohmann-json3-dev", "ompl": "libompl-dev", "tinyxml2": "libtinyxml2-dev",
     "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
 # What no find_package() names: nlopt.hpp is in a package of its own; libassimp's CMake file names libz.so.
 BESIDE = {"libnlopt-cxx-dev", "zlib1g-dev"}

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <urdf_parser/urdf_parser.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include "posewright/tasks/check_sequence.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/plain_urdf.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
@@ -249,7 +249,8 @@ TEST_P(TrajectoriesOfRealArms, OfSevenAxesKeepSoftLimitsSpeedsAndTheCell) {
   const Moves planned = wanted(route);
   // Between stops a trajectory has points of its own: those of the route come in their order.
   std::size_t next = 0;
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDFFile(urdf().string());
+  std::map<std::string, PlainUrdf::Joint> joints;
+  for (const auto& [link, joint] : PlainUrdf(urdf()).above) joints.emplace(joint.name, joint);
   const CellVerifier judge = verifier(plan);
   long states = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -257,12 +258,12 @@ TEST_P(TrajectoriesOfRealArms, OfSevenAxesKeepSoftLimitsSpeedsAndTheCell) {
         testing::Matches(testing::Pointwise(testing::DoubleNear(1e-6), planned[next]))(points[k]))
       ++next;
     for (std::size_t i = 0; i < route.names.size(); ++i) {
-      const urdf::Joint& joint = *model->getJoint(route.names[i]);
-      EXPECT_GE(points[k][i], std::max(joint.limits->lower, joint.safety->soft_lower_limit)) << joint.name;
-      EXPECT_LE(points[k][i], std::min(joint.limits->upper, joint.safety->soft_upper_limit)) << joint.name;
+      const PlainUrdf::Joint& joint = joints.at(route.names[i]);
+      EXPECT_GE(points[k][i], std::max(joint.lower, joint.soft_lower)) << joint.name;
+      EXPECT_LE(points[k][i], std::min(joint.upper, joint.soft_upper)) << joint.name;
       if (k == 0) continue;
       EXPECT_GT(times[k], times[k - 1]);
-      EXPECT_LE(std::abs(points[k][i] - points[k - 1][i]) / (times[k] - times[k - 1]), joint.limits->velocity * 1.0001);
+      EXPECT_LE(std::abs(points[k][i] - points[k - 1][i]) / (times[k] - times[k - 1]), joint.velocity * 1.0001);
     }
     if (k > 0 && states < states_asked())
       states += scan(judge, route.names, points[k - 1], points[k], GetParam().scale, 0.02);

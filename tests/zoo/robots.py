@@ -599,7 +599,7 @@ def one_joint_locked(folder):
 
 @kind
 def limits_missing(folder):
-    return Kind(arm(joint=lambda k: {"limit": ""} if k == 2 else {}).write(folder), refusal=("robot.urdf", "joint_3", "does not specify limits"))
+    return Kind(arm(joint=lambda k: {"limit": ""} if k == 2 else {}).write(folder), refusal=("robot.urdf", "joint_3", "has no <limit>"))
 
 
 @kind

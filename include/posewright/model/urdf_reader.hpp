@@ -5,7 +5,7 @@
 
 namespace posewright {
 
-/// The chain from base to tip of a URDF file, read with urdfdom. Fixed joints are merged; continuous joints get ±π; a
+/// The chain from base to tip of a URDF file, Fixed joints are merged; continuous joints get ±π; a
 /// mimic joint follows its master; a master outside the chain is a coordinate, too, whose offset and gear are those of
 /// the first joint that follows it.
 /// @param place  where the problem file names the robot, for errors about base and tip

@@ -65,6 +65,18 @@ void add_obstacles(const ObstacleFileSpec& spec, const Problem& problem, std::ve
   }
 }
 
+/// The measurement frame moves with its base, and obstacles would with it.
+void refuse_obstacles_of_moving_base(const Problem& problem) {
+  const CollisionSpec& spec = *problem.workspace.collision;
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr || (spec.obstacles.empty() && spec.obstacle_files.empty())) return;
+  if (base_moves(*arm, problem.at(arm->line)))
+    throw InputError(
+        problem.at(spec.obstacles.empty() ? spec.obstacle_files.front().line : spec.obstacles.front().line),
+        "obstacles need a base that stands, and joints between base and tip move it",
+        "links of the URDF that hang on its root");
+}
+
 }  // namespace
 
 std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip) {
@@ -81,6 +93,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
   for (const BodySpec& part : problem.workspace.collision->tool)
     shapes.push_back({part.name, part.station, last_link, BodyShape::Kind::tool, tip_frame,
                       X_FrameTip * isometry(part.placement), part.shape, problem.at(part.line)});
+  refuse_obstacles_of_moving_base(problem);
   for (const BodySpec& obstacle : problem.workspace.collision->obstacles)
     shapes.push_back({obstacle.name, obstacle.station, "", BodyShape::Kind::obstacle, 0, isometry(obstacle.placement),
                       obstacle.shape, problem.at(obstacle.line)});

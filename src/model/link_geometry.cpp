@@ -17,37 +17,48 @@ class LinkCollector {
   LinkCollector(UrdfDocument urdf, std::filesystem::path folder, const Eigen::Isometry3d& X_MeasureBase,
                 ShapesOf wanted = ShapesOf::collision)
       : urdf_(std::move(urdf)), folder_(std::move(folder)), wanted_(wanted) {
-    int frame = 0;
-    for (const UrdfJoint* joint : urdf_.joints())
-      if (joint->moves()) {
-        frame_after_[joint] = ++frame;
-        if (joint->mimic) masters_.insert(joint->mimic->master);
+    Place at{0, X_MeasureBase}, top = at;
+    const UrdfLink* highest = &urdf_.base();
+    for (const auto& step : urdf_.way()) {
+      if (!step.joint->moves()) {
+        at.X_FrameLink = at.X_FrameLink * step.origin();
+      } else {
+        if (step.backward) placed_[step.joint->child] = at;
+        at = {at.frame + 1, step.backward ? step.origin() : Eigen::Isometry3d::Identity()};
+        if (!step.backward) placed_[step.joint->child] = at;
+        moving_.insert(step.joint);
+        if (step.joint->mimic) masters_.insert(step.joint->mimic->master);
       }
-    // Above the base everything stands where zero position puts it.
-    Eigen::Isometry3d X_RootBase = Eigen::Isometry3d::Identity();
-    for (const UrdfJoint* joint = urdf_.base().above; joint != nullptr; joint = joint->parent->above)
-      X_RootBase = joint->X_ParentJoint * X_RootBase;
-    collect(urdf_.tree().root(), 0, X_MeasureBase * X_RootBase.inverse(), "", "");
+      if (step.backward) top = at, highest = step.joint->parent;
+    }
+    // Above the highest link everything stands where zero position puts it.
+    Eigen::Isometry3d X_RootHighest = Eigen::Isometry3d::Identity();
+    for (const UrdfJoint* joint = highest->above; joint != nullptr; joint = joint->parent->above)
+      X_RootHighest = joint->X_ParentJoint * X_RootHighest;
+    collect(urdf_.tree().root(), {top.frame, top.X_FrameLink * X_RootHighest.inverse()}, "", "");
   }
 
   std::vector<LinkGeometry> take() { return std::move(links_); }
 
  private:
-  void collect(const UrdfLink& link, int frame, const Eigen::Isometry3d& X_FrameLink, const std::string& parent,
-               const std::string& follower) {
+  struct Place {
+    int frame = 0;
+    Eigen::Isometry3d X_FrameLink = Eigen::Isometry3d::Identity();
+  };
+
+  void collect(const UrdfLink& link, const Place& at, const std::string& parent, const std::string& follower) {
     const UrdfTree& tree = urdf_.tree();
-    LinkGeometry geometry{link.name, parent, frame, {}, link.place.line, tree.colour(link), follower};
+    LinkGeometry geometry{link.name, parent, at.frame, {}, link.place.line, tree.colour(link), follower};
     for (UrdfShape& s : wanted_ == ShapesOf::collision ? tree.collision_shapes(link) : tree.visual_shapes(link))
-      geometry.shapes.push_back({in_folder(std::move(s.shape)), X_FrameLink * s.X_LinkShape});
+      geometry.shapes.push_back({in_folder(std::move(s.shape)), at.X_FrameLink * s.X_LinkShape});
     const bool seen = !geometry.shapes.empty();
     if (seen) links_.push_back(std::move(geometry));
     for (const UrdfJoint* joint : link.below) {
-      const auto moved = frame_after_.find(joint);
-      const Eigen::Isometry3d X_FrameJoint = X_FrameLink * joint->X_ParentJoint;
-      // The frame of a moving joint of the chain is its own; all others hang on the frame before.
-      collect(*joint->child, moved == frame_after_.end() ? frame : moved->second,
-              moved == frame_after_.end() ? X_FrameJoint : Eigen::Isometry3d::Identity(), seen ? link.name : parent,
-              moved == frame_after_.end() && follows_chain(joint) ? joint->name : follower);
+      // A joint of the way may put a link on another frame; all others hang on that of the link before.
+      const auto placed = placed_.find(joint->child);
+      collect(*joint->child,
+              placed == placed_.end() ? Place{at.frame, at.X_FrameLink * joint->X_ParentJoint} : placed->second,
+              seen ? link.name : parent, placed == placed_.end() && follows_chain(joint) ? joint->name : follower);
     }
   }
 
@@ -57,7 +68,7 @@ class LinkCollector {
       if (masters_.count(at->name) > 0) return true;
       if (!at->mimic) return false;
       at = urdf_.tree().joint(at->mimic->master);
-      if (frame_after_.count(at) > 0) return true;
+      if (moving_.count(at) > 0) return true;
     }
     return false;
   }
@@ -72,8 +83,9 @@ class LinkCollector {
   UrdfDocument urdf_;
   std::filesystem::path folder_;
   ShapesOf wanted_;
-  std::map<const UrdfJoint*, int> frame_after_;
-  std::set<std::string> masters_;  // joints that those of the chain follow, in it or not
+  std::map<const UrdfLink*, Place> placed_;  // by the way's joints that move
+  std::set<const UrdfJoint*> moving_;        // these joints
+  std::set<std::string> masters_;            // joints that those of the chain follow, in it or not
   std::vector<LinkGeometry> links_;
 };
 
@@ -87,6 +99,8 @@ std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const Sour
   return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement), ShapesOf::visual)
       .take();
 }
+
+bool base_moves(const SerialArmSpec& arm, const SourcePlace& place) { return UrdfDocument(arm, place).moves_base(); }
 
 std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file) {
   return LinkCollector(UrdfDocument(file), file.parent_path(), Eigen::Isometry3d::Identity()).take();

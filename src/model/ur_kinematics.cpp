@@ -31,9 +31,9 @@ UrKinematics ur_kinematics(const SerialArmSpec& arm, const SourcePlace& place, V
   UrKinematics result;
   result.text = "kinematics:\n";
   std::size_t next = 0;
-  for (const UrdfJoint* joint : urdf.joints()) {
+  for (const auto& [joint, backward] : urdf.way()) {
     if (!joint->moves()) continue;
-    if (next >= ur_joints.size() || !joint->name.ends_with(ur_joints[next].second))
+    if (backward || next >= ur_joints.size() || !joint->name.ends_with(ur_joints[next].second))
       throw CannotDo(arm.urdf.string() + ": joint '" + joint->name +
                      "' does not belong to a Universal Robots arm (shoulder_pan_joint, shoulder_lift_joint, "
                      "elbow_joint, wrist_1_joint, wrist_2_joint, wrist_3_joint)");

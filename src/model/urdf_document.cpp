@@ -72,17 +72,22 @@ const UrdfLink& base_of(const UrdfTree& tree, const SerialArmSpec& arm, const So
   return arm.base ? named_link(tree, arm, "base", *arm.base, place) : tree.root();
 }
 
-/// Joints from base to tip.
-std::vector<const UrdfJoint*> path(const UrdfLink& base, const UrdfLink& tip, const SourcePlace& place) {
+std::vector<const UrdfJoint*> way_to_root(const UrdfLink& link) {
   std::vector<const UrdfJoint*> joints;
-  for (const UrdfLink* link = &tip; link != &base; link = joints.back()->parent) {
-    if (link->above == nullptr)
-      throw InputError(place, "tip '" + tip.name + "' is not below base '" + base.name + "'",
-                       "name links of one branch");
-    joints.push_back(link->above);
-  }
-  std::reverse(joints.begin(), joints.end());
+  for (const UrdfJoint* joint = link.above; joint != nullptr; joint = joint->parent->above) joints.push_back(joint);
   return joints;
+}
+
+std::vector<UrdfStep> way_between(const UrdfLink& base, const UrdfLink& tip) {
+  std::vector<const UrdfJoint*> up = way_to_root(base), down = way_to_root(tip);
+  while (!up.empty() && !down.empty() && up.back() == down.back()) {
+    up.pop_back();
+    down.pop_back();
+  }
+  std::vector<UrdfStep> way;
+  for (const UrdfJoint* joint : up) way.push_back({joint, true});
+  for (auto joint = down.rbegin(); joint != down.rend(); ++joint) way.push_back({*joint, false});
+  return way;
 }
 
 }  // namespace
@@ -92,7 +97,7 @@ UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
   const SerialArmSpec grouped = with_group(tree_, arm, place);
   base_ = &base_of(tree_, grouped, place);
   tip_ = &tip_of(tree_, grouped, place);
-  joints_ = path(*base_, *tip_, place);
+  way_ = way_between(*base_, *tip_);
 }
 
 UrdfDocument::UrdfDocument(std::string text, const std::string& name)
@@ -100,6 +105,10 @@ UrdfDocument::UrdfDocument(std::string text, const std::string& name)
 
 UrdfDocument::UrdfDocument(const std::filesystem::path& file)
     : UrdfDocument(read_xml_text(file, largest_urdf), file.string()) {}
+
+bool UrdfDocument::moves_base() const {
+  return std::ranges::any_of(way_, [](const UrdfStep& step) { return step.backward && step.joint->moves(); });
+}
 
 UrdfDocument UrdfDocument::whole(const SerialArmSpec& arm) {
   return {arm.expanded ? *arm.expanded : read_xml_text(arm.urdf, largest_urdf), name_of_text(arm)};

@@ -9,11 +9,21 @@
 
 namespace posewright {
 
-/// A URDF file, parsed, and the way from the arm's base link to its tip link.
+/// A joint on the way from base to tip; backward: from its child to its parent.
+struct UrdfStep {
+  const UrdfJoint* joint = nullptr;
+  bool backward = false;
+
+  /// Origin of the joint in the direction of the way.
+  Eigen::Isometry3d origin() const { return backward ? joint->X_ParentJoint.inverse() : joint->X_ParentJoint; }
+};
+
+/// A URDF file, parsed, and the way from the arm's base link to its tip link: up to the link that both hang on, and
+/// down.
 class UrdfDocument {
  public:
   /// @param place  where the problem file names the robot
-  /// Throws InputError for an unreadable or malformed file and for links that are not there or not on one branch.
+  /// Throws InputError for an unreadable or malformed file and for links that are not there.
   UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place);
   /// All of a file that is no robot: base and tip are its root.
   explicit UrdfDocument(const std::filesystem::path& file);
@@ -24,8 +34,10 @@ class UrdfDocument {
   const UrdfTree& tree() const { return tree_; }
   const UrdfLink& base() const { return *base_; }
   const UrdfLink& tip() const { return *tip_; }
-  /// Joints from base to tip, fixed ones included.
-  const std::vector<const UrdfJoint*>& joints() const { return joints_; }
+  /// Joints from base to tip, fixed ones included; those backward come first.
+  const std::vector<UrdfStep>& way() const { return way_; }
+  /// True if a joint that moves is backward: the base moves in the robot's own root.
+  bool moves_base() const;
 
  private:
   UrdfDocument(std::string text, const std::string& name);
@@ -33,7 +45,7 @@ class UrdfDocument {
   std::string text_;
   UrdfTree tree_;
   const UrdfLink *base_, *tip_;
-  std::vector<const UrdfJoint*> joints_;
+  std::vector<UrdfStep> way_;
 };
 
 }  // namespace posewright

@@ -72,14 +72,16 @@ void bind_follower(Coordinate& master, const UrdfJoint& follower) {
 
 class ChainBuilder {
  public:
-  ChainBuilder(const SerialArmSpec& arm, const UrdfDocument& urdf)
-      : arm_(arm), tree_(urdf.tree()), path_(urdf.joints().begin(), urdf.joints().end()) {
+  ChainBuilder(const SerialArmSpec& arm, const UrdfDocument& urdf) : arm_(arm), tree_(urdf.tree()) {
+    for (const UrdfStep& step : urdf.way()) path_.insert(step.joint);
     chain_.X_MeasureBase = isometry(arm.placement);
   }
 
-  void add(const UrdfJoint& joint) {
-    move(joint);
-    if (!chain_.joints.empty()) carry(*joint.child, pending_);
+  void add(const UrdfStep& step) {
+    const UrdfJoint& joint = *step.joint;
+    if (!step.backward || !joint.moves()) pending_ = pending_ * step.origin();
+    if (joint.moves()) move(step);
+    if (!chain_.joints.empty() && !step.backward) carry(*joint.child, pending_);
   }
 
   ChainDescription finish() {
@@ -89,9 +91,9 @@ class ChainBuilder {
   }
 
  private:
-  void move(const UrdfJoint& joint) {
-    pending_ = pending_ * joint.X_ParentJoint;
-    if (!joint.moves()) return;
+  /// A joint backward stands where its child link is, and turns the other way; its origin follows.
+  void move(const UrdfStep& step) {
+    const UrdfJoint& joint = *step.joint;
     if (!joint.has_axis())
       throw InputError(joint.place, "joint '" + joint.name + "' has a type that no arm has",
                        "allowed: revolute, continuous, prismatic, fixed");
@@ -99,8 +101,8 @@ class ChainBuilder {
     result.name = joint.name;
     result.prismatic = joint.type == UrdfJoint::Type::prismatic;
     result.X_ParentJoint = pending_;
-    pending_.setIdentity();
-    result.axis = joint.axis;
+    pending_ = step.backward ? step.origin() : Eigen::Isometry3d::Identity();
+    result.axis = step.backward ? Eigen::Vector3d(-joint.axis) : joint.axis;
     if (!(result.axis.norm() > 1e-9))
       throw InputError(joint.place, "joint '" + joint.name + "' has a zero axis", "a direction is needed");
     result.axis.normalize();
@@ -182,7 +184,12 @@ class ChainBuilder {
 ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& place) {
   const UrdfDocument urdf(arm, place);
   ChainBuilder builder(arm, urdf);
-  for (const UrdfJoint* joint : urdf.joints()) builder.add(*joint);
+  if (arm.elastostatic && urdf.moves_base())
+    throw InputError({place.file, arm.elastostatic->line},
+                     "elastostatic needs a base that stands, and joints between '" + urdf.base().name + "' and '" +
+                         urdf.tip().name + "' move it",
+                     "a base above the tip");
+  for (const UrdfStep& step : urdf.way()) builder.add(step);
   ChainDescription chain = builder.finish();
   chain.robot = urdf.tree().robot();
   if (chain.coordinates.empty())

@@ -145,6 +145,7 @@ InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
   arm.base = Located<std::string>{robot.links.base, 0};
   arm.tip = Located<std::string>{robot.links.tip, 0};
   robot.chain = read_urdf_chain(arm, {facts.robot.string(), 0});
+  robot.base_moves = base_moves(arm, {facts.robot.string(), 0});
   robot.reach = reach_of(robot.chain);
   if (!(robot.reach > robot_smallest && robot.reach < robot_largest))
     throw InputError({facts.robot.string(), 0}, fmt::format("is a robot that reaches {:g} m", robot.reach),

@@ -326,7 +326,8 @@ std::pair<double, double> sight_range(const InitFacts& facts) {
 }
 
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
-  if (facts.no_floor) return std::nullopt;
+  // A floor would move with such a base.
+  if (facts.no_floor || (robot.base_moves && !facts.floor)) return std::nullopt;
   // Rounded down: a plane that cuts the foot of the robot would forbid nothing less.
   return facts.floor ? facts.floor : std::floor(robot.lowest * 1e3) / 1e3;
 }

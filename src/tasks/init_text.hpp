@@ -20,6 +20,7 @@ namespace posewright {
 struct InitRobot {
   ProposedChain links;
   ChainDescription chain;
+  bool base_moves = false;                        ///< by joints on the way to the tip
   double reach = 0.0;                             ///< m, no point of the tip is farther from the first joint
   Eigen::Vector3d outward{0, 0, 1};               ///< tip frame, unit, along an axis: where a tool points
   std::string urdf;                               ///< as the problem file names it

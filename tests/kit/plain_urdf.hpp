@@ -39,10 +39,23 @@ struct PlainUrdf {
       if (const auto* shape = e->FirstChildElement("collision"); shape != nullptr) {
         const auto* geometry = shape->FirstChildElement("geometry");
         const auto *box = geometry->FirstChildElement("box"), *mesh = geometry->FirstChildElement("mesh");
-        if (box == nullptr && mesh == nullptr) throw std::runtime_error(file.string() + ": neither box nor mesh");
+        if (box == nullptr && mesh == nullptr) continue;
         collision[e->Attribute("name")] = {origin(*shape), vector(box, "size", {0, 0, 0}),
                                            vector(mesh, "scale", {1, 1, 1}), text(mesh, "filename")};
       }
+  }
+
+  /// Pose of a link in the root; joints without a value stand at zero.
+  Eigen::Isometry3d pose(const std::string& link, const std::map<std::string, double>& joints) const {
+    const auto found = above.find(link);
+    if (found == above.end()) return Eigen::Isometry3d::Identity();
+    const Joint& joint = found->second;
+    Eigen::Isometry3d X = pose(joint.parent, joints) * joint.X_ParentJoint;
+    const auto value = joints.find(joint.name);
+    if (value == joints.end()) return X;
+    if (joint.type == "prismatic") X.translate(joint.axis.normalized() * value->second);
+    else X.rotate(Eigen::AngleAxisd(value->second, joint.axis.normalized()));
+    return X;
   }
 
  private:

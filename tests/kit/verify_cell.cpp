@@ -70,18 +70,6 @@ struct CellVerifier::Implementation {
   std::vector<Wall> walls;
   std::set<std::string> skipped;
 
-  Eigen::Isometry3d pose(const std::string& link, const std::map<std::string, double>& joints) const {
-    const auto above = urdf.above.find(link);
-    if (above == urdf.above.end()) return Eigen::Isometry3d::Identity();
-    const PlainUrdf::Joint& joint = above->second;
-    Eigen::Isometry3d X = pose(joint.parent, joints) * joint.X_ParentJoint;
-    const auto value = joints.find(joint.name);
-    if (value == joints.end()) return X;
-    if (joint.type == "prismatic") X.translate(joint.axis.normalized() * value->second);
-    else X.rotate(Eigen::AngleAxisd(value->second, joint.axis.normalized()));
-    return X;
-  }
-
   /// Moving joints between a link and the root: a base is where it stands.
   int moving(const std::string& link) const {
     const auto above = urdf.above.find(link);
@@ -153,7 +141,7 @@ double CellVerifier::nearest(const std::map<std::string, double>& joints, const 
   };
   for (const auto& link : own.links) {
     if (own.moving(link.name) == 0) continue;
-    const Eigen::Isometry3d X = own.pose(link.name, joints) * link.X_LinkMesh;
+    const Eigen::Isometry3d X = own.urdf.pose(link.name, joints) * link.X_LinkMesh;
     for (const Wall& wall : own.walls) {
       const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(wall.normal).normalized();
       for (const auto& corner : link.corners)
@@ -165,7 +153,7 @@ double CellVerifier::nearest(const std::map<std::string, double>& joints, const 
       if (own.adjacent(link, other, joints) || own.skipped.count(tool + " and " + other.name) > 0 ||
           own.skipped.count(other.name + " and " + tool) > 0)
         continue;
-      look(*link.mesh, X, *other.mesh, own.pose(other.name, joints) * other.X_LinkMesh);
+      look(*link.mesh, X, *other.mesh, own.urdf.pose(other.name, joints) * other.X_LinkMesh);
     }
   }
   return least;
@@ -176,7 +164,7 @@ std::string CellVerifier::violation(const std::map<std::string, double>& joints,
   std::vector<Eigen::Isometry3d> X;
   std::vector<int> moving;
   for (const auto& link : own.links) {
-    X.push_back(own.pose(link.name, joints) * link.X_LinkMesh);
+    X.push_back(own.urdf.pose(link.name, joints) * link.X_LinkMesh);
     moving.push_back(own.moving(link.name));
   }
   for (std::size_t i = 0; i < own.links.size(); ++i) {

@@ -25,13 +25,16 @@ struct LinkGeometry {
   std::string follower{};  ///< joint beside the chain that moves the link with one of the chain's joints; empty: none
 };
 
-/// All links with a <collision> shape, also those before the base and on branches, which hang at zero position
+/// All links with a <collision> shape, also those beside the way from base to tip, which hang at zero position
 /// (those of a follower move in truth: `follower` names it).
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 
 /// All links with a <visual> shape, as read_urdf_links; with their shapes in `shapes`.
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place);
+
+/// True if joints on the way from base to tip move the base in the robot's own root.
+bool base_moves(const SerialArmSpec& arm, const SourcePlace& place);
 
 /// Variant for a file of surroundings, all joints at zero position, in the frame of its
 /// root.

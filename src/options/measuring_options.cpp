@@ -2,6 +2,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/problem/design_specs.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compare_problem.hpp"
@@ -153,11 +154,10 @@ const OptionTable<NextOptions>& next_options() {
     t.of_program("watch", "",
                  "repeat whenever the file grows, until the requirement is met, the curve is flat, or Ctrl-C");
     t.text("variant", "V", "model variant to fit (design: variant, else the first)", &N::variant);
-    t.row({"criterion", "NAME",
-           "criterion for the next poses: " + criterion_names() + " (the problem's; else o1, later test_pose)"},
+    t.row({"criterion", "NAME", "criterion for the next poses: " + criterion_names() + ", auto (the problem's)"},
           [](N& o, const GivenOption& given) {
             o.criterion = given.text();
-            require_known(o.criterion, "auto", {}, {});
+            if (o.criterion != automatic_criterion) require_known(o.criterion, "auto", {}, {}, automatic_criterion);
           });
     t.row({"no-prior", "", "fit without manufacturing tolerances as prior knowledge", OptionKind::flag},
           [](N& o, const GivenOption&) { o.prior = Prior::none; });

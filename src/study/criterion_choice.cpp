@@ -97,8 +97,9 @@ std::vector<TestPoint> test_points_at_candidates(const Problem& problem, const C
 
 std::string choose_criterion(const Problem& problem, Study& study, Settings& settings) {
   Variant& variant = study.first();
-  if (!settings.criterion_stated && variant.effect != nullptr) return choose_accuracy(problem, study, settings);
-  if (settings.criterion_automatic) return choose_bias(problem, study, settings);
+  if (settings.criterion_automatic)
+    return variant.effect != nullptr ? choose_accuracy(problem, study, settings)
+                                     : choose_bias(problem, study, settings);
   if (!find_criterion(settings.criterion)->needs_test_poses || !variant.test_points.empty()) return {};
   variant.test_points = test_points_at_candidates(problem, study.configurations, variant, variant.test_places);
   return fmt::format("Accuracy counts at {} of the candidates.", variant.test_points.size());

@@ -6,9 +6,8 @@
 namespace posewright {
 namespace {
 
-// Columns of an assumed effect make each candidate several times as costly, and more of them gain little: what the
-// robot's effect is like is not known so well.
-constexpr int candidates_with_effect = 700, restarts_with_effect = 2;
+// Columns of an assumed effect make each candidate several times as costly, and more of them gain little.
+constexpr int candidates_with_effect = 3000, restarts_with_effect = 2;
 
 std::vector<DesignSpec::Weighted> variants_of(const Problem& problem, bool several) {
   const DesignSpec& design = problem.design;
@@ -64,7 +63,6 @@ Settings settings_of(const Problem& problem, const RunOptions& run) {
   Settings s;
   s.criterion_automatic = design.criterion.value == automatic_criterion;
   s.criterion = s.criterion_automatic ? "o1" : design.criterion.value;
-  s.criterion_stated = design.criterion.line != 0 && !s.criterion_automatic;
   s.method = design.method.value;
   require_known(s.criterion, s.method, problem.at(design.criterion.line), problem.at(design.method.line),
                 automatic_criterion);

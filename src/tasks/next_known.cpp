@@ -65,10 +65,9 @@ void KnownSoFar::settle() {
   settings_ = settings_of_search(fit_.problem, options_, std::move(measured));
   const DesignSpec& design = nominal_.design;
   const std::string& named = options_.criterion.empty() ? design.criterion.value : options_.criterion;
-  settings_.criterion_stated =
-      named != automatic_criterion && (!options_.criterion.empty() || design.criterion.line != 0);
-  settings_.criterion = named == automatic_criterion ? "o1" : named;
-  require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {});
+  settings_.criterion_automatic = named == automatic_criterion;
+  settings_.criterion = settings_.criterion_automatic ? "o1" : named;
+  require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {}, automatic_criterion);
   const CriterionEntry& entry = *find_criterion(settings_.criterion);
   if (entry.several_variants || (entry.needs_truth && !settings_.truth.value.empty()))
     throw CannotDo("next supports only criteria of a single variant: criterion '" + settings_.criterion +

@@ -72,9 +72,8 @@ class NextRun {
 
   void choose_criterion() {
     result_.criterion = known_.settings().criterion;
-    result_.criterion_stated = known_.settings().criterion_stated;
     const bool places = result_.places > 0;
-    if (!known_.settings().criterion_stated && places && known_.determined() && result_.smallest &&
+    if (known_.settings().criterion_automatic && places && known_.determined() && result_.smallest &&
         result_.measured >= enough_to_predict * *result_.smallest)
       result_.criterion = "test_pose";
     if (find_criterion(result_.criterion)->needs_test_poses && !places)

@@ -46,7 +46,7 @@ class WorkspaceProofs : public testing::Test {
                                                     "noise: {position: 0.1 mm, rotation: 1 deg}}" +
                                                     more + "}\nvariants:\n  only: {parameters: [" + parameters +
                                                     "]}\nworkspace: {joints: {margin: " + margin + "}" + workspace +
-                                                    "}\ndesign: {variant: only, poses: 6, candidates: 300}\n"));
+                                                    "}\ndesign: {variant: only, criterion: o1, poses: 6, candidates: 300}\n"));
   }
   /// The best of the places on a grid of both joints' limits is below what no plan exceeds, and not far.
   static void expect_best_of_a_grid_below(const Problem& problem, const Plan& plan, int steps,

@@ -55,8 +55,8 @@ std::string cell_problem(const std::filesystem::path& urdf, double s) {
          ", 0.2], station: A}\n" +
          "  line_of_sight: {visible: all, range: [0.3, 20], elevation: [-60 deg, 77 deg], acceptance: 80 deg, "
          "normals: {\"*\": [0, 0, 1]}}\n" +
-         "design: {poses: 12, candidates: " + std::to_string(int(setting("POSEWRIGHT_CANDIDATES", 150))) +
-         ", restarts: 1, method: exchange}\n";
+         "design: {criterion: o1, poses: 12, candidates: " +
+         std::to_string(int(setting("POSEWRIGHT_CANDIDATES", 150))) + ", restarts: 1, method: exchange}\n";
 }
 
 TEST_P(CellOfRealArm, PosesAndMotionsHoldWhenOtherCodeLooksAtThem) {

@@ -54,8 +54,8 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
   const int n = GetParam(), poses = 6;
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(n));
-  const Problem problem =
-      read_problem(folder.write("p.yaml", planar_problem(n, "{poses: 6, candidates: 4000, method: auto}")));
+  const Problem problem = read_problem(
+      folder.write("p.yaml", planar_problem(n, "{criterion: o1, poses: 6, candidates: 4000, method: auto}")));
   DesignEdits options;
   options.proof.gap = 5e-5;
   const Plan plan = planned(problem, options);
@@ -148,8 +148,8 @@ TEST(Design, MinimumDistanceAndLimitedRepeatsHold) {
 
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));
-  const Problem planar = read_problem(
-      folder.write("p.yaml", planar_problem(2, "{poses: 9, candidates: 4, repeats: 3, method: exchange}")));
+  const Problem planar = read_problem(folder.write(
+      "p.yaml", planar_problem(2, "{criterion: o1, poses: 9, candidates: 4, repeats: 3, method: exchange}")));
   const Plan plan = plan_problem(planar, {}, Monitor{});
   std::map<int, int> used;
   for (const PlannedPose& pose : plan.poses) ++used[*pose.candidate];
@@ -163,8 +163,9 @@ TEST(Design, PosesOfDrawnCandidatesStayApartUnlessTheyMayRepeatOrSomebodySaysOth
   folder.write("planar.urdf", planar_urdf(2));
   // Few places carry all information: a platform that slides (shares of its ranges) and an arm that turns (rad).
   for (const bool arm : {false, true}) {
-    Problem problem = arm ? read_problem(folder.write("p.yaml", planar_problem(2, "{poses: 20, candidates: 3000}")))
-                          : example("delta/problem.yaml");
+    Problem problem =
+        arm ? read_problem(folder.write("p.yaml", planar_problem(2, "{criterion: o1, poses: 20, candidates: 3000}")))
+            : example("delta/problem.yaml");
     const auto coordinates = pose_coordinates(problem);
     // In the coordinate that tells them apart best, of the two poses that are most alike.
     const auto nearest = [&](const Plan& plan) {
@@ -208,8 +209,9 @@ TEST(Design, AProvedOptimumIsOneOfThePlansThatKeepTheirPosesApart) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_urdf(2));
   const auto summary = [&](const std::string& more) {
-    const Problem problem = read_problem(
-        folder.write("p.yaml", planar_problem(2, "{poses: 4, candidates: 40, method: branch_and_bound" + more + "}")));
+    const Problem problem = read_problem(folder.write(
+        "p.yaml",
+        planar_problem(2, "{criterion: o1, poses: 4, candidates: 40, method: branch_and_bound" + more + "}")));
     const Plan plan = plan_problem(problem, {}, Monitor{});
     EXPECT_TRUE(plan.proved_optimal);
     return plan_summary(plan);
@@ -349,21 +351,22 @@ TEST(Design, TestPosesFromAFileAreThoseWrittenInTheProblem) {
   for (const std::string how :
        {"at: [[10 deg, 40 deg], [-60 deg, 80 deg]], weights: [1, 3]", "file: joints.csv", "file: path.csv"}) {
     const Problem problem = read_problem(folder.write(
-        "p.yaml", planar_problem(2, "{poses: 6, candidates: 300, restarts: 1, test_poses: {" + how + "}}")));
+        "p.yaml",
+        planar_problem(2, "{criterion: o1, poses: 6, candidates: 300, restarts: 1, test_poses: {" + how + "}}")));
     rho0[how] = *plan_problem(problem, {}, Monitor{}).rho0;
   }
   EXPECT_NEAR(rho0["file: joints.csv"], rho0.begin()->second, 1e-12);
   // A point can be reached with the elbow on either side; an optimal plan (M = N·I) knows all places equally well.
   EXPECT_NEAR(rho0["file: path.csv"], rho0.begin()->second, 1e-3);
-  const Problem grid = read_problem(
-      folder.write("p.yaml", planar_problem(2,
-                                            "{poses: 6, candidates: 300, restarts: 1, test_poses: {grid: "
-                                            "{lower: [0.5, -0.5, 0], upper: [1.5, 0.5, 0], counts: [3, 3, 1]}}}")));
+  const Problem grid = read_problem(folder.write(
+      "p.yaml", planar_problem(2,
+                               "{criterion: o1, poses: 6, candidates: 300, restarts: 1, test_poses: {grid: "
+                               "{lower: [0.5, -0.5, 0], upper: [1.5, 0.5, 0], counts: [3, 3, 1]}}}")));
   EXPECT_EQ(plan_problem(grid, {}, Monitor{}).test_errors.size(), 9U);
-  const Problem far =
-      read_problem(folder.write("p.yaml", planar_problem(2,
-                                                         "{poses: 6, candidates: 300, restarts: 1, test_poses: {grid: "
-                                                         "{lower: [5, 0, 0], upper: [5, 0, 0], counts: [1, 1, 1]}}}")));
+  const Problem far = read_problem(folder.write(
+      "p.yaml", planar_problem(2,
+                               "{criterion: o1, poses: 6, candidates: 300, restarts: 1, test_poses: {grid: "
+                               "{lower: [5, 0, 0], upper: [5, 0, 0], counts: [1, 1, 1]}}}")));
   EXPECT_THROW(plan_problem(far, {}, Monitor{}), CannotDo);
 }
 

@@ -78,7 +78,7 @@ class FixedPoses : public testing::Test {
   }
   std::string refusal(const std::string& fixed, const std::string& more = "") {
     try {
-      plan(fixed, "poses: 4, candidates_from: list.csv" + more);
+      plan(fixed, "criterion: o1, poses: 4, candidates_from: list.csv" + more);
       return "accepted";
     } catch (const InputError& error) {
       return error.what();
@@ -101,7 +101,8 @@ TEST_F(FixedPoses, TheRestIsTheBestOfAllWaysToFillThePlan) {
       }
   for (const char* method : {"exchange", "branch_and_bound", "auto"}) {
     SCOPED_TRACE(method);
-    const Plan found = plan(csv(fixed), fmt::format("poses: 5, candidates_from: list.csv, method: {}", method));
+    const Plan found =
+        plan(csv(fixed), fmt::format("criterion: o1, poses: 5, candidates_from: list.csv, method: {}", method));
     ASSERT_EQ(found.poses.size(), 5U);
     EXPECT_NEAR(found.log_det, best, 1e-9);
     EXPECT_LT(found.log_det, free - 0.05) << "fixed poses cost something here";
@@ -124,7 +125,7 @@ TEST_F(FixedPoses, TheRestIsTheBestOfAllWaysToFillThePlan) {
 }
 
 TEST_F(FixedPoses, PoseThatWasMeasuredBeyondALimitIsAMeasuredOne) {
-  const Problem problem = this->problem("poses: 6, candidates: 60");
+  const Problem problem = this->problem("criterion: o1, poses: 6, candidates: 60");
   const auto coordinates = pose_coordinates(problem);
   const auto file = folder_.write("measured.csv", csv({{3.0002, 1}}));
   EXPECT_THROW(read_poses(file, coordinates), InputError) << "a pose to go to keeps the limits";
@@ -139,7 +140,7 @@ TEST_F(FixedPoses, PoseThatWasMeasuredBeyondALimitIsAMeasuredOne) {
 }
 
 TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
-  const Problem problem = this->problem("poses: 6, candidates: 60");
+  const Problem problem = this->problem("criterion: o1, poses: 6, candidates: 60");
   DesignEdits options;
   const auto coordinates = pose_coordinates(problem);
   options.fixed = read_poses(folder_.write("fixed.csv", csv({{0.2, 0.3}, {0.1, 0.4}})), coordinates);
@@ -161,7 +162,8 @@ TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
 }
 
 TEST_F(FixedPoses, OfAMarkedListThoseThatAreMarked) {
-  const Plan found = plan("pose,q1,q2,fixed\n1,0.2,0.3,no\n2,0.1,0.4,yes\n3,1,1,no\n", "poses: 4, candidates: 60");
+  const Plan found =
+      plan("pose,q1,q2,fixed\n1,0.2,0.3,no\n2,0.1,0.4,yes\n3,1,1,no\n", "criterion: o1, poses: 4, candidates: 60");
   ASSERT_EQ(found.poses.size(), 4U);
   EXPECT_EQ(std::count_if(found.poses.begin(), found.poses.end(), [](const auto& p) { return p.fixed; }), 1);
   EXPECT_EQ(found.poses[0].configuration[0].value, 0.1);
@@ -194,9 +196,9 @@ TEST_F(FixedPoses, WhatCannotBeFixedIsToldWithFileAndLine) {
 TEST_F(FixedPoses, APoseThatTheCellForbidsIsRefusedWithTheReason) {
   folder_.write("planar.urdf", urdf);
   folder_.write("fixed.csv", "q1,q2\n1,1\n0.7,-0.2\n");
-  const Problem walled =
-      read_problem(folder_.write("p.yaml", start + "workspace: {tool: {x: [-3 m, 1.5 m]}}\n" +
-                                               "design: {poses: 4, candidates: 60, fixed: fixed.csv}\n"));
+  const Problem walled = read_problem(
+      folder_.write("p.yaml", start + "workspace: {tool: {x: [-3 m, 1.5 m]}}\n" +
+                                  "design: {criterion: o1, poses: 4, candidates: 60, fixed: fixed.csv}\n"));
   try {
     plan_problem(walled, {}, Monitor{});
     FAIL() << "accepted";
@@ -206,7 +208,7 @@ TEST_F(FixedPoses, APoseThatTheCellForbidsIsRefusedWithTheReason) {
 }
 
 TEST_F(FixedPoses, PosesToJudgeByDoNotContainThem) {
-  const Problem problem = this->problem("poses: 5, candidates: 60, fixed: fixed.csv");
+  const Problem problem = this->problem("criterion: o1, poses: 5, candidates: 60, fixed: fixed.csv");
   folder_.write("fixed.csv", csv({{0.2, 0.3}}));
   const Plan found = plan_problem(problem, {}, Monitor{});
   const Plan judges = plan_validation(problem, {}, found, 2, Monitor{});

@@ -40,7 +40,7 @@ measurement:
 variants:
   lengths_and_offsets:
     parameters: [q2.x, target.target.x, q1.offset, q2.offset]
-design: {poses: 6, candidates: 6000}
+design: {criterion: o1, poses: 6, candidates: 6000}
 )";
 
 TEST(KnownAnswers, Planar2RReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
@@ -87,7 +87,7 @@ TEST(KnownAnswers, Planar2RTestPoseErrorFollowsTheFormula) {
   folder.write("planar.urdf", planar_2r);
   std::string text = planar_problem;
   text.replace(
-      text.find("design: {poses: 6, candidates: 6000}"), 36,
+      text.find("design: {criterion: o1, poses: 6, candidates: 6000}"), 51,
       "design: {poses: 5, candidates: 300, restarts: 2, criterion: test_pose, test_poses: {at: [[0.3, 0.7]], point: "
       "[0, 0, 0]}}");
   // Measured as a position of the tip, so that the second link's length is the tool's.

@@ -38,11 +38,13 @@ class ListedCandidates : public testing::Test {
     folder_.write("planar.urdf", urdf);
     return read_problem(folder_.write("p.yaml", start + "design: " + design + "\n"));
   }
-  Plan plan(const std::string& csv, const std::string& design = "{poses: 3, candidates_from: list.csv}") {
+  Plan plan(const std::string& csv,
+            const std::string& design = "{criterion: o1, poses: 3, candidates_from: list.csv}") {
     folder_.write("list.csv", csv);
     return plan_problem(problem(design), {}, Monitor{});
   }
-  std::string refusal(const std::string& csv, const std::string& design = "{poses: 3, candidates_from: list.csv}") {
+  std::string refusal(const std::string& csv,
+                      const std::string& design = "{criterion: o1, poses: 3, candidates_from: list.csv}") {
     try {
       plan(csv, design);
       return "accepted";
@@ -101,7 +103,7 @@ TEST_F(ListedCandidates, WhatIsBeyondTheLimitsIsRejectedAndNamed) {
 
 TEST_F(ListedCandidates, WhatWasMeasuredWasThereWhateverTheLimitsSay) {
   const std::string rows = "0,1.5,1,1\n0.1,1.2,1,1\n0.2,-2.5,1,1\n0.3,0.5,1,1\n";
-  const Plan found = plan("q1,q2,T1.x,T1.y\n" + rows, "{poses: 4, candidates_from: list.csv}");
+  const Plan found = plan("q1,q2,T1.x,T1.y\n" + rows, "{criterion: o1, poses: 4, candidates_from: list.csv}");
   EXPECT_EQ(found.statistics.feasible, 4);
   EXPECT_TRUE(found.statistics.rejected.empty());
   ASSERT_EQ(found.statistics.notes.size(), 1U);

@@ -154,6 +154,20 @@ TEST_F(NextPosesOfAnArm, TheNextPoseIsTheBestOfAllCandidates) {
   EXPECT_EQ(least_error.poses.front().id, 6);
 }
 
+TEST_F(NextPosesOfAnArm, TheCriterionAutoGoesByTheNumberOfPosesWhateverTheFileNames) {
+  const auto criterion = [&](const char* file, const char* named, std::size_t count) {
+    const Problem p = problem(file);
+    const std::vector<Vector2d> measured(poses.begin(), poses.begin() + std::ptrdiff_t(count));
+    return next_poses(p, among(p, readings(measured), named), Monitor{}).criterion;
+  };
+  // Four parameters, two readings a pose: two poses determine them.
+  EXPECT_EQ(criterion("", "", 2), "o1");
+  EXPECT_EQ(criterion("", "", 5), "test_pose");
+  EXPECT_EQ(criterion(", criterion: a", "", 5), "a");
+  EXPECT_EQ(criterion(", criterion: a", "auto", 5), "test_pose");
+  EXPECT_EQ(criterion(", criterion: auto", "a", 5), "a");
+}
+
 TEST_F(NextPosesOfAnArm, TheErrorIsThatOfTheDefinitionBeforeAndAfter) {
   const Problem p = problem();
   NextOptions next = among(p, readings(poses), "test_pose");

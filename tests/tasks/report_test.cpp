@@ -275,10 +275,11 @@ TEST(Report, IsCalledAsTheRobotAndLinksHaveTheirColours) {
 <link name="b"><collision><origin xyz="0.3 0 0.2"/><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
 <limit lower="-2" upper="2" velocity="1" effort="1"/></joint></robot>)");
-  const Problem problem = read_problem(folder.write(
-      "line.yaml",
-      "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement: {type: position, target: [0.5, 0, 0], device: "
-      "{type: isotropic, noise: 0.1 mm}}\nvariants: {all: {parameters: [j.offset]}}\ndesign: {poses: 3}\n"));
+  const Problem problem = read_problem(
+      folder.write("line.yaml",
+                   "posewright: 1\nrobot: {urdf: arm.urdf}\nmeasurement: {type: position, target: [0.5, 0, 0], device: "
+                   "{type: isotropic, noise: 0.1 mm}}\nvariants: {all: {parameters: [j.offset]}}\ndesign: {criterion: "
+                   "o1, poses: 3}\n"));
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
   const json report = make_report(problem, quick_report(3, 20), folder, brief).report;

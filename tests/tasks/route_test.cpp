@@ -46,7 +46,7 @@ Problem problem_of(const TemporaryFolder& folder, const std::string& parameters)
       "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}\n"
       "workspace: {collision: {self: false, obstacles: [{name: floor, plane: [0, 0, 1], at: [0, 0, -0.4]}]}}\n"
       "variants: {all: {parameters: " +
-          parameters + "}}\ndesign: {poses: 8, candidates: 60, method: greedy, restarts: 1}\n"));
+          parameters + "}}\ndesign: {criterion: o1, poses: 8, candidates: 60, method: greedy, restarts: 1}\n"));
 }
 
 RouteOptions from_home(bool replace = false) {

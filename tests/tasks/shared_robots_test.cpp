@@ -34,7 +34,7 @@ TEST_P(SharedRobots, AutomaticSubsetHas4RPlus6ParametersAndAPlanIsFound) {
           "}\n" +
           "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}\n"
           "variants: {all: {parameters: auto}}\n"
-          "design: {poses: 20, candidates: 500, restarts: 1, method: exchange}\n"));
+          "design: {criterion: o1, poses: 20, candidates: 500, restarts: 1, method: exchange}\n"));
   ObserveOptions options;
   options.candidates = 500;
   const Observation o = observe_problem(problem, options, Monitor{}).front();

@@ -413,6 +413,32 @@ TEST_F(UnmodelledEffects, AutoPlansByBiasFromHalfAsMuchAgainAsTheSmallestNumberA
   EXPECT_EQ(obeyed.criterion, "bias");
 }
 
+TEST_F(UnmodelledEffects, WithoutACriterionThePlanIsTheAutomaticOne) {
+  const auto plan_of = [&](const std::string& criterion) {
+    const Problem p = problem("", "{variant: plain, poses: 8, candidates: 100" + criterion + "}");
+    return plan_json(planned(p, {}));
+  };
+  const auto poses = [&](const std::string& criterion) {
+    return nlohmann::json::parse(plan_of(criterion))["poses"].dump();
+  };
+  EXPECT_EQ(poses(""), poses(", criterion: auto"));
+  EXPECT_THAT(plan_of(""), HasSubstr("Criterion bias, since 8 poses are enough where 2 determine"));
+}
+
+TEST_F(UnmodelledEffects, AnEffectOfNoSizeIsPlannedForByTheDeterminantWhichIsSaid) {
+  const std::string design = "{variant: short, poses: 8, candidates: 100, restarts: 2, method: exchange}";
+  Problem none = problem("{size: 1 mm}", design);
+  std::find_if(none.variants.begin(), none.variants.end(), [](const VariantSpec& v) {
+    return v.name == "short";
+  })->unmodelled->size = 0.0;
+  DesignEdits o1;
+  o1.edit("criterion", "o1");
+  const Problem plain = problem("", design);
+  const Plan chosen = planned(none, {}), plan = planned(plain, o1);
+  EXPECT_EQ(chosen.statistics.notes.back(), "Criterion o1, since the unmodelled effect has size 0.");
+  EXPECT_GT(judged(plain, planned_poses(plain, chosen).configurations).log_det, plan.log_det - 0.05);
+}
+
 TEST_F(UnmodelledEffects, AutoIsThePlanOfTheCriterionThatItNames) {
   const auto values = [&](const std::string& criterion, int poses) {
     DesignEdits options;

@@ -19,6 +19,9 @@ namespace posewright {
 /// is said.
 inline constexpr int default_candidates = 10000;
 
+/// Name in place of a criterion's: the number of poses decides.
+inline constexpr const char* automatic_criterion = "auto";
+
 /// Scale of the columns, for criteria and indices that depend on it.
 enum class Scaling { tolerance, norm, none };
 
@@ -79,7 +82,7 @@ struct DesignSpec {
   };
   std::vector<Weighted> variants;             ///< for criteria over several variants
   std::optional<Located<std::string>> truth;  ///< the variant that may be the case while another one is fitted
-  Located<std::string> criterion{"o1", 0};
+  Located<std::string> criterion{automatic_criterion, 0};
   Located<std::string> method{"auto", 0};
   std::optional<Located<int>> poses;
   bool smallest = false;  ///< poses: auto

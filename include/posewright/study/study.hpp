@@ -16,14 +16,10 @@
 
 namespace posewright {
 
-/// Name in place of a criterion's: choose_criterion() takes one.
-inline constexpr std::string_view automatic_criterion = "auto";
-
 /// The problem's design and the options of a run.
 struct Settings {
   std::string criterion, method;
-  bool criterion_stated = false;     ///< by the problem; else see choose_criterion()
-  bool criterion_automatic = false;  ///< criterion: auto; `criterion` is o1 until it is chosen
+  bool criterion_automatic = false;  ///< criterion: auto; `criterion` is o1 until choose_criterion() takes another
   int poses = 0;                     ///< 0: the smallest number that suffices
   int candidates = 0;
   bool prior = false, reserve = false;

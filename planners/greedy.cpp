@@ -17,8 +17,9 @@ int affordable_starts(const DesignTask& task, int most) {
 
 Design GreedyPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
   // Over all candidates: there is no pass afterwards that would bring back what a reduction left out.
+  const ApproximateDesign nothing_known;
   DesignTask whole = task;
-  whole.approximate = nullptr;
+  whole.approximate = &nothing_known;
   PlannerOptions affordable = options;
   if (!options.restarts_stated) affordable.restarts = affordable_starts(task, options.restarts);
   return run_restarts(whole, affordable, monitor, "greedy",

@@ -59,14 +59,44 @@ class BestOutcomes {
   long exchanges_ = 0;
 };
 
-/// Passes over all candidates for the best few outcomes of the reduced search: the result is a local optimum of the
-/// whole task.
+// Rounds of further candidates go on while one gains this much of Φ.
+constexpr double further_gain = 1e-3;
+constexpr int most_further_rounds = 8;
+
+std::size_t outcomes_to_finish(const DesignTask& task) {
+  if (promises_by_members(task)) return 1;
+  return task.criterion->smoother() == nullptr ? finished : finished_at_kinks;
+}
+
+/// Passes over all candidates: the result is a local optimum of the whole task.
+Outcome through_all(const DesignTask& task, std::vector<int> members, const Monitor& monitor) {
+  const auto state = task.criterion->start(task.candidates, std::move(members));
+  const long more = settle(*state, monitor);
+  return outcome_of(*state, more);
+}
+
+/// Exchanges with the candidates of largest derivative, as long as they gain.
+Outcome with_further(const DesignTask& task, Outcome best, const Monitor& monitor) {
+  best.exchanges = 0;
+  for (int round = 0; round < most_further_rounds && !monitor.should_stop(); ++round) {
+    const ReducedTask near(task, best.members);
+    Outcome found = through_all(near.task(), near.reduced(best.members), monitor);
+    found.members = near.original(found.members);
+    found.exchanges += best.exchanges;
+    const bool gained = found.value > best.value + further_gain;
+    best = std::move(found);
+    if (!gained) break;
+  }
+  return best;
+}
+
+/// Takes the best few outcomes of the reduced search on, among all candidates.
 void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outcome>& outcomes, int threads,
             const Monitor& monitor) {
   parallel_for(outcomes.size(), threads, [&](std::size_t i, int) {
-    const auto state = task.criterion->start(task.candidates, reduced.original(outcomes[i].members));
-    const long more = settle(*state, monitor);
-    outcomes[i] = outcome_of(*state, more);
+    outcomes[i].members = reduced.original(outcomes[i].members);
+    outcomes[i] = promises_by_members(task) ? with_further(task, std::move(outcomes[i]), monitor)
+                                            : through_all(task, std::move(outcomes[i].members), monitor);
   });
 }
 
@@ -131,7 +161,7 @@ std::vector<int> start_of_restart(const DesignTask& task, std::size_t index, Ran
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search) {
   const ReducedTask reduced(task);
-  BestOutcomes best(task.criterion->smoother() == nullptr ? finished : finished_at_kinks);
+  BestOutcomes best(outcomes_to_finish(task));
   std::mutex mutex;
   const double degree = task.criterion->function().degree();
   // A limit is there to be used, where nobody says how many starts it is for.

@@ -64,7 +64,6 @@ Configurations common(const std::vector<Variant>& variants, Configurations all) 
 }
 
 constexpr std::size_t norm_sample = 2000;
-constexpr double rough_weights = 0.05;  // of the bound
 
 /// Unit of every column: its tolerance, the inverse of its mean effect on a pose's readings (where it has none and only
 /// its tolerance is known: that), or 1.
@@ -223,8 +222,8 @@ void keep_away_from_measured(Study& study, Repeats repeats) {
 
 SearchRequest search_request(const Settings& settings, int poses) {
   SearchRequest request;
-  // Weights over the columns of an assumed effect are for starts alone.
-  if (assumes_effect(settings)) request.bound_tolerance = rough_weights;
+  // Weights over the columns of an assumed effect bound nothing.
+  request.certify = !assumes_effect(settings);
   request.criterion = settings.criterion;
   request.method = settings.method;
   request.poses = poses;

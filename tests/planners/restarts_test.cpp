@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 
 #include "planners/registry.hpp"
+#include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "tests/kit/random_blocks.hpp"
 
@@ -55,6 +57,27 @@ TEST(Restarts, GreedyStartsOnceWhereAStartTakesLongUnlessMoreAreStated) {
   EXPECT_EQ(restarts(2000, false), 10);
   EXPECT_EQ(restarts(60000, false), 1);
   EXPECT_EQ(restarts(2000, true), 10);
+}
+
+class LogDetWithoutBound : public LogDetFunction {
+ public:
+  using LogDetFunction::LogDetFunction;
+  double degree() const override { return 0; }
+};
+
+TEST(Restarts, WithoutABoundCandidatesBeyondTheFirstSampleAreTakenUp) {
+  const int columns = 8, poses = 12;
+  const BlockArray blocks = random_blocks(6000, 1, columns, 7);
+  std::vector<int> sample;
+  for (int i = 0; i < 400; ++i) sample.push_back(i * 6000 / 400);
+  const BlockArray some = blocks.subset(sample);
+  const FunctionCriterion without("without", std::make_shared<LogDetWithoutBound>(0, columns));
+  const auto criterion = make_criterion("o1", unit_data(columns));
+  const auto value = [&](const BlockArray& among, const Criterion& by) {
+    return make_planner("exchange")->plan({{&among, 0, 1}, &by, poses}, PlannerOptions{}, Monitor{}).value;
+  };
+  EXPECT_GT(value(blocks, without), value(some, *criterion) + 0.5);
+  EXPECT_NEAR(value(blocks, without), value(blocks, *criterion), 0.3);
 }
 
 }  // namespace

@@ -161,6 +161,19 @@ def shifts(problem, phi):
     return F, there, (phi ** 2).sum(1).mean()
 
 
+class WithEffect:
+    """Problem whose fit estimates an effect of this size, too."""
+
+    def __init__(self, problem, size, F, there, _):
+        columns = size * there
+        self.J = np.concatenate([problem.J, size * F], 2)
+        self.place = np.concatenate([problem.place, columns], 2)
+        self.n, self.r, self.m = self.J.shape
+        self.weak = np.eye(self.m)
+        self.weak[:problem.m, :problem.m] = problem.weak
+        self.B = np.einsum("nrk,nrl->kl", self.place, self.place) / (self.n * self.place.shape[1])
+
+
 def turns(problem):
     """Effect in each joint's reading: two waves of the joint's own angle, all joints' alike, RMS 1 along an axis."""
     pool = problem.pool
@@ -175,15 +188,18 @@ def turns(problem):
 
 
 def criteria(problem):
-    """By name; an effect's size is in units of the noise. `smooth 2` is the program's criterion bias without a truth."""
+    """By name; an effect's size is in units of the noise. `smooth 2` is the program's criterion bias without a truth,
+    `variance` its test_pose at the candidates, `estimated 2` the same for a fit that estimates the effect, too."""
     none = (np.zeros((problem.n, problem.r, 1)), np.zeros((problem.n, len(problem.there), 1)), 1.0)
     table = {"o1": Determinant(problem, False, False), "ds": Determinant(problem, False, True),
-             "variance": MeanSquare(problem, False, [(1, 0, *none)])}
+             "o1 prior": Determinant(problem, True, False), "variance": MeanSquare(problem, False, [(1, 0, *none)])}
     effects = {"smooth": shifts(problem, kernel_features(problem.pool.f, np.pi / 3, 32)),
                "shifts": shifts(problem, joint_features(problem.pool)), "turns": turns(problem)}
     for size in (1, 2):
         for name, effect in effects.items():
             table[f"{name} {size}"] = MeanSquare(problem, True, [(1, size, *effect)])
+    estimated = WithEffect(problem, 2, *effects["smooth"])
+    table["estimated 2"] = MeanSquare(estimated, False, [(1, 0, np.zeros((problem.n, problem.r, 1)), none[1], 1.0)])
     return table
 
 

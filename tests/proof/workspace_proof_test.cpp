@@ -40,13 +40,14 @@ class WorkspaceProofs : public testing::Test {
   Problem arm(const std::string& more = "", const std::string& parameters = "q1.offset, q2.offset, tool.x",
               const std::string& workspace = "", const std::string& robot = "", const std::string& margin = "0 deg") {
     folder_.write("arm.urdf", planar_arm_urdf);
-    return read_problem(folder_.write("p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + robot +
-                                                    "}\nmeasurement: {type: pose, components: [x, y], device: {type: "
-                                                    "isotropic, "
-                                                    "noise: {position: 0.1 mm, rotation: 1 deg}}" +
-                                                    more + "}\nvariants:\n  only: {parameters: [" + parameters +
-                                                    "]}\nworkspace: {joints: {margin: " + margin + "}" + workspace +
-                                                    "}\ndesign: {variant: only, criterion: o1, poses: 6, candidates: 300}\n"));
+    return read_problem(
+        folder_.write("p.yaml", "posewright: 1\nrobot: {urdf: arm.urdf" + robot +
+                                    "}\nmeasurement: {type: pose, components: [x, y], device: {type: "
+                                    "isotropic, "
+                                    "noise: {position: 0.1 mm, rotation: 1 deg}}" +
+                                    more + "}\nvariants:\n  only: {parameters: [" + parameters +
+                                    "]}\nworkspace: {joints: {margin: " + margin + "}" + workspace +
+                                    "}\ndesign: {variant: only, criterion: o1, poses: 6, candidates: 300}\n"));
   }
   /// The best of the places on a grid of both joints' limits is below what no plan exceeds, and not far.
   static void expect_best_of_a_grid_below(const Problem& problem, const Plan& plan, int steps,

@@ -67,7 +67,8 @@ struct NextRequirement {
 
 struct NextPoses {
   std::string variant;
-  /// Named by option or problem; for `auto` o1 below 1.5 times the smallest number of poses and test_pose from there on.
+  /// Named by option or problem; for `auto` o1 below 1.5 times the smallest number of poses and test_pose from there
+  /// on.
   std::string criterion;
   int measured = 0, readings = 0;   ///< poses, single readings
   int parameters = 0, told = 0;     ///< columns, and how many the readings tell without any tolerance

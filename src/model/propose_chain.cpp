@@ -24,11 +24,11 @@ bool is_called(const std::string& link, std::string_view name) {
   return link == name || link.ends_with("_" + std::string(name));
 }
 
-int joints_above(const UrdfLink& link) {
-  int count = 0;
-  for (const UrdfJoint* joint = link.above; joint != nullptr; joint = joint->parent->above)
-    count += joint->moves() ? 1 : 0;
-  return count;
+/// The last joint that moves a link; null: none.
+const UrdfJoint* mover_of(const UrdfLink& link) {
+  const UrdfJoint* joint = link.above;
+  while (joint != nullptr && !joint->moves()) joint = joint->parent->above;
+  return joint;
 }
 
 /// The only link of that name that a joint moves; null if there is none or several.
@@ -37,7 +37,7 @@ const UrdfLink* flange(const UrdfTree& tree) {
     const UrdfLink* found = nullptr;
     int count = 0;
     for (const auto& [link_name, link] : tree.links())
-      if (is_called(link_name, name) && joints_above(link) > 0) found = &link, ++count;
+      if (is_called(link_name, name) && mover_of(link) != nullptr) found = &link, ++count;
     if (count == 1) return found;
   }
   return nullptr;
@@ -46,7 +46,7 @@ const UrdfLink* flange(const UrdfTree& tree) {
 std::string ends(const UrdfTree& tree) {
   std::vector<std::string> names;
   for (const auto& [name, link] : tree.links())
-    if (link.below.empty() && joints_above(link) > 0) names.push_back(name);
+    if (link.below.empty() && mover_of(link) != nullptr) names.push_back(name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -63,7 +63,7 @@ const UrdfLink& end_of_way(const UrdfTree& tree, const UrdfLink& from, const std
       break;
     }
   }
-  if (joints_above(*link) > joints_above(from)) return *link;
+  if (mover_of(*link) != mover_of(from)) return *link;
   const std::string all = ends(tree);
   throw InputError({file, 0}, all.empty() ? "has no joint that moves" : "has several arms or ends",
                    all.empty() ? "a robot is needed" : "name one with --tip: " + all);
@@ -106,12 +106,11 @@ ProposedChain propose_chain(const SerialArmSpec& arm, const std::string& base, c
   const UrdfLink* end = tip.empty() ? nullptr : &given_link(tree, tip, "--tip", file);
   if (end == nullptr && base.empty()) end = flange(tree);
   if (end == nullptr) end = &end_of_way(tree, start, file);
-  const int joints = joints_above(*end);
-  if (base.empty() && joints == 0)
+  if (base.empty() && mover_of(*end) == nullptr)
     throw InputError({file, 0}, "has no joint that moves " + in_quotes(end->name), "another --tip");
   ProposedChain chain{base.empty() ? base_of(*end) : base, end->name, {}};
   for (const auto& [name, link] : tree.links())
-    if (name != chain.tip && joints_above(link) == joints) chain.other_tips.push_back(name);
+    if (name != chain.tip && mover_of(link) == mover_of(*end)) chain.other_tips.push_back(name);
   return chain;
 }
 

@@ -16,6 +16,7 @@ namespace posewright {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -71,7 +72,9 @@ TEST(TwoArms, AreProposedWithoutAFloorWhichWouldMoveWithTheBase) {
   EXPECT_EQ(floor_of(facts, look_at_robot(facts, "problem.yaml")), 0.1) << "somebody wants one";
   facts.floor.reset();
   facts.base = "torso";
-  EXPECT_TRUE(floor_of(facts, look_at_robot(facts, "problem.yaml")));
+  const InitRobot robot = look_at_robot(facts, "problem.yaml");
+  EXPECT_TRUE(floor_of(facts, robot));
+  EXPECT_THAT(robot.links.other_tips, ElementsAre("right_wrist_link")) << "not those of the other arm";
 }
 
 TEST(TwoArms, RefuseObstaclesThatWouldMoveWithTheBase) {

@@ -1,6 +1,6 @@
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/reliance.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text.hpp"
@@ -264,7 +264,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   if (plan.discrimination) json["discrimination"] = discrimination_json(*plan.discrimination);
   if (plan.robust) json["robust"] = robust_json(*plan.robust);
   if (plan.unmodelled) json["unmodelled"] = unmodelled_json(*plan.unmodelled);
-  if (plan.reliance) json["reliance"] = reliance_json(*plan.reliance);
+  if (plan.expected) json["expected_error"] = expected_error_json(*plan.expected);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();

@@ -6,7 +6,7 @@
 
 #include "nearest.hpp"
 #include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/reliance.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
@@ -196,15 +196,14 @@ std::string effect_text(const Plan& plan) {
 }
 
 std::string accuracy_text(const Plan& plan) {
-  std::string text;
+  std::string text = plan.expected ? expected_error_text(*plan.expected) : "";
   if (plan.rho0)
-    text +=
-        fmt::format("Predicted position error after calibration: {} (root mean square over {} test poses, worst {})\n",
-                    shown_value(*plan.rho0, "m"), plan.test_errors.size(),
-                    shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
+    text += fmt::format("By the parameters of interest alone, {}: {} (worst test pose {})\n",
+                        plan.unmodelled ? "with the effect" : "from noise", shown_value(*plan.rho0, "m"),
+                        shown_value(*std::max_element(plan.test_errors.begin(), plan.test_errors.end()), "m"));
   if (plan.turn)
     text += fmt::format("Predicted orientation error: {} (root mean square)\n", shown_value(*plan.turn, "rad"));
-  return text + effect_text(plan) + (plan.reliance ? reliance_text(*plan.reliance) : "");
+  return text + effect_text(plan);
 }
 
 std::string indices_text(const Plan& plan) {

@@ -2,6 +2,7 @@
 
 #include "calibration_parts.hpp"
 #include "document.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
 #include "posewright/results/dh_table.hpp"
 #include "posewright/tasks/model_choice.hpp"
@@ -188,6 +189,7 @@ Json figures_json(const Calibration& c) {
           {"poses_held_back", c.held_back},
           {"repeats", c.repeats},
           {"converged", c.fit.converged},
+          {"expected_error", c.expected ? expected_error_json(*c.expected) : Json(nullptr)},
           {"parameters", parameters},
           {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
           {"orientations", orientations_json(c)},

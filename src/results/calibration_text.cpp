@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calibration_parts.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright {
@@ -224,11 +225,12 @@ std::string chance_text(double probability) {
 }
 
 std::string calibration_text(const Calibration& c) {
-  return headline(c) + "\n" + frames_text(c) + parameters_text(c) +
-         (c.compensator ? compensator_text(*c.compensator) : "") + (c.platform ? platform_text(*c.platform) : "") +
-         steps_text(c) + residuals_text(c) + axes_text(c) + requirements_text(c) + predicted_poses_text(c) +
-         histogram_text(c.tests.histogram) + noise_text(c) + whiteness_text(c) + revisits_text(c) + effects_text(c) +
-         left_out_text(c) + not_in_auto_text(c) + outliers_text(c) + "Verdict: " + verdict_word(c.verdict) + ".\n";
+  return headline(c) + (c.expected ? expected_error_text(*c.expected) : "") + "\n" + frames_text(c) +
+         parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
+         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
+         requirements_text(c) + predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) +
+         whiteness_text(c) + revisits_text(c) + effects_text(c) + left_out_text(c) + not_in_auto_text(c) +
+         outliers_text(c) + "Verdict: " + verdict_word(c.verdict) + ".\n";
 }
 
 }  // namespace posewright

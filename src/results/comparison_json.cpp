@@ -1,7 +1,7 @@
 #include "document.hpp"
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/reliance.hpp"
 #include "posewright/results/comparison.hpp"
 
 namespace posewright {
@@ -32,7 +32,7 @@ Json score_json(const PlanScore& s) {
           {"largest_sigma_of", text_or_null(s.worst_parameter)},
           {"mean_sigma_per_tolerance", figure(s.mean)},
           {"rho0", value_or_null(s.rho0)},
-          {"reliance", s.reliance ? reliance_json(*s.reliance) : Json(nullptr)}};
+          {"expected_error", s.expected ? expected_error_json(*s.expected) : Json(nullptr)}};
 }
 
 Json alias_json(const VariantAlias& a) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "posewright/outputs/discrimination.hpp"
+#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/results/comparison.hpp"
 
@@ -98,23 +99,22 @@ std::string scores_text(const Comparison& c) {
   return table.text();
 }
 
-/// Errors of the plans for an incomplete variant.
-std::string reliance_text(const Comparison& c) {
-  Table table({"plan", "variant", "complete", "1 time", "2 times", "4 times"},
-              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
-  const Reliance* any = nullptr;
+/// Errors to expect of the plans.
+std::string expected_text(const Comparison& c) {
+  Table table({"plan", "variant", "from noise alone", "with an effect", "effect"},
+              {Align::left, Align::left, Align::right, Align::right, Align::right});
+  const ExpectedError* any = nullptr;
   for (const PlanScore& s : c.scores) {
-    if (!s.reliance) continue;
-    any = &*s.reliance;
-    std::vector<std::string> cells{s.plan, s.variant, shown_value(any->error, "m")};
-    for (const double error : any->with) cells.push_back(shown_value(error, "m"));
-    table.row(cells);
+    if (!s.expected) continue;
+    any = &*s.expected;
+    table.row({s.plan, s.variant, shown_value(any->by_noise, "m"), with_effect_text(*any),
+               shown_value(any->usual().size, "m")});
   }
   if (any == nullptr) return "";
   return fmt::format(
-             "\nPosition error at {} {} for a complete variant, and with a smooth unmodelled effect of 1, 2 and 4 "
-             "times the noise of a pose\n",
-             any->places, any->at_test_poses ? "test poses" : "candidates") +
+             "\nPosition error at {}, and with a smooth effect that the variant lacks (in brackets: {:g} to {:g} times "
+             "the noise of a pose)\n",
+             places_text(*any), ExpectedError::robots.front(), ExpectedError::robots.back()) +
          table.text();
 }
 
@@ -200,7 +200,7 @@ std::string worth_text(const ExtraWorth& w) {
 
 std::string comparison_text(const Comparison& c, bool aliases_in_full) {
   std::string text = headline(c) + ended_early(c) + "\n" + variants_text(c) + "\n" + efficiency_text(c) + "\n" +
-                     scores_text(c) + reliance_text(c);
+                     scores_text(c) + expected_text(c);
   if (aliases_in_full)
     for (const VariantAlias& a : c.aliases) text += alias_in_full(a);
   else text += alias_lines(c);

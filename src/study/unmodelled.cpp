@@ -29,13 +29,6 @@ constexpr std::size_t size_sample = 300, pivot_sample = 2000;
 // Of the effect's variance: what estimated parameters leave of an effect that can be told from them.
 constexpr double told_apart = 0.01;
 
-/// Residuals of columns after least squares on others.
-Eigen::MatrixXd left_beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& columns) {
-  const Eigen::VectorXd length = others.colwise().norm().cwiseMax(1e-300);
-  const Eigen::MatrixXd unit = others * length.cwiseInverse().asDiagonal();
-  return columns - unit * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(unit).solve(columns);
-}
-
 /// Parameters that somebody reckons with and that the variant neither estimates nor fixes nor could tell from those it
 /// estimates: other variants of the file estimate them, or it states their tolerance. A catalogue holds more.
 std::vector<Parameter> not_estimated(const Problem& problem, const Variant& variant, std::vector<int>& indices) {
@@ -146,6 +139,12 @@ std::shared_ptr<const EffectFeatures> enough_features(const Variant& variant, co
 }
 
 }  // namespace
+
+Eigen::MatrixXd left_beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& columns) {
+  const Eigen::VectorXd length = others.colwise().norm().cwiseMax(1e-300);
+  const Eigen::MatrixXd unit = others * length.cwiseInverse().asDiagonal();
+  return columns - unit * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(unit).solve(columns);
+}
 
 double noise_of_a_pose(const Eigen::Ref<const Eigen::MatrixXd>& A, std::size_t n) {
   return std::sqrt(3.0 * double(n) / A.squaredNorm());

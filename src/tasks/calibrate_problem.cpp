@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calibrated_error.hpp"
 #include "calibration_accuracy.hpp"
 #include "calibration_columns.hpp"
 #include "calibration_data.hpp"
@@ -90,6 +91,7 @@ class CalibrationRun {
     judge_frame();
     fill_parameters();
     fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
+    expect();
     if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic)
       fill_compensator(*arm->elastostatic, result_);
     if (options_.in_steps) identify_in_steps(fit_options);
@@ -98,6 +100,16 @@ class CalibrationRun {
   }
 
  private:
+  void expect() {
+    // Nothing else depends on a workspace that cannot be drawn from.
+    if (!campaigns_.empty()) return;
+    try {
+      result_.expected = calibrated_error(problem_, spec_, columns_, fitted_, result_, monitor_);
+    } catch (const std::runtime_error& error) {
+      result_.notes.push_back(std::string("no error is predicted: ") + error.what());
+    }
+  }
+
   /// Corrections for further use of the robot.
   Calibration estimate_alone(FitOptions& fit_options) {
     allow_for_unmodelled(fit_options);

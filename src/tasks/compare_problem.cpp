@@ -7,7 +7,7 @@
 #include "compared_plans.hpp"
 #include "extra_worth.hpp"
 #include "posewright/study/accuracy_points.hpp"
-#include "posewright/study/reliance.hpp"
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 #include "variant_alias.hpp"
@@ -87,7 +87,8 @@ class ComparisonRun {
       score.log_det = e.log_det;
       score.condition = e.condition;
       if (!monitor_.should_stop())
-        score.reliance = reliance_of(problem_, study_, variant, all, e, settings_.planner.threads);
+        score.expected =
+            expected_error(problem_, study_.configurations, variant, all, e.covariance, settings_.planner.threads);
       fill_sigma(score, columns, e);
       std::vector<double> each;
       if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, worth.errors, each);

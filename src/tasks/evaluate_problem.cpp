@@ -12,8 +12,8 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/study/discrepancy.hpp"
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
-#include "posewright/study/reliance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_plan.hpp"
@@ -71,8 +71,8 @@ class ListEvaluation {
     plan.parameters_file = parameters_of(problem);
     plan.method = "given";
     fill_judgement(plan, judgement, study_, settings_);
-    plan.reliance = reliance_of(problem, study_, study_.first(), with_measured(study_, poses_),
-                                judgement.evaluations.front(), settings_.planner.threads);
+    plan.expected = expected_error(problem, study_.configurations, study_.first(), with_measured(study_, poses_),
+                                   judgement.evaluations.front().covariance, settings_.planner.threads);
     const std::vector<double> references = score_all(result, judgement);
     const double phi = phi_of(*measure_, settings_.criterion, study_, poses_, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);

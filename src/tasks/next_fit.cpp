@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrated_error.hpp"
 #include "posewright/calibration/placement.hpp"
 #include "posewright/lists/measured_data.hpp"
-#include "posewright/model/apply_parameters.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/dense.hpp"
@@ -34,18 +34,6 @@ CalibrateOptions estimate_of(const NextOptions& options, std::string text) {
   calibrate.prior = options.prior;
   calibrate.estimate_alone = true;
   return calibrate;
-}
-
-/// The problem at these values.
-Problem at_values(Problem problem, const std::string& variant, const Calibration& found,
-                  const std::filesystem::path& data) {
-  CalibratedParameters parameters;
-  parameters.file = data;
-  parameters.variant = {variant, 0};
-  for (const EstimatedValue& value : found.values)
-    parameters.values.push_back({{value.value.name, 0}, value.value.unit, value.value.value});
-  apply_parameters(problem, std::move(parameters), {variant});
-  return problem;
 }
 
 /// The first lines of a text, up to one that is left out.
@@ -106,7 +94,7 @@ class FitSoFar {
     result_.noise = {options_.prior, found.fit.noise_factor};
     result_.scale = found.fit.scale;
     result_.freedom = found.fit.left;
-    result_.problem = at_values(std::move(counting), spec_.name, found, options_.data);
+    result_.problem = at_estimate(std::move(counting), spec_.name, found.values, options_.data);
     allow(variant_in(result_.problem, spec_.name).unmodelled, found);
     result_.fitted = true;
   }
@@ -143,7 +131,7 @@ class FitSoFar {
     const bool all = std::all_of(found.parameters.begin(), found.parameters.end(),
                                  [](const CalibratedParameter& p) { return p.estimated; });
     if (!all && !found.automatic) return;
-    const Problem at = at_values(problem_, spec_.name, found, options_.data);
+    const Problem at = at_estimate(problem_, spec_.name, found.values, options_.data);
     const auto model = make_model(at, spec_);
     Linearisation out;
     Eigen::VectorXd y, off;

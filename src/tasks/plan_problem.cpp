@@ -12,8 +12,8 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/problem/design_keys.hpp"
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
-#include "posewright/study/reliance.hpp"
 #include "posewright/study/spacing.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
@@ -196,8 +196,8 @@ class PlanSearch {
     plan.method = settings_.method;
     plan.minimum_distance = minimum_distance_;
     fill_judgement(plan, judgement, study_, settings_);
-    plan.reliance = reliance_of(problem_, study_, study_.first(), with_measured(study_, poses),
-                                judgement.evaluations.front(), settings_.planner.threads);
+    plan.expected = expected_error(problem_, study_.configurations, study_.first(), with_measured(study_, poses),
+                                   judgement.evaluations.front().covariance, settings_.planner.threads);
     const double phi = phi_of(*found.measure, settings_.criterion, study_, chosen, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     plan.certificate = found.certificate;

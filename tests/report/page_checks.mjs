@@ -43,6 +43,12 @@ export async function checkViewer(page, { data, route }) {
 
 /** What stands before everything else, and the table of what an operator looks for: asked of the plan's own file. */
 export async function checkOverview(page, { data, plan, route }) {
+  const expected = plan.expected_error;
+  if (expected) {
+    const [amount, unit] = (await page.locator('.tile', { hasText: 'expected after calibration' }).locator('b').textContent()).split(' ');
+    const error = expected.with[expected.with.length >> 1].error;
+    near((Number(amount) * { mm: 1e-3, µm: 1e-6, m: 1 }[unit]) / error, 1, 6e-3, 'the first error is the one to expect');
+  }
   await page.setViewportSize({ width: 1400, height: 900 });
   const picture = await page.locator('.view').boundingBox();
   check(picture.y + picture.height <= 900, 'the picture is seen without scrolling at 1400 x 900', picture);

@@ -59,12 +59,12 @@ export async function checkComparison(page, { data }) {
     // What is left of noise and bias, which are independent.
     near(without[k], Math.sqrt(w.noise_without ** 2 + w.bias_without ** 2), 1e-9, `error without, ${w.without}`);
   });
-  const [times, first] = await plotted(page, 'plot-reliance-0');
-  const { reliance } = c.scores.find((s) => s.variant === c.variants[0].name);
+  const [times, first] = await plotted(page, 'plot-expected-0');
+  const { expected_error: expected } = c.scores.find((s) => s.variant === c.variants[0].name);
   times.forEach((t, k) =>
     near(
       first[k],
-      mm * (t === 0 ? reliance.error : reliance.with.find((w) => w.times === t).error),
+      mm * (t === 0 ? expected.by_noise : expected.with.find((w) => w.times === t).error),
       1e-12,
       `error with an effect of ${t} times the noise`,
     ),

@@ -15,6 +15,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
@@ -172,28 +173,154 @@ double plain_square_at(const std::vector<double>& x, const List& list, double si
 TEST_F(UnmodelledEffects, PlanWithoutOneTellsWhatAPlainFitWouldMakeOfOne) {
   const std::string places = "test_poses: {at: [[0.5, 1], [-1, 1.4]]}}";
   const Plan plan = judged(problem("", "{variant: short, poses: 8, " + places), eight);
-  ASSERT_TRUE(plan.reliance);
-  const Reliance& r = *plan.reliance;
+  ASSERT_TRUE(plan.expected);
+  const ExpectedError& r = *plan.expected;
   EXPECT_TRUE(r.at_test_poses);
   EXPECT_EQ(r.places, 2);
-  EXPECT_NEAR(r.error / *plan.rho0, 1, 1e-12);
+  EXPECT_FALSE(r.base_out || r.tool_out);
+  EXPECT_NEAR(r.by_noise / *plan.rho0, 1, 1e-9);
   // x and y are read, z is not: as little as three axes read with √1.5 times the noise.
   EXPECT_NEAR(r.noise / (sigma * std::sqrt(1.5)), 1, 1e-9);
+  ASSERT_EQ(r.with.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double size = Reliance::times[i] * r.noise;
+    const double size = ExpectedError::robots[i] * r.noise;
+    EXPECT_NEAR(r.with[i].size / size, 1, 1e-12);
     const double square = plain_square_at({0.5, 1}, eight, size) + plain_square_at({-1, 1.4}, eight, size);
-    EXPECT_NEAR(r.with[i] / std::sqrt(square / 2), 1, 1e-6);
+    EXPECT_NEAR(r.with[i].error / std::sqrt(square / 2), 1, 1e-6);
   }
-  EXPECT_FALSE(judged(problem("{size: 0.2 mm}", "{variant: short, poses: 8, " + places), eight).reliance);
+  EXPECT_THAT(plan_summary(plan), HasSubstr("with the effects that robots have, "));
+}
+
+TEST_F(UnmodelledEffects, FirstFigureOfAVariantWithAnEffectCountsThatOne) {
+  const Plan plan =
+      judged(problem("{size: 0.2 mm}", "{variant: short, poses: 8, test_poses: {at: [[0.5, 1], [-1, 1.4]]}}"), eight);
+  ASSERT_TRUE(plan.expected);
+  ASSERT_EQ(plan.expected->with.size(), 1u);
+  EXPECT_NEAR(plan.expected->with[0].size, 2e-4, 1e-12);
+  EXPECT_NEAR(plan.expected->with[0].error / *plan.rho0, 1, 1e-6);
+  EXPECT_NEAR(plan.expected->by_noise / *plan.unmodelled->by_noise, 1, 1e-6);
+}
+
+TEST_F(UnmodelledEffects, FirstFigureNamesTheRequiredAccuracy) {
+  const Plan plan = judged(problem("",
+                                   "{variant: short, poses: 8, require: {accuracy: 0.3 mm}, test_poses: {at: [[0.5, "
+                                   "1], [-1, 1.4]]}}"),
+                           eight);
+  EXPECT_THAT(plan_summary(plan), HasSubstr("from noise alone; required 0.3 mm\n"));
+}
+
+/// What the best base does to the places: shifts and turns about the origin, each place's share of the weight.
+Eigen::MatrixXd by_base(const List& places) {
+  Eigen::MatrixXd S(3 * Eigen::Index(places.size()), 6);
+  for (std::size_t t = 0; t < places.size(); ++t) {
+    const std::vector<double>& q = places[t];
+    const Eigen::Vector3d p(link * std::cos(q[0]) + tool * std::cos(q[0] + q[1]),
+                            link * std::sin(q[0]) + tool * std::sin(q[0] + q[1]), 0);
+    for (int k = 0; k < 3; ++k) {
+      S.block<3, 1>(3 * Eigen::Index(t), k) = Eigen::Vector3d::Unit(k);
+      S.block<3, 1>(3 * Eigen::Index(t), 3 + k) = Eigen::Vector3d::Unit(k).cross(p);
+    }
+  }
+  return S / std::sqrt(double(places.size()));
+}
+
+TEST_F(UnmodelledEffects, FirstFigureLeavesOutWhatTheBestBaseTakesUp) {
+  const List places = {{0.5, 1}, {-1, 1.4}, {1.2, -0.6}, {0.1, 0.3}, {-0.7, -1.1}, {1.7, 0.2}, {-1.5, 1.9}};
+  std::string at;
+  for (const auto& q : places) at += fmt::format("{}[{}, {}]", at.empty() ? "" : ", ", q[0], q[1]);
+  std::string text = arm("", "{variant: placed, poses: 8, test_poses: {at: [" + at + "]}}");
+  text.insert(text.find("design:"),
+              "  placed: {parameters: [q2.offset, tool.x], nuisance: [base.x, base.y, base.rz]}\n");
+  folder_.write("arm.urdf", planar_arm_urdf);
+  const Plan plan = judged(read_problem(folder_.write("p.yaml", text)), eight);
+
+  const auto n = Eigen::Index(eight.size()), T = Eigen::Index(places.size());
+  const double unit = sigma * std::sqrt(1.5);
+  Eigen::MatrixXd J(2 * n, 5), A = Eigen::MatrixXd::Zero(3 * T, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto own = jacobian(eight[std::size_t(i)]);
+    J.block<2, 2>(2 * i, 0).setIdentity();
+    J.block<2, 3>(2 * i, 2) = own;  // the first joint turns as the base does
+  }
+  for (Eigen::Index t = 0; t < T; ++t)
+    A.block<2, 2>(3 * t, 0) = jacobian(places[std::size_t(t)]).rightCols<2>() / std::sqrt(double(T));
+  J /= sigma;
+  const Eigen::MatrixXd V = (J.transpose() * J).inverse();
+  const Eigen::MatrixXd G = (V * J.transpose()).bottomRows(2) / sigma;
+  Eigen::MatrixXd of_poses(2 * n, 2 * n), between = Eigen::MatrixXd::Zero(2 * n, 3 * T), there(3 * T, 3 * T);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = 0; k < n; ++k)
+      of_poses.block<2, 2>(2 * i, 2 * k) =
+          kernel(eight[std::size_t(i)], eight[std::size_t(k)], sixty_degrees) * Eigen::Matrix2d::Identity();
+    for (Eigen::Index t = 0; t < T; ++t)
+      between.block<2, 2>(2 * i, 3 * t) = kernel(eight[std::size_t(i)], places[std::size_t(t)], sixty_degrees) /
+                                          std::sqrt(double(T)) * Eigen::Matrix2d::Identity();
+  }
+  for (Eigen::Index t = 0; t < T; ++t)
+    for (Eigen::Index u = 0; u < T; ++u)
+      there.block<3, 3>(3 * t, 3 * u) = kernel(places[std::size_t(t)], places[std::size_t(u)], sixty_degrees) /
+                                        double(T) * Eigen::Matrix3d::Identity();
+  const Eigen::MatrixXd S = by_base(places);
+  const Eigen::MatrixXd P =
+      Eigen::MatrixXd::Identity(3 * T, 3 * T) - S * S.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd cross = A * G * between;
+  const Eigen::MatrixXd E = A * G * of_poses * G.transpose() * A.transpose() - cross - cross.transpose() + there;
+  const double noise = (P * A * V.bottomRightCorner(2, 2) * A.transpose()).trace(), effect = (P * E).trace();
+  ASSERT_TRUE(plan.expected);
+  EXPECT_TRUE(plan.expected->base_out);
+  EXPECT_NEAR(plan.expected->by_noise / std::sqrt(noise), 1, 1e-6);
+  EXPECT_LT(plan.expected->by_noise, 0.9 * *plan.rho0);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(plan.expected->with[i].error / std::sqrt(noise + std::pow(ExpectedError::robots[i] * unit, 2) * effect),
+                1, 1e-5);
+}
+
+TEST_F(UnmodelledEffects, CalibrationPredictsTheErrorAtNewPosesByItsResiduals) {
+  // The robot is nominal but for an effect of another form than the assumed one, four times the noise.
+  const Problem p = problem("", "{variant: short, poses: 8}");
+  const auto effect = [](double q1, double q2) {
+    return Eigen::Vector3d(4 * sigma * std::sin(q1 + 2 * q2), 4 * sigma * std::cos(2 * q1 - q2), 0);
+  };
+  Random random(3, 1);
+  const auto place = [&] { return std::vector<double>{3.8 * random.uniform() - 1.9, 3.8 * random.uniform() - 1.9}; };
+  std::string data = "id,q1 [rad],q2 [rad],pose.x [m],pose.y [m]\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::vector<double> q = place();
+    const Eigen::Vector3d moved = effect(q[0], q[1]);
+    data += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g}\n", i + 1, q[0], q[1],
+                        link * std::cos(q[0]) + tool * std::cos(q[0] + q[1]) + moved.x() + sigma * random.normal(),
+                        link * std::sin(q[0]) + tool * std::sin(q[0] + q[1]) + moved.y() + sigma * random.normal());
+  }
+  CalibrateOptions options;
+  options.data = folder_.write("data.csv", data);
+  options.prior = Prior::none;
+  const Calibration found = calibrate_problem(p, options, Monitor{});
+  Eigen::Vector3d change;
+  for (Eigen::Index j = 0; j < 3; ++j) change[j] = found.fit.change[j];
+  double squares = 0;
+  constexpr int judged_at = 500;
+  for (int k = 0; k < judged_at; ++k) {
+    const std::vector<double> q = place();
+    squares += (jacobian(q) * change - effect(q[0], q[1]).head<2>()).squaredNorm();
+  }
+  const double observed = std::sqrt(squares / judged_at);
+  ASSERT_TRUE(found.expected);
+  const ExpectedError& e = *found.expected;
+  EXPECT_EQ(e.size, ExpectedError::Size::measured);
+  // The reading has two axes, and the effect is counted along three.
+  EXPECT_NEAR(observed / (e.usual().error * std::sqrt(2.0 / 3)), 1, 0.25);
+  EXPECT_LT(e.with.front().error, observed);
+  EXPECT_GT(e.with.back().error, observed);
+  EXPECT_LT(e.by_noise, 0.3 * observed);
 }
 
 TEST_F(UnmodelledEffects, PlanOfFewPosesSaysThatItReliesOnTheModel) {
   // Two poses that nearly look alike determine three parameters, badly.
   const Problem p = problem("", "{variant: short, poses: 2}");
   const Plan plan = judged(p, {{0.2, 1.1}, {0.3, 1.2}});
-  ASSERT_TRUE(plan.reliance);
-  EXPECT_FALSE(plan.reliance->at_test_poses);
-  EXPECT_GT(plan.reliance->amplification(), 1.5);
+  ASSERT_TRUE(plan.expected);
+  EXPECT_FALSE(plan.expected->at_test_poses);
+  EXPECT_GT(plan.expected->amplification, 1.5);
   EXPECT_THAT(plan_summary(plan), HasSubstr("relies on a complete model"));
   EXPECT_THAT(plan_summary(judged(p, eight)), testing::Not(HasSubstr("relies on a complete model")));
 }

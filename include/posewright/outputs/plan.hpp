@@ -201,19 +201,30 @@ struct PlannedEffect {
   std::optional<double> by_noise{}, by_repeatability{}, by_effect{}, interpolated{};
 };
 
-/// Dependence of a plan's accuracy on a complete model: a smooth unmodelled effect moves the tip by
-/// so many times the noise of one pose, and the fit counts none.
-struct Reliance {
-  static constexpr std::array<double, 3> times = {1, 2, 4};
-  double noise = 0.0;            ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
-  double length = 0.0;           ///< over which the effect changes, rad
-  bool at_test_poses = false;    ///< else at candidates
-  int places = 0;                ///< how many of them
-  double error = 0.0;            ///< predicted position error with a complete model, root mean square, m
-  std::array<double, 3> with{};  ///< the same with an effect of `times` the noise
+/// Position error to expect after a calibration (theory.md eq. (68)): root mean square at the places that count, as the
+/// instrument sees it. The best rigid base and tool are taken out where the readings cannot tell them from nuisance
+/// parameters.
+struct ExpectedError {
+  /// Sizes of an effect that robots have, in units of the noise of a pose: least, usual, largest (docs/real-data.md).
+  static constexpr std::array<double, 3> robots = {0.5, 2, 5};
+  /// Origin of the size: the table of robots, the variant's `unmodelled`, a calibration.
+  enum class Size { of_robots, counted, measured };
+  struct WithEffect {
+    double size = 0.0;   ///< 1σ along each axis, m
+    double error = 0.0;  ///< m
+  };
+  double noise = 0.0;          ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
+  double length = 0.0;         ///< over which the effect changes, rad
+  bool at_test_poses = false;  ///< else at candidates
+  int places = 0;              ///< how many of them
+  bool base_out = false, tool_out = false;  ///< whether the best one is taken out
+  double by_noise = 0.0;                    ///< from noise alone, m
+  double amplification = 0.0;               ///< of the effect by the estimate; 1: the error equals the unfitted effect
+  Size size = Size::of_robots;              ///< that `with` counts
+  std::vector<WithEffect> with{};           ///< one, or least, usual and largest
+  std::optional<double> required{};         ///< by the user, m
 
-  /// Amplification of the effect by the estimate; 1: the error equals the unfitted effect.
-  double amplification() const { return std::sqrt((with[0] * with[0] - error * error) / 3) / noise; }
+  const WithEffect& usual() const { return with[with.size() / 2]; }
 };
 
 /// Efficiency of a plan, and of the plan for the nominal robot, on robots drawn from the tolerances.
@@ -260,7 +271,7 @@ struct Plan {
   std::optional<Discrimination> discrimination;  ///< if a truth is named
   std::optional<PlannedEffect> unmodelled{};     ///< in σ, log det and predicted errors
   std::optional<RobustPlan> robust{};            ///< if robots were drawn
-  std::optional<Reliance> reliance{};            ///< if the first variant counts no effect
+  std::optional<ExpectedError> expected{};       ///< of the first variant, if its readings contain a tip
   std::vector<VariantResult> variants{};         ///< of a plan for several
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones

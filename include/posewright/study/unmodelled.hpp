@@ -23,6 +23,9 @@ void allow_for_unmodelled(const Problem& problem, const Configurations& candidat
 /// Raw whitened blocks of a variant as a search sees them: the effect's features in front, if there is one.
 BlockArray search_blocks(const Variant& variant, const Configurations& configurations, int threads);
 
+/// Residuals of columns after least squares on others.
+Eigen::MatrixXd left_beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& columns);
+
 /// Noise of one pose's readings as a displacement of the tip, 1σ along each axis, m: (tr(Σ AᵀA)/3n)^{−1/2}.
 /// @param A  whitened derivatives of n poses' readings along unit translations of the tip, 3 columns
 double noise_of_a_pose(const Eigen::Ref<const Eigen::MatrixXd>& A, std::size_t n);

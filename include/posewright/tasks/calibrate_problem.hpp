@@ -22,6 +22,7 @@
 #include "posewright/calibration/visit_errors.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/placed_frames.hpp"
+#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/support/monitor.hpp"
 
@@ -146,6 +147,7 @@ struct Calibration {
   SmoothEffect smooth;                  ///< that the residuals of a fit hold which counts none
   /// Unmodelled effect of the fit; none: readings of different poses are independent.
   std::optional<CalibratedEffect> counted{};
+  std::optional<ExpectedError> expected{};       ///< none: see calibrated_error()
   Revisits revisits;                             ///< configurations measured again after others
   std::vector<std::string> not_in_auto{};        ///< parameters of the model that an automatic variant leaves out
   std::optional<Interpolation> interpolation{};  ///< if it was asked for

@@ -44,12 +44,12 @@ struct PlanScore {
   int infeasible = 0;   ///< poses that the variant's workspace forbids
   std::string infeasible_because;
   double log_det = 0.0;
-  std::optional<double> efficiency;  ///< at least this share of the best plan of as many of the common candidates
-  std::string worst_parameter;       ///< of interest, that with the largest σ/tolerance
-  double worst = 0.0, mean = 0.0;    ///< σ/tolerance of interest parameters: largest, geometric mean
-  double condition = 0.0;            ///< σ1/σm
-  std::optional<double> rho0;        ///< predicted error at the test poses, m
-  std::optional<Reliance> reliance;  ///< on the variant being complete; none: it counts an effect itself
+  std::optional<double> efficiency;       ///< at least this share of the best plan of as many of the common candidates
+  std::string worst_parameter;            ///< of interest, that with the largest σ/tolerance
+  double worst = 0.0, mean = 0.0;         ///< σ/tolerance of interest parameters: largest, geometric mean
+  double condition = 0.0;                 ///< σ1/σm
+  std::optional<double> rho0;             ///< predicted error at the test poses, m
+  std::optional<ExpectedError> expected;  ///< none: the readings contain no single tip
 };
 
 /// Bias of a parameter of the fitted variant by unfitted effects.

@@ -2,7 +2,7 @@ import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
 import { shareTable } from '../parts/shares.js';
-import { reliancePlots, worthPlot } from '../plots/comparison.js';
+import { expectedPlots, worthPlot } from '../plots/comparison.js';
 import { biasSection } from '../sections/bias.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { list, number, percentDown, plural, quantity } from '../text/units.js';
@@ -102,7 +102,7 @@ function accuracySection(c) {
     'Accuracy',
     'Noise alone, as if the variant were the case. Parameters: of interest, and nuisance beside them; mean: geometric, of those of interest; condition: largest over smallest singular value in units of tolerance.',
     table(header, rows, 'Accuracy'),
-    h('div', { class: 'plots' }, reliancePlots(c)),
+    h('div', { class: 'plots' }, expectedPlots(c)),
   );
 }
 

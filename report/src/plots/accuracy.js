@@ -45,31 +45,35 @@ export function testPosePlot(list) {
   return plot.element;
 }
 
-/** What a smooth effect that the model lacks would do. @param {any} reliance of plan.json */
-export function reliancePlot(reliance) {
-  const squared = (reliance.with[0].error ** 2 - reliance.error ** 2) / reliance.with[0].times ** 2;
-  const most = Math.max(...reliance.with.map((w) => w.times));
-  const x = Array.from({ length: 8 * most + 1 }, (_, k) => k / 8);
-  const given = new Map([[0, reliance.error], ...reliance.with.map((w) => [w.times, w.error])]);
+/** Position error over the size of an effect that the model lacks. @param {any} expected expected_error of plan.json */
+export function expectedPlot(expected) {
+  const { by_noise: byNoise, noise, places, at, amplification } = expected;
+  const squared = 3 * (amplification * noise) ** 2;
+  const error = (t) => mm(Math.sqrt(byNoise ** 2 + squared * t * t));
+  const given = new Map([[0, byNoise], ...expected.with.map((w) => [w.times, w.error])]);
+  const most = Math.max(1, ...given.keys());
+  const steps = 40;
+  const even = Array.from({ length: steps + 1 }, (_, k) => (most * k) / steps);
+  const x = [...new Set([...even, ...given.keys()])].sort((a, b) => a - b);
   const plot = figure({
-    id: 'plot-reliance',
+    id: 'plot-expected',
     title: 'If the model is not complete',
     caption:
-      `Every model lacks something. The line shows the position error to expect at ${reliance.places} ${reliance.at} if a smooth ` +
-      `effect that no parameter describes moves the tip: by so many times ${number(mm(reliance.noise))} mm, the noise of one pose. ` +
+      `Every model lacks something. The line shows the position error to expect at ${places} ${at} if a smooth ` +
+      `effect that no parameter describes moves the tip: by so many times ${number(mm(noise))} mm, the noise of one pose. ` +
       'Where it rises steeply, the accuracy relies on the model being complete.',
     options: {
       series: [{ label: 'times the noise' }, curve('position error, mm', 'plan'), dots('as stated in the plan, mm', 'accent')],
       scales: { x: { time: false }, y: { range: (u, low, high) => [0, 1.1 * high] } },
       axes: [
-        { label: 'effect, times the noise of one pose', incrs: [0.5, 1] },
+        { label: 'effect, times the noise of one pose', incrs: [0.5, 1, 2, 5, 10] },
         { label: 'position error, mm', size: 62 },
       ],
     },
-    data: [x, x.map((t) => mm(Math.sqrt(reliance.error ** 2 + squared * t * t))), x.map((t) => mm(given.get(t)))],
+    data: [x, x.map(error), x.map((t) => mm(given.get(t)))],
     numbers: () => ({
       header: ['#effect, times the noise', '#position error, mm'],
-      rows: [...given].map(([times, error]) => [times, number(mm(error))]),
+      rows: [...given].map(([times, value]) => [number(times), number(mm(value))]),
     }),
   });
   return plot.element;

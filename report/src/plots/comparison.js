@@ -6,18 +6,18 @@ const mm = (value) => (value === null || value === undefined ? null : 1e3 * valu
 const tints = ['plan', 'accent', 'yours', 'good', 'station', 'bad'];
 
 /** Position error if the variant is not complete, of every plan. @param {any} c comparison.json */
-export function reliancePlots(c) {
+export function expectedPlots(c) {
   const figures = c.variants.flatMap(({ name }, k) => {
-    const scores = c.scores.filter((s) => s.variant === name && s.reliance).slice(0, tints.length);
+    const scores = c.scores.filter((s) => s.variant === name && s.expected_error).slice(0, tints.length);
     if (scores.length === 0) return [];
-    const times = [0, ...scores[0].reliance.with.map((w) => w.times)];
-    const error = (s, t) => mm(t === 0 ? s.reliance.error : s.reliance.with.find((w) => w.times === t)?.error);
-    const { noise, places, at } = scores[0].reliance;
+    const times = [0, ...scores[0].expected_error.with.map((w) => w.times)];
+    const error = (s, t) => mm(t === 0 ? s.expected_error.by_noise : s.expected_error.with.find((w) => w.times === t)?.error);
+    const { noise, places, at } = scores[0].expected_error;
     return [
       [
         name,
         figure({
-          id: `plot-reliance-${k}`,
+          id: `plot-expected-${k}`,
           headed: false,
           title: `If ${name} is not complete`,
           caption: `Position error at ${places} ${at}, if a smooth effect that ${name} lacks moves the tip by so many times ${number(mm(noise))} mm, the noise of a pose. A line that rises slowly relies less on the model.`,

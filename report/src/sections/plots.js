@@ -1,5 +1,5 @@
 import { h, section } from '../dom.js';
-import { curvePlot, reliancePlot, testPosePlot, workspacePlot } from '../plots/accuracy.js';
+import { curvePlot, expectedPlot, testPosePlot, workspacePlot } from '../plots/accuracy.js';
 import { contributionPlot, sensitivityPlot, spectrumPlot } from '../plots/information.js';
 
 /** @param {import('../pose_list.js').PoseList} list */
@@ -9,7 +9,7 @@ export function accuracySection(list) {
     plan.accuracy.test_poses.length > 0 ? testPosePlot(list) : null,
     curvePlot(list),
     workspacePlot(list.report),
-    plan.reliance ? reliancePlot(plan.reliance) : null,
+    plan.expected_error ? expectedPlot(plan.expected_error) : null,
   ].filter(Boolean);
   if (plots.length === 0) return null;
   return section(

@@ -28,8 +28,12 @@ function tiles(list) {
       'parameters',
       nuisance > 0 ? `and ${nuisance} estimated along with them` : 'identified',
     ),
-    plan.accuracy.rho0 !== null
-      ? tile(quantity(plan.accuracy.rho0, 'm', 3), 'position error', 'expected after calibration, 1σ')
+    plan.expected_error
+      ? tile(
+          quantity(plan.expected_error.with[plan.expected_error.with.length >> 1].error, 'm', 3),
+          'position error',
+          `expected after calibration, ${quantity(plan.expected_error.by_noise, 'm', 3)} from noise alone`,
+        )
       : tile(`${gained} of ${known.length}`, 'parameters gain', 'known better than their tolerance afterwards'),
     nearness(plan.certificate),
     onDrawnRobots(plan.robust),

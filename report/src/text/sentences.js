@@ -37,12 +37,20 @@ export function what(plan) {
 
 /** @param {any} plan */
 export function accuracy(plan) {
-  const { rho0, test_poses: errors } = plan.accuracy;
-  if (rho0 === null) return '';
+  const expected = plan.expected_error;
+  if (!expected) return '';
+  const frames = expected.taken_out.length > 0 ? `, with the best ${expected.taken_out.join(' and ')}` : '';
+  const required = expected.required === null ? '' : ` Required: ${quantity(expected.required, 'm')}.`;
   return (
-    `After calibration the tip is expected to be off by ${quantity(rho0, 'm')} (1σ, root mean square over ${plural(errors.length, 'test pose')}; ` +
-    `${quantity(Math.max(...errors), 'm')} at the worst). This is the effect of the measurement noise; effects missing in the model add to it.`
+    `After calibration the tip is expected to be off by ${withEffect(expected)} (root mean square at ${expected.places} ${expected.at}${frames}); ` +
+    `measurement noise alone makes ${quantity(expected.by_noise, 'm')} of it.${required}`
   );
+}
+
+/** Error with the effect that a model lacks. @param {any} expected */
+export function withEffect(expected) {
+  const shown = expected.with.map((w) => quantity(w.error, 'm'));
+  return shown.length === 1 ? shown[0] : `${shown[1]} (${shown[0]} to ${shown[2]})`;
 }
 
 /** @param {any} plan */

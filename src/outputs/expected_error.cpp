@@ -1,0 +1,87 @@
+#include "posewright/outputs/expected_error.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "posewright/outputs/table.hpp"
+
+namespace posewright {
+namespace {
+
+using Size = ExpectedError::Size;
+
+const char* size_word(const ExpectedError& e) {
+  return e.size == Size::counted ? "counted" : e.size == Size::measured ? "measured" : "robots";
+}
+
+std::string origin_text(const ExpectedError& e) {
+  return e.size == Size::counted    ? "with the effect that the variant counts"
+         : e.size == Size::measured ? "with the effect that calibration found"
+                                    : "with the effects that robots have";
+}
+
+std::string effect_text(const ExpectedError& e) {
+  const double degrees = e.length * 180 / std::numbers::pi;
+  if (e.size == Size::of_robots)
+    return fmt::format(
+        "Robots have effects that the model lacks, of {:g} to {:g} times the noise of a pose ({}): here {:g} times, "
+        "changing over {:.3g} deg.",
+        ExpectedError::robots.front(), ExpectedError::robots.back(), shown_value(e.noise, "m"),
+        ExpectedError::robots[1], degrees);
+  if (!(e.usual().size > 0)) return "The residuals are no larger than the noise.";
+  const std::string range = e.with.size() > 1 ? fmt::format(" (95 %: {} to {})", shown_value(e.with.front().size, "m"),
+                                                            shown_value(e.with.back().size, "m"))
+                                              : "";
+  return fmt::format("The effect is {}{} and changes over {:.3g} deg.", shown_value(e.usual().size, "m"), range,
+                     degrees);
+}
+
+}  // namespace
+
+nlohmann::ordered_json expected_error_json(const ExpectedError& e) {
+  nlohmann::ordered_json with = nlohmann::ordered_json::array(), out = nlohmann::ordered_json::array();
+  for (const ExpectedError::WithEffect& one : e.with)
+    with.push_back({{"size", one.size}, {"times", one.size / e.noise}, {"error", one.error}});
+  if (e.base_out) out.push_back("base");
+  if (e.tool_out) out.push_back("tool");
+  nlohmann::ordered_json json = {{"by_noise", e.by_noise}, {"with", with},
+                                 {"required", nullptr},    {"at", e.at_test_poses ? "test poses" : "candidates"},
+                                 {"places", e.places},     {"taken_out", out},
+                                 {"size", size_word(e)},   {"length", e.length},
+                                 {"noise", e.noise},       {"amplification", e.amplification}};
+  if (e.required) json["required"] = *e.required;
+  return json;
+}
+
+std::string with_effect_text(const ExpectedError& e) {
+  const std::string usual = shown_value(e.usual().error, "m");
+  if (e.with.size() == 1) return usual;
+  return fmt::format("{} ({} to {})", usual, shown_value(e.with.front().error, "m"),
+                     shown_value(e.with.back().error, "m"));
+}
+
+std::string places_text(const ExpectedError& e) {
+  return fmt::format("{} {}{}", e.places, e.at_test_poses ? "test poses" : "candidates",
+                     e.base_out && e.tool_out ? ", with the best base and tool"
+                     : e.base_out             ? ", with the best base"
+                     : e.tool_out             ? ", with the best tool"
+                                              : "");
+}
+
+std::string expected_error_text(const ExpectedError& e) {
+  // A good fit takes up some of the effect: below 1. Beyond this it does more harm than an effect that nobody fits.
+  constexpr double amplified = 1.5;
+  std::string text = fmt::format("Predicted position error after calibration: {} {}, {} from noise alone{}\n",
+                                 with_effect_text(e), origin_text(e), shown_value(e.by_noise, "m"),
+                                 e.required ? "; required " + shown_value(*e.required, "m") : "");
+  text += fmt::format("Root mean square at {}. {}\n", places_text(e), effect_text(e));
+  if (e.amplification > amplified)
+    text += fmt::format(
+        "The estimate relies on a complete model: it amplifies an unmodelled effect {:.2g} times; more poses or "
+        "`unmodelled: auto` in the variant reduce that.\n",
+        e.amplification);
+  return text;
+}
+
+}  // namespace posewright

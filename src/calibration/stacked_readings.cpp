@@ -180,9 +180,12 @@ void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
   if (effect_ != nullptr) find_features();
 }
 
+void StackedReadings::correlate(std::shared_ptr<const UnmodelledEffect> effect) {
+  effect_ = std::move(effect);
+  if (effect_ != nullptr) features_.emplace(effect_, places_of(*effect_, poses_), features_of_a_fit);
+}
+
 void StackedReadings::find_features() {
-  const Eigen::MatrixXd places = places_of(*effect_, poses_);
-  const EffectFeatures features(effect_, places, features_of_a_fit);
   Eigen::MatrixXd along(readings_, Eigen::Index(effect_->columns().size()));
   std::vector<int> first{0};
   for (std::size_t k = 0; k < poses_.size(); ++k) {
@@ -193,7 +196,7 @@ void StackedReadings::find_features() {
     first.push_back(first.back() + int(rows_.rows()));
   }
   effect_->take_sizes(along);
-  independent_ = IndependentRows(effect_columns(features, places, along, first));
+  independent_ = IndependentRows(effect_columns(*features_, places_of(*effect_, poses_), along, first));
 }
 
 /// The mean over all readings of the unit; what they are worth to each other within it is one.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
@@ -76,8 +77,8 @@ class StackedReadings {
   Eigen::VectorXd start() const;
 
   /// Readings are correlated from pose to pose by this effect: with the next weigh() on, rows are those of independent
-  /// ones, (I + F Fᵀ)^{−1/2} of the others, F its features among the poses.
-  void correlate(std::shared_ptr<const UnmodelledEffect> effect) { effect_ = std::move(effect); }
+  /// ones, by IndependentRows of its features among the poses.
+  void correlate(std::shared_ptr<const UnmodelledEffect> effect);
 
   /// Takes the covariances at x (or one variance per unit) as weights from now on. Throws CannotDo if a pose is out
   /// of reach there.
@@ -139,6 +140,7 @@ class StackedReadings {
   Eigen::VectorXd group_weights_;
   int readings_ = 0;
   std::shared_ptr<const UnmodelledEffect> effect_;
+  std::optional<EffectFeatures> features_;  // of effect_ among the poses
   IndependentRows independent_;
 
   std::vector<double> correction_;

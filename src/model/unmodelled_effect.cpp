@@ -123,23 +123,35 @@ Eigen::MatrixXd EffectFeatures::columns_at(const Eigen::VectorXd& phi, const Eig
   return result;
 }
 
-IndependentRows::IndependentRows(const Eigen::MatrixXd& F) {
-  // (I + F Fᵀ)^{−1/2} = I − F V g(S) Vᵀ Fᵀ with FᵀF = V S Vᵀ, g(s) = (1 − 1/√(1 + s))/s.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(F.transpose() * F));
-  along_ = F * eigen.eigenvectors();
-  shrink_ = eigen.eigenvalues().cwiseMax(0.0);
-  for (double& s : shrink_) {
-    const double root = std::sqrt(1 + s);
-    s = 1 / (root * (1 + root));
-  }
+IndependentRows::IndependentRows(Eigen::MatrixXd F) : F_(std::move(F)) {
+  Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(F_.cols(), F_.cols());
+  inner.selfadjointView<Eigen::Lower>().rankUpdate(F_.transpose());
+  L_ = inner.llt().matrixL();
+  L_and_one_ = L_;
+  L_and_one_.diagonal().array() += 1.0;
+}
+
+void IndependentRows::apply(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  Eigen::MatrixXd taken = F_.transpose() * rows;
+  L_.triangularView<Eigen::Lower>().solveInPlace(taken);
+  L_and_one_.transpose().triangularView<Eigen::Upper>().solveInPlace(taken);
+  rows.noalias() -= F_ * taken;
+}
+
+void IndependentRows::apply_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  Eigen::MatrixXd taken = F_.transpose() * rows;
+  L_and_one_.triangularView<Eigen::Lower>().solveInPlace(taken);
+  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(taken);
+  rows.noalias() -= F_ * taken;
 }
 
 BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also) {
   const IndependentRows independent{Eigen::MatrixXd(blocks.all().leftCols(features))};
-  BlockArray result(blocks.count(), blocks.rows(), blocks.columns() - features);
-  result.all() = blocks.all().rightCols(result.columns());
-  independent.apply(result.all());
+  Eigen::MatrixXd rows = blocks.all().rightCols(blocks.columns() - features);
+  independent.apply(rows);
   if (also != nullptr) independent.apply(*also);
+  BlockArray result(blocks.count(), blocks.rows(), int(rows.cols()));
+  result.all() = rows;
   return result;
 }
 

@@ -8,7 +8,7 @@ namespace posewright {
 namespace {
 
 /// Part of the covariance V of the estimates that the tip's displacements at visits have: θ̂ answers what is read at a
-/// pose by V J'ᵀ(I + FFᵀ)^{−1/2}, primes as below, and at each visit the tip stands off for itself.
+/// pose by V J'ᵀ W, primes as below, and at each visit the tip stands off for itself.
 Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeatures& features,
                                      const Configurations& configurations, const Eigen::MatrixXd& F,
                                      const BlockArray& whitened, const Eigen::MatrixXd& V, int threads) {
@@ -20,14 +20,13 @@ Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeature
   for (int tip = 0; tip < variant.model->tips(); ++tip)
     for (int k = 0; k < twists; ++k) tips.push_back(variant.model->tip_column(tip, k));
   const BlockArray blocks = expanded_blocks(variant, features, configurations, threads, tips);
-  BlockArray beside(whitened.count(), whitened.rows(), int(F.cols()) + whitened.columns());
-  beside.all() << F, whitened.all();
-  const BlockArray twice = without_features(beside, int(F.cols()));
+  Eigen::MatrixXd twice = whitened.all();
+  IndependentRows(F).apply_transposed(twice);
   const auto rows = Eigen::Index(whitened.rows());
   for (std::size_t i = 0; i < blocks.count(); ++i) {
     Eigen::MatrixXd A = blocks.block(i).rightCols(Eigen::Index(tips.size()));
     for (Eigen::Index c = 0; c < A.cols(); ++c) A.col(c) *= c % twists < 3 ? visit.translation : visit.rotation;
-    const Eigen::MatrixXd answers = V * (twice.all().middleRows(Eigen::Index(i) * rows, rows).transpose() * A);
+    const Eigen::MatrixXd answers = V * (twice.middleRows(Eigen::Index(i) * rows, rows).transpose() * A);
     result.noalias() += answers * answers.transpose();
   }
   return result;

@@ -114,26 +114,25 @@ class EffectFeatures {
   Eigen::MatrixXd weights_;  // φ = weights · correlations with the pivots
 };
 
-/// Whitened rows of correlated readings as those of independent ones, X' = (I + F Fᵀ)^{−1/2} X.
+/// Whitened rows of correlated readings as those of independent ones, X' = W X with WᵀW = (I + F Fᵀ)⁻¹:
+/// W = I − F (I + L)⁻ᵀ L⁻¹ Fᵀ, L Lᵀ = I + FᵀF by Cholesky.
 class IndependentRows {
  public:
   IndependentRows() = default;
-  explicit IndependentRows(const Eigen::MatrixXd& F);
+  explicit IndependentRows(Eigen::MatrixXd F);
   /// No correlation.
-  bool empty() const { return along_.size() == 0; }
-  template <class Matrix>
-  void apply(Matrix&& rows) const {
-    const Eigen::MatrixXd taken = shrink_.asDiagonal() * (along_.transpose() * rows);
-    rows.noalias() -= along_ * taken;
-  }
+  bool empty() const { return F_.size() == 0; }
+  /// W X in the place of X.
+  void apply(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  /// Wᵀ X in the place of X.
+  void apply_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
  private:
-  Eigen::MatrixXd along_;   // F V, FᵀF = V diag(s) Vᵀ
-  Eigen::VectorXd shrink_;  // (1 − 1/√(1 + s))/s
+  Eigen::MatrixXd F_, L_, L_and_one_;
 };
 
 /// Blocks of features and parameters as blocks of the parameters alone whose rows are whitened by the covariance of all
-/// readings, J' = (I + F Fᵀ)^{−1/2} J: what evaluates a list needs to know of no effect.
+/// readings, J' = W J: what evaluates a list needs to know of no effect.
 /// @param features  leading columns that are features
 /// @param also  rows × any, whitened in place likewise if not null
 BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also = nullptr);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "posewright/lists/parameters_file.hpp"
@@ -12,6 +13,7 @@
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/judgement.hpp"
+#include "posewright/study/spacing.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"
@@ -32,8 +34,10 @@ constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
 // take longer: so many kicks for the plan's own number, of other numbers as many as its square is smaller or larger.
 constexpr int curve_restarts = 1;
 constexpr double curve_kicks = 6;
+// Those of the largest gain are as good as all: so many for each pose of the plan.
+constexpr std::size_t promising_per_pose = 10;
 // Of weights that are starts for a search, and of what the page shows of candidates to three digits.
-constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-5;
+constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-4;
 // Relative difference of log det that rounding of written configurations cannot make.
 constexpr double same_log_det = 1e-6;
 
@@ -136,6 +140,7 @@ class ReportBuilder {
     fill_prefix();
     fill_position_errors(judgement);
     fill_moves(drawing, poses);
+    if (options_.candidates || options_.sizes) find_gains();
     if (options_.candidates) fill_candidates();
     if (options_.sizes) fill_curve();
     return std::move(report_);
@@ -245,16 +250,34 @@ class ReportBuilder {
     fill_neighbours(report_, study_, drawing, open, options_.threads, monitor_);
   }
 
-  SearchRequest request(int poses, double tolerance) const {
-    SearchRequest request = spaced_request(study_, settings_, poses);
-    request.bound_tolerance = tolerance;
-    return request;
+  std::vector<SearchPart> parts_of(const Configurations& candidates) const {
+    return search_parts(study_, settings_.criterion, candidates, options_.threads);
   }
 
-  /// Made once for all searches.
-  std::vector<SearchPart> parts_of_candidates() {
-    if (parts_.empty()) parts_ = search_parts(study_, settings_.criterion, study_.configurations, options_.threads);
-    return copied_parts(parts_);
+  /// Gain of each candidate, divided by what one must reach to be worth measuring; none if the criterion has no bound.
+  void find_gains() {
+    const Configurations& pool = study_.configurations;
+    if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
+    SearchRequest request = search_request(settings_, settings_.poses);
+    request.bound_tolerance = shown_tolerance;
+    Bound bound = bound_only(parts_of(pool), request, monitor_);
+    if (monitor_.should_stop() || !(bound.price > 0)) return;
+    gains_ = std::move(bound.sensitivity);
+    for (double& gain : gains_) gain /= bound.price;
+  }
+
+  /// Candidates for plans of other numbers of poses.
+  Configurations promising() const {
+    const Configurations& pool = study_.configurations;
+    const std::size_t count = std::min(pool.count(), promising_per_pose * new_.count());
+    if (gains_.empty() || count == pool.count()) return pool;
+    std::vector<std::size_t> order(pool.count());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains_[a] > gains_[b]; });
+    Configurations best;
+    best.dimension = pool.dimension;
+    for (std::size_t k = 0; k < count; ++k) append(best, pool, order[k]);
+    return best;
   }
 
   void fill_position_errors(const Judgement& judgement) {
@@ -271,15 +294,10 @@ class ReportBuilder {
 
   void fill_candidates() {
     const Configurations& pool = study_.configurations;
-    if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    Bound bound = bound_only(parts_of_candidates(), request(settings_.poses, shown_tolerance), monitor_);
-    if (monitor_.should_stop()) {
-      report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
-      return;
-    }
-    if (bound.sensitivity.empty() || !(bound.price > 0)) return;
+    if (monitor_.should_stop()) report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
+    if (gains_.empty()) return;
     ReportCandidates candidates;
-    for (const double d : bound.sensitivity) candidates.sensitivity.push_back(d / bound.price);
+    candidates.sensitivity = gains_;
     for (std::size_t i = 0; i < pool.count(); ++i) {
       candidates.positions.push_back(study_.first().model->tool_pose(pool[i]).translation());
       for (std::size_t k = 0; k < new_.count(); ++k)
@@ -292,18 +310,17 @@ class ReportBuilder {
   }
 
   /// A plan of so many of the candidates; none if they do not determine the parameters, or after a stop.
-  std::optional<CurvePoint> curve_at(int poses) const {
-    const Configurations& pool = study_.configurations;
+  std::optional<CurvePoint> curve_at(int poses, const Configurations& pool, const std::vector<SearchPart>& parts,
+                                     const Spacing& apart) const {
     try {
-      SearchRequest wanted = request(poses, start_tolerance);
+      SearchRequest wanted = search_request(settings_, poses);
+      if (study_.has_minimum_distance) wanted.spacing = &apart;
+      wanted.bound_tolerance = start_tolerance;
       const double share = double(new_.count()) / poses;
       wanted.planner.kicks = int(std::lround(curve_kicks * share * share));
-      const SearchResult found = search(copied_parts(parts_), wanted, monitor_);
+      const SearchResult found = search(copied_parts(parts), wanted, monitor_);
       if (monitor_.should_stop()) return std::nullopt;  // not the best plan of so many
-      Configurations list;
-      list.dimension = pool.dimension;
-      for (const int i : found.design.members) append(list, pool[std::size_t(i)]);
-      return point_of(list, poses);
+      return point_of(chosen_by(found.design, pool), poses);
     } catch (const CannotDo&) {
       return std::nullopt;
     }
@@ -311,7 +328,8 @@ class ReportBuilder {
 
   void fill_curve() {
     const int own = int(new_.count());
-    const double most = double(study_.configurations.count()) * settings_.repeats.most;
+    const Configurations pool = promising();
+    const double most = double(pool.count()) * settings_.repeats.most;
     std::set<int> numbers;
     for (const double share : shares)
       if (const int poses = int(std::lround(share * own)); poses >= 1 && poses != own && poses <= most)
@@ -321,14 +339,16 @@ class ReportBuilder {
     std::vector<std::optional<CurvePoint>> points(wanted.size());
     std::atomic<int> done = 0;
     std::atomic<bool> left_out = false;
-    if (!wanted.empty()) parts_of_candidates();
+    std::vector<SearchPart> parts;
+    if (!wanted.empty()) parts = parts_of(pool);
+    const Spacing apart = with_points(study_.spacing, pool);
     // One search of few restarts keeps no second thread busy.
     parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (monitor_.should_stop()) {
         left_out = true;
         return;
       }
-      points[i] = curve_at(wanted[i]);
+      points[i] = curve_at(wanted[i], pool, parts, apart);
       if (monitor_.should_stop()) left_out = true;
       monitor_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
     });
@@ -348,7 +368,7 @@ class ReportBuilder {
   Study study_;
   PoseList list_;  // the poses of the plan
   Configurations all_, new_;
-  std::vector<SearchPart> parts_;  // of the candidates
+  std::vector<double> gains_;  // of the candidates
   Report report_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,11 @@ class ViewSampler {
   bool move_to_view(std::span<double> q, Random& random) const;
 
  private:
+  using Error = Eigen::Matrix<double, 6, 1>;
+  /// ∂ error of X = the tip's pose at q by each moving coordinate; `trial` is scratch.
+  void fill_jacobian(std::span<const double> q, const Eigen::Isometry3d& X, const Eigen::Isometry3d& wanted,
+                     const Error& error, std::vector<double>& trial, Eigen::Matrix<double, 6, Eigen::Dynamic>& J) const;
+
   const IdentificationModel& model_;
   const LineOfSight& sight_;
   const std::vector<Coordinate>& coordinates_;

@@ -56,14 +56,15 @@ struct Frame {
     R = (R * X.linear().cast<T>()).eval();
   }
   void then_translate(const Eigen::Matrix<T, 3, 1>& t) { p += R * t; }
-  /// R ← R · (rotation about the unit axis), Rodrigues.
+  /// R ← R · (rotation about the unit axis a), Rodrigues: I + sin K + (1 − cos) (a aᵀ − I), K x = a × x.
   void then_rotate(const Eigen::Vector3d& axis, const T& angle) {
     using std::cos, std::sin;
-    Eigen::Matrix3d K;
-    K << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-    const Eigen::Matrix3d K2 = K * K;
-    const T s = sin(angle), c = T(1.0) - cos(angle);
-    const Eigen::Matrix<T, 3, 3> rotation = Eigen::Matrix<T, 3, 3>::Identity() + K.cast<T>() * s + K2.cast<T>() * c;
+    const double x = axis.x(), y = axis.y(), z = axis.z();
+    const T c = cos(angle), s = sin(angle), v = T(1.0) - c;
+    Eigen::Matrix<T, 3, 3> rotation;
+    rotation << c + x * x * v, x * y * v - z * s, x * z * v + y * s,  //
+        x * y * v + z * s, c + y * y * v, y * z * v - x * s,          //
+        x * z * v - y * s, y * z * v + x * s, c + z * z * v;
     R = (R * rotation).eval();
   }
   /// Displacement D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), the convention of URDF origins.

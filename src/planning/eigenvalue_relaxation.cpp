@@ -18,10 +18,12 @@ constexpr double fall = 0.15, centred = 1.0;
 
 // Rows of a tile of products: those of all pairs of candidates would fill hundreds of megabytes at every step.
 constexpr Eigen::Index tile_rows = 96;
+// Numbers of the symmetric products of all candidates: 80 MB.
+constexpr Eigen::Index most_products = 10'000'000;
 
-/// Lower triangle of H_ij += ‖Z_i Z_jᵀ‖² of blocks of r rows.
-void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H,
-                 Eigen::MatrixXd& tile) {
+/// Lower triangle of H_ij += ‖Z_i Z_jᵀ‖² of blocks of r rows, pair by pair.
+void add_squares_by_pairs(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H,
+                          Eigen::MatrixXd& tile) {
   const Eigen::Index n = H.cols(), step = std::max<Eigen::Index>(1, tile_rows / r);
   for (Eigen::Index first = 0; first < n; first += step) {
     const Eigen::Index columns = std::min(step, n - first);
@@ -34,6 +36,29 @@ void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen
           H(top + i, first + j) += r == 1 ? tile(i, j) * tile(i, j) : tile.block(i * r, j * r, r, r).squaredNorm();
     }
   }
+}
+
+/// The same by symmetric products, ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩.
+void add_squares_by_blocks(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H) {
+  const Eigen::Index n = H.cols(), m = Z.cols();
+  Eigen::MatrixXd products(m * (m + 1) / 2, n), square(m, m);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    square.noalias() = Z.middleRows(i * r, r).transpose() * Z.middleRows(i * r, r);
+    Eigen::Index at = 0;
+    for (Eigen::Index b = 0; b < m; at += m - b, ++b) {
+      products.col(i).segment(at, m - b) = std::sqrt(2.0) * square.col(b).tail(m - b);
+      products(at, i) = square(b, b);
+    }
+  }
+  H.selfadjointView<Eigen::Lower>().rankUpdate(products.transpose());
+}
+
+/// The way that takes less of both.
+void add_squares(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H,
+                 Eigen::MatrixXd& tile) {
+  const Eigen::Index m = Z.cols();
+  if (m + 1 < 2 * r * r && m * (m + 1) / 2 * H.cols() <= most_products) add_squares_by_blocks(Z, r, H);
+  else add_squares_by_pairs(Z, r, H, tile);
 }
 
 Eigen::MatrixXd inverse_factor(const Eigen::LLT<Eigen::MatrixXd>& factor) {

@@ -159,7 +159,15 @@ class ListEvaluation {
   Bound bound_of(const std::string& criterion) {
     SearchRequest wanted = search_request(settings_, settings_.poses);
     wanted.criterion = criterion;
-    return bound_only(search_parts(study_, criterion, pool_, settings_.planner.threads), wanted, monitor_);
+    return bound_only(parts_of_pool(criterion), wanted, monitor_);
+  }
+
+  /// Made once for all criteria that need no truth.
+  std::vector<SearchPart> parts_of_pool(const std::string& criterion) {
+    const int threads = settings_.planner.threads;
+    if (find_criterion(criterion)->needs_truth) return search_parts(study_, criterion, pool_, threads);
+    if (parts_.empty()) parts_ = search_parts(study_, criterion, pool_, threads);
+    return copied_parts(parts_);
   }
 
   /// Φ of another list; −∞ where it leaves parameters open.
@@ -252,7 +260,8 @@ class ListEvaluation {
   Settings settings_;
   Study study_;
   Configurations poses_, pool_;
-  std::vector<int> in_pool_;  ///< the list's poses, by index in the pool
+  std::vector<SearchPart> parts_;  ///< of the pool
+  std::vector<int> in_pool_;       ///< the list's poses, by index in the pool
   std::vector<std::string> notes_;
   std::shared_ptr<const DesignMeasure> measure_;  ///< by the criterion in use
   double degree_ = 0.0;

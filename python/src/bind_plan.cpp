@@ -79,8 +79,10 @@ void bind_parameter(py::module_& m) {
 
 void bind_pose(py::module_& m) {
   using P = PlannedPose;
-  py::class_<P>(m, "Pose", "One pose of a plan; SI units.")
-      .def_readonly("id", &P::id, "1, 2, … as in the files")
+  py::class_<P> bound(m, "Pose", "One pose of a plan; SI units.");
+  for (const ChoiceKey& key : choice_keys)
+    bound.def_property_readonly(key.name, [key](const P& p) { return text_or_none(label_of(p.choices, key.name)); });
+  bound.def_readonly("id", &P::id, "1, 2, … as in the files")
       .def_readonly("candidate", &P::candidate,
                     "zero-based index of the candidate or block; None where it was found between them")
       .def_readonly("measured", &P::measured, "was there before: not to be measured again")
@@ -96,8 +98,6 @@ void bind_pose(py::module_& m) {
             return result;
           },
           "of a parallel robot, by name")
-      .def_property_readonly("load_case", [](const P& p) { return text_or_none(p.load_case); })
-      .def_property_readonly("station", [](const P& p) { return text_or_none(p.station); })
       .def_property_readonly("tool_pose", &tool_pose, "4 × 4, nominal, in the measurement frame; None for bare blocks")
       .def_readonly("contribution", &P::contribution, "share of all information")
       .def_property_readonly(
@@ -155,14 +155,16 @@ void bind_plan_class(py::module_& m) {
                          "Which poses to measure, and how good the result will be; docs/plan-file.md.");
   // Of plan(…, validation=k), which sets it on its result.
   bound.attr("validation") = py::none();
+  for (const ChoiceKey& key : choice_keys)
+    bound.def_property_readonly((std::string(key.name) + "s").c_str(), each([key](const PlannedPose& p) {
+                                  return text_or_none(label_of(p.choices, key.name));
+                                }));
   bound.def_readonly("poses", &Plan::poses)
       .def_property_readonly("configurations", &configurations, "N × n, SI, without load cases and stations")
       .def_property_readonly("names", name_of(&NamedValue::name), "of the columns of configurations")
       .def_property_readonly("units", name_of(&NamedValue::unit), "of the columns of configurations")
       .def_property_readonly("candidates", each([](const PlannedPose& p) { return p.candidate; }),
                              "zero-based index of each pose's candidate or block; None: found between them")
-      .def_property_readonly("stations", each([](const PlannedPose& p) { return text_or_none(p.station); }))
-      .def_property_readonly("load_cases", each([](const PlannedPose& p) { return text_or_none(p.load_case); }))
       .def_property_readonly(
           "contributions",
           [](const Plan& p) { return array_of(of_each(p.poses, [](const auto& q) { return q.contribution; })); },

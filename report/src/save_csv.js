@@ -1,3 +1,5 @@
+import { choicesOf } from './text/choices.js';
+
 /** A name as a CSV cell: quoted where it has a comma or a quote. @param {string} name */
 const quoted = (name) => (/[",]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
 
@@ -11,14 +13,12 @@ export function posesCsv(poses, actuatorUnits = {}, locked = new Set()) {
   if (poses.length === 0) return '';
   const first = poses[0];
   const actuators = Object.keys(poses.find((pose) => pose.actuators)?.actuators ?? {});
-  const conditions = Object.keys(first.conditions ?? {});
   const withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const header = [
     'pose',
     ...first.names.map((name, k) => withUnit(name, first.units[k])),
     ...actuators.map((name) => withUnit(name, actuatorUnits[name])),
-    ...['load_case', 'station'].filter((choice) => first[choice]),
-    ...conditions,
+    ...choicesOf(first).map(([column]) => column),
     ...(locked.size > 0 ? ['fixed'] : []),
   ];
   const lines = poses.map((pose) =>
@@ -26,8 +26,7 @@ export function posesCsv(poses, actuatorUnits = {}, locked = new Set()) {
       pose.id,
       ...pose.configuration,
       ...actuators.map((name) => pose.actuators?.[name] ?? ''),
-      ...['load_case', 'station'].filter((choice) => pose[choice]).map((choice) => quoted(pose[choice])),
-      ...conditions.map((name) => quoted(pose.conditions[name])),
+      ...choicesOf(pose).map(([, , label]) => quoted(label)),
       ...(locked.size > 0 ? [locked.has(pose.id) ? 'yes' : 'no'] : []),
     ].join(','),
   );

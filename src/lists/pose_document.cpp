@@ -155,13 +155,10 @@ class ListDocument : public PoseDocument {
     for (std::size_t p = 0; p < poses_.configurations.size(); ++p) {
       SequencePose pose;
       pose.id = poses_.ids[p];
-      for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-        const Coordinate& c = coordinates_[k];
-        const double value = values.configurations[p * coordinates_.size() + k];
-        if (!c.choice()) pose.values.push_back(value);
-        else if (c.name == "load_case") pose.load_case = c.label_at(value);
-        else pose.conditions.emplace_back(c.name, c.label_at(value));
-      }
+      const auto q = std::span(values.configurations).subspan(p * coordinates_.size(), coordinates_.size());
+      for (std::size_t k = 0; k < coordinates_.size(); ++k)
+        if (!coordinates_[k].choice()) pose.values.push_back(q[k]);
+      pose.choices = choices_at(coordinates_, q);
       sequence.poses.push_back(std::move(pose));
     }
     const Exported exported = export_poses(format_, sequence, {});

@@ -75,7 +75,6 @@ CommandSolver::CommandSolver(std::unique_ptr<TipModel> nominal, std::unique_ptr<
     throw std::invalid_argument("command solver: corrections and limits of another robot");
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!limits_[i].choice()) ++moving_;
-    if (limits_[i].name == "load_case") load_case_ = int(i);
     listed_ = listed_ || (limits_[i].discrete() && !limits_[i].choice());
   }
   commanded_ = calibrated_->actuators();
@@ -92,9 +91,7 @@ CommandSolver::CommandSolver(std::unique_ptr<TipModel> nominal, std::unique_ptr<
   }
 }
 
-Point CommandSolver::point(std::span<const double> q) const {
-  return {q, correction_, 0, load_case_ < 0 ? 0 : int(q[std::size_t(load_case_)])};
-}
+Point CommandSolver::point(std::span<const double> q) const { return {q, correction_, chosen_at(limits_, q)}; }
 
 bool CommandSolver::target(std::span<const double> q, Eigen::Isometry3d& X) const {
   static thread_local Twists none;

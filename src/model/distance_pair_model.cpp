@@ -77,7 +77,7 @@ std::span<const double> DistancePairModel::tip_part(std::span<const double> corr
 
 bool DistancePairModel::end(const Point& at, std::size_t which, std::span<const int> selected, End& result) const {
   const std::vector<double> q = at_end(at.q, which);
-  if (!tip_->linearise({q, tip_part(at.correction), 0, at.load_case}, selected, result.X, result.twists,
+  if (!tip_->linearise({q, tip_part(at.correction), at.chosen}, selected, result.X, result.twists,
                        &result.reading_twists))
     return false;
   // Without its tool the tip's catalogue ends earlier than the tip knows: what follows is not its own.
@@ -151,7 +151,7 @@ bool DistancePairModel::do_configuration_at(std::span<const double> actuators, c
   for (std::size_t i = 0; i < 2; ++i) {
     const std::vector<double> from = at_end(start.q, i);
     std::vector<double> own = from;
-    const Point at{from, tip_part(start.correction), 0, start.load_case};
+    const Point at{from, tip_part(start.correction), start.chosen};
     if (!tip_->configuration_at(actuators.subspan(i * each, each), at, own)) return false;
     std::copy_n(own.begin(), moving_, q.begin() + std::ptrdiff_t(i * moving_));
   }
@@ -171,7 +171,7 @@ bool DistancePairModel::do_actuator_values(const Point& at, std::span<double> va
   const std::size_t actuators = values.size() / 2;
   const auto values_at = [&](std::size_t which, std::span<double> own) {
     const std::vector<double> q = at_end(at.q, which);
-    return tip_->actuator_values({q, tip_part(at.correction), 0, at.load_case}, own);
+    return tip_->actuator_values({q, tip_part(at.correction), at.chosen}, own);
   };
   return values_at(0, values.first(actuators)) && values_at(1, values.last(actuators));
 }
@@ -272,7 +272,7 @@ bool DistancePairModel::do_pull_back(const Point& at, std::span<const int> selec
     for (Eigen::Index j = 0; j < readings; ++j) own.by.reading_twists.col(j) *= tip_->reading_noise()[std::size_t(j)];
     std::fill(of_end.begin(), of_end.end(), 0.0);
     const std::vector<double> q = at_end(at.q, i);
-    if (!tip_->pull_back({q, tip_part(at.correction), 0, at.load_case}, selected, own.by, of_end)) return false;
+    if (!tip_->pull_back({q, tip_part(at.correction), at.chosen}, selected, own.by, of_end)) return false;
     for (std::size_t k = 0; k < moving_; ++k) gradient[i * moving_ + k] = of_end[k];
   }
   return true;

@@ -215,7 +215,7 @@ void ElasticChain::torques(std::span<const double> q, int load, bool link_weight
 double ElasticChain::load_alone(const Point& at, std::size_t coordinate) const {
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
-  torques(at.readings(), at.load_case, false, std::span(torque).first(joints));
+  torques(at.readings(), at.chosen.load_case, false, std::span(torque).first(joints));
   return torque[coordinate];
 }
 
@@ -223,7 +223,7 @@ void ElasticChain::deflect(const Point& at, std::span<double> deflection, std::s
   std::array<double, max_joints> torque{};
   const std::size_t joints = chain_.coordinates().size();
   const auto q = at.readings();
-  torques(q, at.load_case, std::span(torque).first(joints));
+  torques(q, at.chosen.load_case, std::span(torque).first(joints));
   const auto elastic =
       at.correction.empty() ? at.correction : at.correction.subspan(std::size_t(first_), springs_.size());
   const auto value = [&](std::size_t i) {

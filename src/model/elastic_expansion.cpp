@@ -126,7 +126,7 @@ std::vector<double> ElasticChain::largest_torques(const Point& at) const {
       q[c] = 2 * std::numbers::pi / samples * double(rest % samples);
       rest /= samples;
     }
-    torques(q, at.load_case, torque);
+    torques(q, at.chosen.load_case, torque);
     for (std::size_t c = 0; c < joints; ++c) values[c][i] = torque[c];
   }
   std::vector<double> largest;

@@ -59,9 +59,9 @@ ExplicitModel::ExplicitModel(std::unique_ptr<TipModel> tip, std::unique_ptr<Meas
 
 ExplicitModel::Parts ExplicitModel::parts(const Point& at) const {
   const std::size_t tip = at.correction.empty() ? 0 : std::size_t(tip_parameters_);
-  return {{at.q.first(tip_->coordinates().size()), at.correction.first(tip), 0, at.load_case},
+  return {{at.q.first(tip_->coordinates().size()), at.correction.first(tip), at.chosen},
           at.correction.subspan(tip),
-          at.station};
+          at.chosen.station};
 }
 
 /// Twists of the selected parameters (zero for the instrument's own columns) and of what moves the tip at random, 1σ

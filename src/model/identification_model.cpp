@@ -53,6 +53,29 @@ std::string Coordinate::label_at(double value) const {
   return at == values.end() ? fmt::format("{}", value) : labels[std::size_t(at - values.begin())];
 }
 
+PoseChoices choices_at(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
+  PoseChoices choices;
+  for (const ChoiceKey& key : choice_keys)
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      if (coordinates[i].choice() && coordinates[i].name == key.name)
+        choices.emplace_back(key.name, coordinates[i].label_at(q[i]));
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (coordinates[i].labels.size() > 1 && choice_key(coordinates[i].name) == nullptr)
+      choices.emplace_back(coordinates[i].name, coordinates[i].label_at(q[i]));
+  return choices;
+}
+
+Chosen chosen_at(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
+  static constexpr std::pair<std::string_view, int Chosen::*> members[] = {{"station", &Chosen::station},
+                                                                           {"load_case", &Chosen::load_case}};
+  Chosen chosen;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (coordinates[i].choice())
+      for (const auto& [name, member] : members)
+        if (coordinates[i].name == name) chosen.*member = int(q[i]);
+  return chosen;
+}
+
 void IdentificationModel::set_nominal(int index, double value) {
   if (shift_.empty()) shift_.assign(parameters_.size(), 0.0);
   Parameter& p = parameters_.at(std::size_t(index));
@@ -84,13 +107,7 @@ std::span<const double> IdentificationModel::total(std::span<const double> corre
 }
 
 Point IdentificationModel::point(std::span<const double> q, std::span<const double> total) const {
-  Point at{q, total};
-  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
-    if (!coordinates_[i].choice()) continue;
-    if (coordinates_[i].name == "station") at.station = int(q[i]);
-    if (coordinates_[i].name == "load_case") at.load_case = int(q[i]);
-  }
-  return at;
+  return {q, total, chosen_at(coordinates_, q)};
 }
 
 bool IdentificationModel::linearise(std::span<const double> q, std::span<const double> correction,

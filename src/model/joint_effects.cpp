@@ -249,7 +249,7 @@ JointEffects::Inside& JointEffects::inside(const Point& at, std::span<const int>
   in.selected.clear();
   for (const int index : selected)
     in.selected.push_back(index < first_ ? index : index < first_ + count ? beyond : index - count);
-  in.arm = {in.turned, without_block(at.correction, first_, effects_.size(), in.rest), at.station, at.load_case,
+  in.arm = {in.turned, without_block(at.correction, first_, effects_.size(), in.rest), at.chosen,
             at.readings().first(own)};
   return in;
 }

@@ -104,13 +104,14 @@ nlohmann::ordered_json sight_json(const TargetSight& sight) {
           {"hidden_by", sight.hidden_by.empty() ? Json(nullptr) : Json(sight.hidden_by)}};
 }
 
-nlohmann::ordered_json conditions_json(const Conditions& conditions) {
-  Json json = Json::object();
-  for (const auto& [name, choice] : conditions) {
-    const auto numbers = numbers_in(choice);
-    json[name] = numbers && numbers->size() == 1 ? Json(numbers->front()) : Json(choice);
+void write_choices(nlohmann::ordered_json& pose, const PoseChoices& choices, bool nulls) {
+  if (nulls)
+    for (const ChoiceKey& key : choice_keys) pose[key.name] = nullptr;
+  for (const auto& [name, label] : choices) {
+    const auto numbers = numbers_in(label);
+    if (choice_key(name) != nullptr) pose[name] = label;
+    else pose["conditions"][name] = numbers && numbers->size() == 1 ? Json(numbers->front()) : Json(label);
   }
-  return json;
 }
 
 nlohmann::ordered_json actuators_json(const PlannedPose& pose) {
@@ -179,9 +180,7 @@ Json pose_json(const PlannedPose& pose) {
     json["configuration"] = values;
     json["names"] = names;
     json["units"] = units;
-    json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
-    json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
-    if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
+    write_choices(json, pose.choices);
   }
   if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);

@@ -44,8 +44,19 @@ int id_of(const nlohmann::json& json) {
   return fits ? json.get<int>() : -1;
 }
 
-std::string label_of(const nlohmann::json& pose, const char* key, const SourcePlace& place) {
+std::string text_at(const nlohmann::json& pose, const char* key, const SourcePlace& place) {
   return !pose.contains(key) || pose[key].is_null() ? std::string() : name_of(pose[key], place);
+}
+
+PoseChoices choices_of(const nlohmann::json& pose, const SourcePlace& place) {
+  PoseChoices choices;
+  for (const ChoiceKey& key : choice_keys)
+    if (const std::string label = text_at(pose, key.name, place); !label.empty()) choices.emplace_back(key.name, label);
+  if (pose.contains("conditions"))
+    for (const auto& [name, label] : pose["conditions"].items())
+      choices.emplace_back(name_of(name, place),
+                           label.is_number() ? fmt::format("{}", label.get<double>()) : name_of(label, place));
+  return choices;
 }
 
 Eigen::Vector3d vector_of(const nlohmann::json& json, const SourcePlace& place) {
@@ -129,23 +140,17 @@ class SequenceReader {
           place_,
           fmt::format("pose {} has {} values for {} names", pose.id, pose.values.size(), sequence_.names.size()),
           "one value a coordinate");
-    pose.load_case = label_of(json, "load_case", place_);
-    pose.station = label_of(json, "station", place_);
-    if (json.contains("conditions"))
-      for (const auto& [name, choice] : json["conditions"].items())
-        pose.conditions.emplace_back(name_of(name, place_), choice.is_number() ? fmt::format("{}", choice.get<double>())
-                                                                               : name_of(choice, place_));
+    pose.choices = choices_of(json, place_);
+    using Choice = PoseChoices::value_type;
     if (!sequence_.poses.empty() &&
-        !std::equal(pose.conditions.begin(), pose.conditions.end(), sequence_.poses.front().conditions.begin(),
-                    sequence_.poses.front().conditions.end(),
-                    [](const auto& a, const auto& b) { return a.first == b.first; }))
-      throw InputError(place_, fmt::format("pose {} has other conditions than the first", pose.id),
-                       "the same ones for all poses");
+        !std::ranges::equal(pose.choices, sequence_.poses.front().choices, {}, &Choice::first, &Choice::first))
+      throw InputError(place_, fmt::format("pose {} has other choices than the first", pose.id),
+                       "the same ones (load case, station, conditions) for all poses");
     if (json.contains("actuators") && !json["actuators"].empty()) sequence_.is_platform = true;
     if (json.contains("tool_pose")) pose.tool_pose = tool_pose_of(json["tool_pose"], place_);
     if (json.contains("targets"))
       for (const nlohmann::json& target : json["targets"])
-        pose.targets.push_back({name_of(target.at("target"), place_), label_of(target, "station", place_),
+        pose.targets.push_back({name_of(target.at("target"), place_), text_at(target, "station", place_),
                                 vector_of(target.at("position"), place_),
                                 target.contains("hidden_by") && !target["hidden_by"].is_null()});
     sequence_.poses.push_back(std::move(pose));

@@ -33,9 +33,7 @@ Json stop_json(const PlannedPose& pose) {
   Json values = Json::array();
   for (const NamedValue& v : pose.configuration) values.push_back(v.value);
   Json json = {{"id", pose.id}, {"configuration", values}};
-  json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
-  json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
-  if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
+  write_choices(json, pose.choices);
   if (!pose.actuators.empty()) json["actuators"] = actuators_json(pose);
   if (pose.tool_pose) json["tool_pose"] = tool_pose_json(*pose.tool_pose);
   if (pose.nearest) json["nearest"] = nearest_json(pose.nearest);
@@ -57,20 +55,28 @@ const RouteMotion* motion_to(const Route& route, int id) {
 }
 
 /// "joint_a2 rising, temperature 20"
-std::string conditions_text(const Conditions& conditions) {
+std::string conditions_text(const PoseChoices& choices) {
   std::string text;
-  for (const auto& [name, choice] : conditions)
-    text += (text.empty() ? "" : ", ") +
-            (is_approach(name) ? name.substr(0, name.size() - approach_suffix.size()) : name) + " " + choice;
+  for (const auto& [name, label] : choices)
+    if (choice_key(name) == nullptr)
+      text += (text.empty() ? "" : ", ") +
+              (is_approach(name) ? name.substr(0, name.size() - approach_suffix.size()) : name) + " " + label;
   return text;
 }
 
 std::string steps_table(const Route& route) {
   using A = Table::Align;
-  std::vector<std::string> header = {"",    "pose",     "station", "load case",   "motion",
-                                     "via", "found by", "elapsed", "targets seen"};
-  std::vector<A> align = {A::right, A::right, A::left, A::left, A::right, A::right, A::left, A::right, A::right};
-  const bool conditions = !route.poses.empty() && !route.poses.front().conditions.empty();
+  std::vector<std::string> header = {"", "pose"};
+  std::vector<A> align = {A::right, A::right};
+  for (auto key = choice_keys.rbegin(); key != choice_keys.rend(); ++key) {
+    header.emplace_back(key->shown);
+    align.push_back(A::left);
+  }
+  for (const char* name : {"motion", "via", "found by", "elapsed", "targets seen"}) {
+    header.emplace_back(name);
+    align.push_back(header.back() == "found by" ? A::left : A::right);
+  }
+  const bool conditions = !route.poses.empty() && !conditions_text(route.poses.front().choices).empty();
   if (conditions) header.emplace_back("conditions"), align.push_back(A::left);
   Table table(std::move(header), std::move(align));
   double elapsed = 0;
@@ -81,17 +87,16 @@ std::string steps_table(const Route& route) {
     if (motion != nullptr) elapsed += motion->seconds + motion->change_seconds;
     const auto seen =
         std::count_if(pose.sights.begin(), pose.sights.end(), [](const TargetSight& s) { return s.hidden_by.empty(); });
-    std::vector<std::string> row = {
-        std::to_string(k + 1),
-        std::to_string(pose.id),
-        pose.station,
-        pose.load_case,
-        motion == nullptr ? "" : seconds_text(motion->seconds),
-        motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
-        motion == nullptr ? "" : motion->found_by,
-        seconds_text(elapsed),
-        pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())};
-    if (conditions) row.push_back(conditions_text(pose.conditions));
+    std::vector<std::string> row = {std::to_string(k + 1), std::to_string(pose.id)};
+    for (auto key = choice_keys.rbegin(); key != choice_keys.rend(); ++key)
+      row.push_back(label_of(pose.choices, key->name));
+    row.insert(
+        row.end(),
+        {motion == nullptr ? "" : seconds_text(motion->seconds),
+         motion == nullptr || motion->points.size() < 3 ? "" : std::to_string(motion->points.size() - 2),
+         motion == nullptr ? "" : motion->found_by, seconds_text(elapsed),
+         pose.sights.empty() || !pose.sights.front().judged ? "" : fmt::format("{} of {}", seen, pose.sights.size())});
+    if (conditions) row.push_back(conditions_text(pose.choices));
     table.row(std::move(row));
     elapsed += route.settle + (route.reading.empty() ? 0.0 : route.reading[k]);
   }

@@ -48,8 +48,7 @@ class ExplicitRows : public HarmonicRows {
         measurement_(measurement),
         noise_(measurement.harmonic_noise()),
         instrument_(noise_.instead != nullptr ? *noise_.instead : measurement),
-        station_(at.station),
-        load_case_(at.load_case),
+        chosen_(at.chosen),
         correction_(at.correction.begin(), at.correction.end()),
         selected_(std::move(columns.selected)),
         tip_parameters_(tip_parameters) {
@@ -91,7 +90,7 @@ class ExplicitRows : public HarmonicRows {
   const MeasurementModel& measurement_;
   HarmonicNoise noise_;
   const MeasurementModel& instrument_;
-  int station_, load_case_;
+  Chosen chosen_;
   std::vector<double> correction_;
   std::vector<int> selected_;
   int tip_parameters_;
@@ -118,7 +117,7 @@ void ExplicitRows::take_displacement(const Repeatability& repeatability) {
 
 void ExplicitRows::factorise(const Repeatability& repeatability) {
   const Eigen::Isometry3d anywhere = Eigen::Isometry3d::Identity();
-  const MeasurementModel::Sighting sighting{anywhere, own_correction(), station_};
+  const MeasurementModel::Sighting sighting{anywhere, own_correction(), chosen_.station};
   const Eigen::Index rows = instrument_.rows();
   Eigen::MatrixXd covariance(rows, rows), moved(rows, 3);
   instrument_.covariance(sighting, covariance);
@@ -163,7 +162,7 @@ void ExplicitRows::list_parts() {
 void ExplicitRows::take_spreads() {
   const Eigen::Isometry3d anywhere = Eigen::Isometry3d::Identity();
   Eigen::VectorXd read(instrument_.rows());
-  instrument_.read({anywhere, own_correction(), station_}, read);
+  instrument_.read({anywhere, own_correction(), chosen_.station}, read);
   Eigen::Matrix3Xd e = read.reshaped(3, targets_);
   e.colwise() -= e.rowwise().mean().eval();
   const double mean = e.colwise().squaredNorm().mean();
@@ -176,7 +175,7 @@ void ExplicitRows::take_spreads() {
 /// Remainders of whitened columns: those of the tip, at each point's distance from its origin.
 void ExplicitRows::take_remainders(const std::vector<HarmonicColumns::Remainder>& remainders) {
   const Eigen::Isometry3d at_the_tip = Eigen::Isometry3d::Identity();
-  const MeasurementModel::Sighting sighting{at_the_tip, own_correction(), station_};
+  const MeasurementModel::Sighting sighting{at_the_tip, own_correction(), chosen_.station};
   const Eigen::Index rows = instrument_.rows();
   Eigen::MatrixXd turned(rows, 3);
   Twists turns = Twists::Zero(6, 3);
@@ -216,11 +215,11 @@ bool ExplicitRows::read(std::span<const double> q, std::span<const double> facto
 /// Columns without their factors, of the arm bent by a share of its deflections; null: as it stands.
 bool ExplicitRows::rows_of_tip(std::span<const double> q, const double* share, ExplicitWork& w) const {
   const std::size_t tip = correction_.empty() ? 0 : std::size_t(tip_parameters_);
-  const Point at{q.first(tip_.coordinates().size()), std::span(correction_).first(tip), 0, load_case_};
+  const Point at{q.first(tip_.coordinates().size()), std::span(correction_).first(tip), chosen_};
   if (!(share != nullptr ? tip_.linearise_bent(at, *share, selected_, w.X, w.twists)
                          : tip_.linearise(at, selected_, w.X, w.twists, joints_ > 0 ? &w.readings : nullptr)))
     return false;
-  const MeasurementModel::Sighting sighting{w.X, own_correction(), station_};
+  const MeasurementModel::Sighting sighting{w.X, own_correction(), chosen_.station};
   const auto columns = Eigen::Index(selected_.size());
   w.rows.resize(instrument_.rows(), columns + joints_);
   for (Eigen::Index c = 0; c < columns; ++c) {

@@ -83,12 +83,8 @@ Json change_json(const ListChange& change) {
       names.push_back(v.name);
       values.push_back(v.value);
     }
-    json["poses"].push_back({{"id", pose.id},
-                             {"names", names},
-                             {"configuration", values},
-                             {"load_case", pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case)},
-                             {"station", pose.station.empty() ? Json(nullptr) : Json(pose.station)}});
-    if (!pose.conditions.empty()) json["poses"].back()["conditions"] = conditions_json(pose.conditions);
+    json["poses"].push_back({{"id", pose.id}, {"names", names}, {"configuration", values}});
+    write_choices(json["poses"].back(), pose.choices);
   }
   return json;
 }

@@ -119,10 +119,8 @@ Json pose_json(const PlannedPose& pose) {
   Json json = {{"id", pose.id}, {"names", names}, {"units", units}, {"configuration", values}};
   json["actuators"] = Json::object();
   for (const NamedValue& v : pose.actuators) json["actuators"][v.name] = v.value;
-  json["load_case"] = pose.load_case.empty() ? Json(nullptr) : Json(pose.load_case);
-  json["station"] = pose.station.empty() ? Json(nullptr) : Json(pose.station);
+  write_choices(json, pose.choices);
   json["listed"] = pose.listed ? Json{{"id", pose.listed->id}, {"line", pose.listed->line}} : Json(nullptr);
-  if (!pose.conditions.empty()) json["conditions"] = conditions_json(pose.conditions);
   return json;
 }
 
@@ -131,17 +129,13 @@ std::string table_of(const std::vector<PlannedPose>& poses) {
   const PlannedPose& first = poses.front();
   std::vector<std::string> header{"pose"};
   for (const NamedValue& v : first.configuration) header.push_back(fmt::format("{} [{}]", v.name, unit_of(v.unit)));
-  if (!first.load_case.empty()) header.emplace_back("load case");
-  if (!first.station.empty()) header.emplace_back("station");
-  for (const auto& [name, choice] : first.conditions) header.push_back(name);
+  for (const auto& [name, label] : first.choices) header.push_back(shown_choice(name));
   if (first.listed) header.emplace_back("of the list");
   Table table(header, std::vector<Table::Align>(header.size(), Table::Align::right));
   for (const PlannedPose& pose : poses) {
     std::vector<std::string> cells{std::to_string(pose.id)};
     for (const NamedValue& v : pose.configuration) cells.push_back(shown_coordinate(v));
-    if (!pose.load_case.empty()) cells.push_back(pose.load_case);
-    if (!pose.station.empty()) cells.push_back(pose.station);
-    for (const auto& [name, choice] : pose.conditions) cells.push_back(choice);
+    for (const auto& [name, label] : pose.choices) cells.push_back(label);
     if (pose.listed) cells.push_back(std::to_string(pose.listed->id));
     table.row(cells);
   }

@@ -130,13 +130,12 @@ class SequenceCheck {
     const std::vector<double>& before = motion.points[motion.points.size() - 2];
     for (const Coordinate& c : limits_) {
       if (c.arrives.empty()) continue;
-      const auto at = std::find_if(pose->conditions.begin(), pose->conditions.end(),
-                                   [&](const auto& condition) { return condition.first == c.name; });
+      const std::string side = label_of(pose->choices, c.name);
       const auto joint = std::size_t(
           std::find_if(moving_.begin(), moving_.end(), [&](const Coordinate& m) { return m.name == c.arrives; }) -
           moving_.begin());
       const double way = motion.points.back()[joint] - before[joint];
-      if (at == pose->conditions.end() || (at->second == c.labels.front() ? way : -way) < c.overrun * (1 - slack))
+      if (side.empty() || (side == c.labels.front() ? way : -way) < c.overrun * (1 - slack))
         refuse(fmt::format("the motion from {} to {} does not arrive from the stated side: {}", motion.from, motion.to,
                            c.name),
                fmt::format("rising or falling, from {:.4g} {} or more", c.overrun, moving_[joint].unit));

@@ -17,26 +17,6 @@ std::vector<NamedValue> named(const std::vector<Coordinate>& coordinates, std::s
   return result;
 }
 
-/// Label of a choice at q, e.g. the load case; empty without such a coordinate.
-std::string chosen_label(const std::vector<Coordinate>& coordinates, std::span<const double> q, const char* name) {
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const Coordinate& c = coordinates[i];
-    if (c.choice() && c.name == name) return c.label_at(q[i]);
-  }
-  return {};
-}
-
-/// Other choices of a pose, if there are any.
-Conditions conditions_at(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
-  Conditions result;
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const Coordinate& c = coordinates[i];
-    if (!c.choice() || c.name == "load_case" || c.name == "station") continue;
-    if (c.labels.size() > 1) result.emplace_back(c.name, c.label_at(q[i]));
-  }
-  return result;
-}
-
 void fill_parameters(Plan& plan, const Variant& variant, const Evaluation& evaluation, const std::string& name) {
   const VariantColumns& columns = variant.columns;
   for (const Role role : {Role::interest, Role::nuisance})
@@ -59,9 +39,7 @@ void name_criterion(Plan& plan, const std::string& name) {
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q) {
   PlannedPose pose;
   pose.configuration = named(model.coordinates(), q);
-  pose.load_case = chosen_label(model.coordinates(), q, "load_case");
-  pose.station = chosen_label(model.coordinates(), q, "station");
-  pose.conditions = conditions_at(model.coordinates(), q);
+  pose.choices = choices_at(model.coordinates(), q);
   std::vector<double> actuators(model.actuators().size());
   if (model.actuator_values(q, actuators)) pose.actuators = named(model.actuators(), actuators);
   pose.tool_pose = model.tool_pose(q);

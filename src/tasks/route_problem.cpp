@@ -45,11 +45,11 @@ bool reads_in_turn(const MeasurementSpec& measurement) {
   return points != nullptr && std::holds_alternative<TrackerNoise>(points->noise);
 }
 
-std::string temperature_of(const PlannedPose& pose) {
-  for (const auto& [name, choice] : pose.conditions)
-    if (name == "temperature") return choice;
-  return {};
-}
+/// Time of changing a choice by hand.
+constexpr std::pair<const char*, double MotionSpec::*> change_times[] = {
+    {"station", &MotionSpec::station_change},
+    {"load_case", &MotionSpec::load_change},
+    {"temperature", &MotionSpec::temperature_change}};
 
 /// Orders the stops that can be reached, and collects what is written of the way.
 class Router {
@@ -143,9 +143,8 @@ class Router {
 
   /// Refuses backlash without a known way to the first pose.
   void require_beginning() const {
-    const auto arrives = [](const auto& condition) { return is_approach(condition.first); };
-    const Conditions& conditions = stops_.back().pose.conditions;
-    if (!options_.from_home && std::any_of(conditions.begin(), conditions.end(), arrives))
+    const auto arrives = [](const auto& choice) { return is_approach(choice.first); };
+    if (!options_.from_home && std::ranges::any_of(stops_.back().pose.choices, arrives))
       throw CannotDo("joints with backlash arrive from a stated side, even at the first pose: begin --from-home");
   }
 
@@ -180,7 +179,7 @@ class Router {
     const std::vector<double> lead = space_.lead(stops_[stop].configuration);
     if (space_.is_free(lead, q)) return {};
     std::string sides;
-    for (const auto& [name, side] : stops_[stop].pose.conditions)
+    for (const auto& [name, side] : stops_[stop].pose.choices)
       if (is_approach(name)) sides += (sides.empty() ? "" : ", ") + name + " " + side;
     const std::string why = space_.violation(lead);
     return "no room to arrive from the stated side (" + sides + "): " + (why.empty() ? "collision on the way" : why);
@@ -250,9 +249,10 @@ class Router {
   double change(int i, int j) const {
     if (i == 0 || j == 0) return 0.0;
     const PlannedPose &a = stops_[std::size_t(i)].pose, &b = stops_[std::size_t(j)].pose;
-    return (a.station != b.station ? problem_.workspace.motion.station_change : 0.0) +
-           (a.load_case != b.load_case ? problem_.workspace.motion.load_change : 0.0) +
-           (temperature_of(a) != temperature_of(b) ? problem_.workspace.motion.temperature_change : 0.0);
+    double seconds = 0.0;
+    for (const auto& [name, time] : change_times)
+      if (label_of(a.choices, name) != label_of(b.choices, name)) seconds += problem_.workspace.motion.*time;
+    return seconds;
   }
 
   double cost(int i, int j) {

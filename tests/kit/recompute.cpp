@@ -42,8 +42,7 @@ std::vector<std::vector<double>> configurations_of(const Problem& problem, const
         q.push_back(pose.configuration.at(next++).value);
         continue;
       }
-      const std::string& label = c.name == "station" ? pose.station : pose.load_case;
-      const auto at = std::find(c.labels.begin(), c.labels.end(), label);
+      const auto at = std::find(c.labels.begin(), c.labels.end(), label_of(pose.choices, c.name));
       q.push_back(at == c.labels.end() ? -1 : c.values[std::size_t(at - c.labels.begin())]);
     }
     poses.push_back(std::move(q));

@@ -68,8 +68,7 @@ PoseSequence labelled(const std::string& label) {
   PoseSequence sequence = parse_sequence(written.dump(), "p.json");
   for (SequencePose& pose : sequence.poses) {
     // Reading refuses control characters; writers do not rely on it.
-    pose.station = label + std::to_string(pose.id);
-    pose.load_case = label + std::to_string(pose.id + 2);
+    pose.choices = {{"load_case", label + std::to_string(pose.id + 2)}, {"station", label + std::to_string(pose.id)}};
     pose.references = {label + "5"};
     pose.tool_pose = Eigen::Isometry3d::Identity();
   }
@@ -145,7 +144,7 @@ TEST(HostileNames, ComeBackFromListsAsTheyWere) {
       const auto column = std::find(table.names.begin(), table.names.end(), "station");
       if (column == table.names.end()) continue;
       const PoseCell& cell = table.rows[0].cells[std::size_t(column - table.names.begin())];
-      EXPECT_EQ(std::get<std::string>(cell), sequence.poses[0].station) << format.name;
+      EXPECT_EQ(std::get<std::string>(cell), label_of(sequence.poses[0].choices, "station")) << format.name;
     }
   }
 }
@@ -192,7 +191,7 @@ TEST(HostileNames, OfJointsAreTextInYamlAndXml) {
   for (const std::string& name : hostile) {
     PoseSequence sequence = labelled("A");
     sequence.names[2] = name;
-    for (SequencePose& pose : sequence.poses) pose.station = pose.load_case = "";
+    for (SequencePose& pose : sequence.poses) pose.choices.clear();
     for (const char* format :
          {"joint-trajectory", "moveit", "robot-calibration", "figaroh", "industrial-calibration"}) {
       const Exported exported = export_poses(find_pose_format(format), sequence, {});

@@ -129,7 +129,7 @@ TEST(PoseLists, ATrajectoryWithoutHoldsIsAListOfPosesAndRepeatedPosesStayTwo) {
   PoseSequence sequence = random_sequence(1, 3, 1);
   sequence.poses[1].values = sequence.poses[0].values;
   EXPECT_EQ(format.read(text_in("joint-trajectory", sequence), "t").rows.size(), 3U);
-  sequence.poses[1].load_case = "heavy";
+  sequence.poses[1].choices = {{"load_case", "heavy"}};
   EXPECT_THROW(format.write(sequence, {}), CannotDo);
 }
 

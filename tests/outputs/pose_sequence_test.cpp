@@ -17,8 +17,7 @@ TEST(PoseSequence, ReadsPlansAndRoutesAsTheyAreWritten) {
     PlannedPose planned;
     planned.id = pose.id;
     for (std::size_t i = 0; i < 6; ++i) planned.configuration.push_back({wanted.names[i], "rad", pose.values[i]});
-    planned.load_case = "heavy";
-    planned.station = "Süd";
+    planned.choices = {{"load_case", "heavy"}, {"station", "Süd"}, {"temperature", "20"}};
     planned.tool_pose = pose.tool_pose;
     for (const SequenceTarget& target : pose.targets) {
       TargetSight sight;
@@ -48,7 +47,7 @@ TEST(PoseSequence, ReadsPlansAndRoutesAsTheyAreWritten) {
     EXPECT_EQ(values_of(found), values_of(wanted));
     for (std::size_t k = 0; k < 4; ++k) {
       EXPECT_EQ(found.poses[k].id, wanted.poses[k].id);
-      EXPECT_EQ(found.poses[k].station, "Süd");
+      EXPECT_EQ(found.poses[k].choices, plan.poses[k].choices);
       EXPECT_LT((found.poses[k].tool_pose->matrix() - wanted.poses[k].tool_pose->matrix()).norm(), 1e-14);
       EXPECT_EQ(found.poses[k].targets[1].hidden, wanted.poses[k].targets[1].hidden);
       EXPECT_EQ(found.poses[k].measured, !found.is_route && k == 1);

@@ -125,10 +125,7 @@ TEST(RobotPrograms, StopAndTellWhatChangesBetweenPoses) {
   PoseSequence sequence = random_sequence(6, 4, 2);
   const char* stations[] = {"Süd \"1\"; x", "Süd \"1\"; x", "B", "B"};
   const char* loads[] = {"none", "none", "none", "20 kg [steel]"};
-  for (std::size_t k = 0; k < 4; ++k) {
-    sequence.poses[k].station = stations[k];
-    sequence.poses[k].load_case = loads[k];
-  }
+  for (std::size_t k = 0; k < 4; ++k) sequence.poses[k].choices = {{"load_case", loads[k]}, {"station", stations[k]}};
   for (const Case& c : cases()) {
     const Program program = c.read(find_pose_format(c.format).write(sequence, c.options));
     EXPECT_EQ(program.stops, (std::vector<std::size_t>{0, 2, 3})) << c.format;
@@ -138,7 +135,7 @@ TEST(RobotPrograms, StopAndTellWhatChangesBetweenPoses) {
     EXPECT_THAT(told, HasSubstr("station: B")) << c.format;
     EXPECT_THAT(told, HasSubstr("load case: 20 kg ")) << c.format;
   }
-  for (SequencePose& pose : sequence.poses) pose.station = pose.load_case = "only";
+  for (SequencePose& pose : sequence.poses) pose.choices = {{"load_case", "only"}, {"station", "only"}};
   for (const Case& c : cases())
     EXPECT_TRUE(c.read(find_pose_format(c.format).write(sequence, c.options)).stops.empty()) << "nothing changes";
 }
@@ -450,7 +447,7 @@ TEST(Hexapod, RefusesWhatItCannotPlace) {
   leaning.home[3] = 0;
   leaning.motions = {{0, 1, {leaning.home, {0, 0, 0, 0, 0.1, 0}, leaning.poses[0].values}, 1.0}};
   EXPECT_THROW(format.write(leaning, {}), InputError) << "turns on the way";
-  level.poses.back().station = "B";
+  level.poses.back().choices = {{"station", "B"}};
   EXPECT_THROW(format.write(level, {}), CannotDo) << "cannot wait for people";
 }
 

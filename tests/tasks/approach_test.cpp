@@ -74,9 +74,9 @@ TEST(Approach, EveryMotionOfARouteArrivesFromTheStatedSideByTheOverrun) {
   std::string temperature;
   for (const RouteMotion& motion : route.motions) {
     if (motion.to == 0) continue;
-    const auto& conditions = plan.poses[std::size_t(motion.to) - 1].conditions;
+    const PoseChoices& choices = plan.poses[std::size_t(motion.to) - 1].choices;
     const std::vector<double>&end = motion.points.back(), &before = motion.points[motion.points.size() - 2];
-    for (const auto& [name, choice] : conditions) {
+    for (const auto& [name, choice] : choices) {
       if (name == "temperature") {
         changes += int(choice != temperature);
         temperature = choice;

@@ -94,7 +94,6 @@ class CommandSolver {
   std::vector<Coordinate> limits_, commanded_;
   Options options_;
   std::size_t moving_ = 0;  ///< coordinates that are no choices; they are the first
-  int load_case_ = -1;      ///< coordinate; −1: there is none
   bool listed_ = false;     ///< a joint has listed positions only: loads are those there
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/blocks/pose_choices.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
@@ -43,6 +44,16 @@ Coordinate make_choice(const std::string& name, const std::vector<std::string>& 
 /// The side from which a coordinate with backlash arrives: `rising` (0) or `falling` (1), named JOINT.approach.
 Coordinate make_approach(const std::string& joint, double overrun);
 
+/// Labels of the choices at q; a condition that has one value alone is left out.
+PoseChoices choices_at(const std::vector<Coordinate>& coordinates, std::span<const double> q);
+
+/// Choices that a model computes with, as indices.
+struct Chosen {
+  int station = 0;    ///< among the instrument's
+  int load_case = 0;  ///< among the robot's
+};
+Chosen chosen_at(const std::vector<Coordinate>& coordinates, std::span<const double> q);
+
 /// One value that an instrument delivers at a configuration.
 struct Reading {
   std::string name;  ///< "P1.x"
@@ -53,9 +64,8 @@ struct Reading {
 struct Point {
   std::span<const double> q;           ///< configuration, SI
   std::span<const double> correction;  ///< ξ − nominal of every parameter; empty: all zero
-  int station = 0;                     ///< index among the instrument's
-  int load_case = 0;                   ///< index among the robot's
-  std::span<const double> read{};      ///< readings of the joints if they differ; empty: q
+  Chosen chosen{};
+  std::span<const double> read{};  ///< readings of the joints if they differ; empty: q
 
   std::span<const double> readings() const { return read.empty() ? q : read; }
 };

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+
+#include "posewright/blocks/pose_choices.hpp"
 
 namespace posewright {
 
@@ -23,7 +23,8 @@ nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-/// Choices of a pose by name; a temperature is a number.
-nlohmann::ordered_json conditions_json(const std::vector<std::pair<std::string, std::string>>& conditions);
+/// Adds the choices of a pose: keys of their own, then `conditions`; a temperature is a number.
+/// @param nulls  whether keys without a label are null; else they are left out
+void write_choices(nlohmann::ordered_json& pose, const PoseChoices& choices, bool nulls = true);
 
 }  // namespace posewright

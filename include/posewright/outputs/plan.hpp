@@ -10,17 +10,11 @@
 #include <vector>
 
 #include "posewright/blocks/parameter.hpp"
+#include "posewright/blocks/pose_choices.hpp"
 #include "posewright/criterion/observability_indices.hpp"
 #include "posewright/support/robust_aim.hpp"
 
 namespace posewright {
-
-/// Choices of a pose besides load case and station: the side of arrival of a joint, the temperature.
-/// Names and choices, in the order of the robot's coordinates.
-using Conditions = std::vector<std::pair<std::string, std::string>>;
-/// Condition for the side of arrival of a joint (model/identification_model.hpp, make_approach).
-inline constexpr std::string_view approach_suffix = ".approach";
-inline bool is_approach(std::string_view condition) { return condition.ends_with(approach_suffix); }
 
 /// A named value with its unit: one entry of a configuration or an actuator.
 struct NamedValue {
@@ -60,8 +54,7 @@ struct PlannedPose {
   bool fixed = false;                     ///< was in the plan before the search, still to be measured
   std::vector<NamedValue> configuration;  ///< empty for a plan made from bare blocks
   std::vector<NamedValue> actuators;      ///< of a parallel robot
-  std::string load_case, station;         ///< empty if the problem has none
-  Conditions conditions{};
+  PoseChoices choices{};
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<TargetSight> sights;             ///< where to look for the targets
   std::optional<BodyDistance> nearest{};       ///< of the bodies that are checked for collision

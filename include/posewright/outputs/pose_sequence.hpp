@@ -18,10 +18,9 @@ struct SequenceTarget {
 
 struct SequencePose {
   int id = 0;
-  bool measured = false;           ///< was there before the plan: not to be measured again
-  std::vector<double> values;      ///< SI, in the order of PoseSequence::names
-  std::string load_case, station;  ///< empty if there is none
-  Conditions conditions{};
+  bool measured = false;                       ///< was there before the plan: not to be measured again
+  std::vector<double> values;                  ///< SI, in the order of PoseSequence::names
+  PoseChoices choices{};                       ///< the same names for all poses
   std::optional<Eigen::Isometry3d> tool_pose;  ///< nominal, in the measurement frame
   std::vector<SequenceTarget> targets;
   std::vector<std::string> references;  ///< reference targets to measure while the robot stands here

@@ -1,3 +1,4 @@
+import { choicesOf } from '../text/choices.js';
 import { PlanFigures } from './plan_figures.js';
 
 /** Coordinates that differ by less are one: what encoders and rounding leave, rad or m. */
@@ -5,8 +6,7 @@ const same = 1e-5;
 
 /** What two poses must share to be one measurement. @param {any} p @param {any} q */
 function alike(p, q) {
-  if (p.station !== q.station || p.load_case !== q.load_case) return false;
-  if (JSON.stringify(p.conditions ?? {}) !== JSON.stringify(q.conditions ?? {})) return false;
+  if (JSON.stringify(choicesOf(p)) !== JSON.stringify(choicesOf(q))) return false;
   if (p.names.length !== q.names.length) return false;
   return p.names.every((name, k) => {
     const other = q.names.indexOf(name);

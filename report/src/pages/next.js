@@ -4,6 +4,7 @@ import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
 import { nextPlot } from '../plots/next.js';
 import { shell, shellFile } from '../sections/reproduce.js';
+import { choicesOf } from '../text/choices.js';
 import { fixed, plural, quantity, shownUnit } from '../text/units.js';
 
 const verdicts = { not_determined: 'go on', go_on: 'go on', reached: 'stop', flat: 'stop' };
@@ -53,10 +54,8 @@ function posesSection(n) {
   const [first] = n.poses;
   const shown = first.units.map((unit) => shownUnit(unit));
   const extra = [
-    ['load case', (p) => p.load_case],
-    ['station', (p) => p.station],
+    ...choicesOf(first).map(([, name], k) => [name, (p) => choicesOf(p)[k][2]]),
     ['of the list', (p) => p.listed && String(p.listed.id)],
-    ...Object.keys(first.conditions ?? {}).map((name) => [name, (p) => p.conditions[name]]),
   ].filter(([, of]) => of(first));
   const header = [
     'pose',

@@ -1,5 +1,5 @@
 import { h, svg } from '../dom.js';
-import { conditionTexts } from '../text/sentences.js';
+import { choiceTexts } from '../text/choices.js';
 import { percent } from '../text/units.js';
 
 /**
@@ -80,9 +80,7 @@ function row(list, entry, place, preview) {
   const notes = [
     pose.moved && 'moved',
     list.unknown.includes(entry.id) && 'its figures are not known',
-    pose.station && `station ${pose.station}`,
-    pose.load_case,
-    ...conditionTexts(pose),
+    ...choiceTexts(pose),
     list.unreachable.has(entry.id) && 'not reachable',
   ]
     .filter(Boolean)

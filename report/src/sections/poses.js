@@ -1,5 +1,6 @@
 import { h, table } from '../dom.js';
 import { fixed, list as joined, number, percent, quantity, shownUnit } from '../text/units.js';
+import { choicesOf } from '../text/choices.js';
 import { download, posesCsv } from '../save_csv.js';
 import { measuringTable } from './measuring_table.js';
 import { poseRows } from './pose_rows.js';
@@ -111,13 +112,11 @@ function allValues(list) {
   const fill = () => {
     if (!details.open) return;
     const poses = list.ids.map((id) => list.poses.get(id));
-    const { names = [], units = [], station, load_case: load, conditions = {} } = poses[0] ?? {};
+    const { names = [], units = [] } = poses[0] ?? {};
     const shown = units.map((unit) => shownUnit(unit));
     const header = [
       'pose',
-      ...(station ? ['station'] : []),
-      ...(load ? ['load case'] : []),
-      ...Object.keys(conditions),
+      ...choicesOf(poses[0] ?? {}).map(([, name]) => name),
       ...names.map((name, k) => `#${name}${shown[k].name ? `, ${shown[k].name}` : ''}`),
     ];
     details.replaceChildren(
@@ -126,9 +125,7 @@ function allValues(list) {
         header,
         poses.map((p) => [
           `${p.id}`,
-          ...(station ? [p.station] : []),
-          ...(load ? [p.load_case] : []),
-          ...Object.keys(conditions).map((name) => p.conditions[name]),
+          ...choicesOf(p).map(([, , label]) => label),
           ...p.configuration.map((v, k) => fixed(v * shown[k].factor, 3)),
         ]),
         'All poses in numbers',

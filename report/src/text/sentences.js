@@ -2,16 +2,6 @@ import { list, number, percent, percentDown, plural, quantity } from './units.js
 
 /** What the plan says, in plain sentences. Each function returns text, or nothing where there is nothing to say. */
 
-/**
- * "joint_a2 rising", "temperature 20": what is chosen for a pose beside station and load.
- * @param {any} pose
- */
-export function conditionTexts(pose) {
-  return Object.entries(pose.conditions ?? {}).map(
-    ([name, choice]) => `${name.replace(/\.approach$/, '')} ${choice}`,
-  );
-}
-
 /** @param {any} plan */
 export const newPoses = (plan) => plan.poses.filter((p) => !p.measured);
 

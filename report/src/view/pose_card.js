@@ -1,5 +1,6 @@
 import { h } from '../dom.js';
-import { conditionTexts, nearestText } from '../text/sentences.js';
+import { choiceTexts } from '../text/choices.js';
+import { nearestText } from '../text/sentences.js';
 import { coordinate, percent, quantity } from '../text/units.js';
 
 /**
@@ -22,9 +23,7 @@ export function poseCard(list) {
     ),
   );
   const facts = [
-    pose.station && `station ${pose.station}`,
-    pose.load_case && `load case ${pose.load_case}`,
-    ...conditionTexts(pose),
+    ...choiceTexts(pose),
     pose.contribution !== undefined && `${percent(pose.contribution)} of all information`,
     tipText(pose),
     pose.nearest && nearestText(pose.nearest),

@@ -27,16 +27,12 @@ Exported write_plain_csv(const PoseSequence& all, const ExportOptions&) {
   std::string text = "pose";
   for (std::size_t i = 0; i < sequence.names.size(); ++i)
     text += "," + formats::csv_cell(fmt::format("{} [{}]", sequence.names[i], sequence.units[i]));
-  const bool loads = !sequence.poses.front().load_case.empty(), stations = !sequence.poses.front().station.empty();
-  text += std::string(loads ? ",load_case" : "") + (stations ? ",station" : "");
-  for (const auto& [name, choice] : sequence.poses.front().conditions) text += "," + formats::csv_cell(name);
+  for (const auto& [name, label] : sequence.poses.front().choices) text += "," + formats::csv_cell(name);
   text += "\n";
   for (const SequencePose& pose : sequence.poses) {
     text += std::to_string(pose.id);
     for (const double value : pose.values) text += "," + formats::shortest(value);
-    if (loads) text += "," + formats::csv_cell(pose.load_case);
-    if (stations) text += "," + formats::csv_cell(pose.station);
-    for (const auto& [name, choice] : pose.conditions) text += "," + formats::csv_cell(choice);
+    for (const auto& [name, label] : pose.choices) text += "," + formats::csv_cell(label);
     text += "\n";
   }
   return formats::one_file("poses.csv", text);

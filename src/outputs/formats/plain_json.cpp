@@ -18,9 +18,7 @@ Exported write_plain_json(const PoseSequence& all, const ExportOptions&) {
   json["poses"] = Json::array();
   for (const SequencePose& pose : sequence.poses) {
     Json entry = {{"id", pose.id}, {"values", pose.values}};
-    if (!pose.load_case.empty()) entry["load_case"] = pose.load_case;
-    if (!pose.station.empty()) entry["station"] = pose.station;
-    if (!pose.conditions.empty()) entry["conditions"] = conditions_json(pose.conditions);
+    write_choices(entry, pose.choices, false);
     json["poses"].push_back(entry);
   }
   return one_file("poses.json", json_text(json));

@@ -32,30 +32,25 @@ std::string program_name(const std::string& given, const ProgramRules& rules) {
   return name;
 }
 
-/// Changes by hand between poses.
-Conditions others(const SequencePose& pose) {
-  Conditions result = pose.conditions;
-  std::erase_if(result, [](const auto& condition) { return is_approach(condition.first); });
+/// Choices that are changed by hand between poses; a route arrives from the right side without them.
+PoseChoices by_hand(const SequencePose& pose) {
+  PoseChoices result = pose.choices;
+  std::erase_if(result, [](const auto& choice) { return is_approach(choice.first); });
+  // The instrument is moved before the load is changed.
+  std::reverse(result.begin(),
+               std::ranges::find_if(result, [](const auto& c) { return choice_key(c.first) == nullptr; }));
   return result;
 }
 
 bool has_approaches(const PoseSequence& sequence) {
-  const auto& conditions = sequence.poses.front().conditions;
-  return std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return is_approach(c.first); });
+  return std::ranges::any_of(sequence.poses.front().choices, [](const auto& c) { return is_approach(c.first); });
 }
 
 std::vector<std::string> changes(const SequencePose* before, const SequencePose& pose) {
   std::vector<std::string> result;
-  if (!pose.station.empty() && (before == nullptr || before->station != pose.station))
-    result.push_back("station: " + pose.station);
-  if (!pose.load_case.empty() && (before == nullptr || before->load_case != pose.load_case))
-    result.push_back("load case: " + pose.load_case);
-  for (std::size_t i = 0; i < pose.conditions.size(); ++i) {
-    const auto& [name, choice] = pose.conditions[i];
-    // A route arrives as it should; nobody at the robot has to do anything.
-    if (is_approach(name)) continue;
-    if (before == nullptr || before->conditions[i].second != choice) result.push_back(name + ": " + choice);
-  }
+  for (const auto& [name, label] : by_hand(pose))
+    if (before == nullptr || label_of(before->choices, name) != label)
+      result.push_back(shown_choice(name) + ": " + label);
   return result;
 }
 
@@ -227,10 +222,8 @@ void require_arrivals(const PoseSequence& sequence) {
 }
 
 bool has_changes(const PoseSequence& sequence) {
-  return std::any_of(sequence.poses.begin(), sequence.poses.end(), [&](const SequencePose& pose) {
-    return others(pose) != others(sequence.poses.front()) || pose.station != sequence.poses.front().station ||
-           pose.load_case != sequence.poses.front().load_case;
-  });
+  return std::any_of(sequence.poses.begin(), sequence.poses.end(),
+                     [&](const SequencePose& pose) { return by_hand(pose) != by_hand(sequence.poses.front()); });
 }
 
 }  // namespace posewright::formats

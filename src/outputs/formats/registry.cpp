@@ -90,21 +90,13 @@ PoseTable table_of(const PoseSequence& sequence) {
   table.problem_sha256 = sequence.problem_sha256;
   table.parameters_file = sequence.parameters_file;
   table.units.resize(table.names.size());
-  const auto has = [&](std::string SequencePose::*label) {
-    return std::any_of(sequence.poses.begin(), sequence.poses.end(),
-                       [&](const SequencePose& pose) { return !(pose.*label).empty(); });
-  };
-  std::vector<std::string SequencePose::*> labels;
-  if (has(&SequencePose::load_case)) labels.push_back(&SequencePose::load_case), table.names.push_back("load_case");
-  if (has(&SequencePose::station)) labels.push_back(&SequencePose::station), table.names.push_back("station");
-  for (const auto& [name, choice] : sequence.poses.empty() ? Conditions{} : sequence.poses.front().conditions)
+  for (const auto& [name, label] : sequence.poses.empty() ? PoseChoices{} : sequence.poses.front().choices)
     table.names.push_back(name);
   table.units.resize(table.names.size());
   for (const SequencePose& pose : sequence.poses) {
     PoseRow row;
     row.cells.assign(pose.values.begin(), pose.values.end());
-    for (const auto label : labels) row.cells.emplace_back(pose.*label);
-    for (const auto& [name, choice] : pose.conditions) row.cells.emplace_back(choice);
+    for (const auto& [name, label] : pose.choices) row.cells.emplace_back(label);
     row.id = pose.id;
     row.measured = pose.measured;
     table.rows.push_back(std::move(row));

@@ -77,9 +77,10 @@ Exported write_targets_csv(const PoseSequence& all, const ExportOptions& options
   std::size_t order = 0;
   for (const ListedTarget& t : list.targets) {
     const Eigen::Vector3d& p = t.target->position;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", ++order, t.name, t.pose->id, csv_cell(t.pose->load_case),
-                        csv_cell(t.target->station), csv_cell(t.target->name), shortest(p.x()), shortest(p.y()),
-                        shortest(p.z()), shortest(p.norm()));
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", ++order, t.name, t.pose->id,
+                    csv_cell(label_of(t.pose->choices, "load_case")), csv_cell(t.target->station),
+                    csv_cell(t.target->name), shortest(p.x()), shortest(p.y()), shortest(p.z()), shortest(p.norm()));
   }
   return one_file("targets.csv", text, list.notes);
 }

@@ -98,7 +98,7 @@ RobustRequest robust_request(const Study& study, const Settings& settings, const
   request.poses = int(plan.size());
   request.nuisance = variant.everything_counts ? 0 : variant.columns.nuisance;
   request.repeats = settings.repeats;
-  if (study.has_minimum_distance) request.spacing = with_points(study.spacing, configurations);
+  if (study.distance.kept) request.spacing = with_points(study.distance.spacing, configurations);
   request.planner = settings.planner;
   request.plan = std::move(plan);
   request.nominal = search_blocks(variant, configurations, settings.planner.threads);

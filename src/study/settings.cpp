@@ -88,6 +88,7 @@ Settings settings_of(const Problem& problem, const RunOptions& run) {
   s.planner.seed = run.seed;
   s.candidates_alone = run.candidates_alone;
   s.same_robot = run.same_robot;
+  s.everything_counts = run.everything_counts;
   s.proof = run.proof;
   s.planner.threads = run.threads;
   const bool with_effect = assumes_effect(s);

@@ -8,6 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+
 namespace posewright {
 namespace {
 
@@ -93,6 +96,36 @@ std::string distance_text(const std::vector<Coordinate>& coordinates, const Spac
             fmt::format("{:.2g} {}", shown * most, angle ? "deg" : "mm");
   }
   return text;
+}
+
+PoseDistance pose_distance(const std::vector<Coordinate>& coordinates,
+                           const std::optional<DesignSpec::MinimumDistance>& stated, Repeats repeats,
+                           const Configurations& candidates, const Configurations& known, int poses, bool listed) {
+  PoseDistance distance{spacing_of(coordinates, stated, repeats), stated.has_value()};
+  if (stated || repeats.most > 1 || listed) return distance;
+  Spacing usual = usual_spacing(coordinates, candidates, known, poses);
+  distance.kept = distance.usual = usual.unit.size() > 0;
+  if (distance.usual) distance.spacing = std::move(usual);
+  return distance;
+}
+
+Configurations PoseDistance::away_from(const Configurations& known, const Configurations& candidates,
+                                       Repeats repeats) const {
+  const auto taken = [&](std::span<const double> q) {
+    for (std::size_t i = 0; i < known.count(); ++i) {
+      const auto other = known[i];
+      const bool same = std::equal(q.begin(), q.end(), other.begin());
+      if (kept ? spacing.too_near(other, q) : repeats.most == 1 && same) return true;
+    }
+    return false;
+  };
+  Configurations left = candidates;
+  left.values.clear();
+  left.rows.clear();
+  for (std::size_t i = 0; i < candidates.count(); ++i)
+    if (!taken(candidates[i])) append(left, candidates, i);
+  if (left.count() == 0) throw CannotDo("every candidate is too near to a fixed or measured pose");
+  return left;
 }
 
 Spacing with_points(Spacing spacing, const Configurations& candidates) {

@@ -155,6 +155,7 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
   for (const DesignSpec::Weighted& wanted : settings.variants) {
     Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell, monitor);
     variant.weight = wanted.weight;
+    variant.everything_counts = settings.everything_counts;
     study.variants.push_back(std::move(variant));
     require_same_coordinates(study.first(), study.variants.back());
   }
@@ -180,44 +181,20 @@ Study make_study(const Problem& problem, const Settings& settings, const Monitor
 
   if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
     study.notes.push_back(std::move(warning));
-  keep_apart(study, problem.design.minimum_distance, settings);
+  study.distance = pose_distance(coordinates, problem.design.minimum_distance, settings.repeats, study.configurations,
+                                 known_before(study), settings.poses, !study.list.empty());
   keep_away_from_measured(study, settings.repeats);
   if (!settings.truth.value.empty()) study.discrepancy = make_discrepancy(problem, study, settings);
   return study;
 }
 
-void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings) {
-  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
-  study.spacing = spacing_of(coordinates, stated, settings.repeats);
-  study.has_minimum_distance = stated.has_value();
-  study.usual_distance = false;
-  // Whoever lists candidates chose how near they are to each other.
-  if (stated || settings.repeats.most > 1 || !study.list.empty()) return;
-  Spacing usual = usual_spacing(coordinates, study.configurations, known_before(study), settings.poses);
-  study.has_minimum_distance = study.usual_distance = usual.unit.size() > 0;
-  if (study.usual_distance) study.spacing = std::move(usual);
-}
-
 void keep_away_from_measured(Study& study, Repeats repeats) {
-  const Configurations all = study.configurations, known = known_before(study);
-  const auto taken = [&](std::span<const double> q) {
-    for (std::size_t i = 0; i < known.count(); ++i) {
-      const auto other = known[i];
-      const bool same = std::equal(q.begin(), q.end(), other.begin());
-      if (study.has_minimum_distance ? study.spacing.too_near(other, q) : repeats.most == 1 && same) return true;
-    }
-    return false;
-  };
-  study.configurations.values.clear();
-  study.configurations.rows.clear();
-  for (std::size_t i = 0; i < all.count(); ++i)
-    if (!taken(all[i])) append(study.configurations, all, i);
-  if (const long lost = long(all.count() - study.configurations.count()); lost > 0)
+  const std::size_t before = study.configurations.count();
+  study.configurations = study.distance.away_from(known_before(study), study.configurations, repeats);
+  if (const long lost = long(before - study.configurations.count()); lost > 0)
     study.configurations.rejected.emplace_back(
         study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
-  if (study.configurations.count() == 0) throw CannotDo("every candidate is too near to a fixed or measured pose");
-  if (!study.has_minimum_distance) return;
-  study.minimum_distance = with_points(study.spacing, study.configurations);
+  if (study.distance.kept) study.minimum_distance = with_points(study.distance.spacing, study.configurations);
 }
 
 SearchRequest search_request(const Settings& settings, int poses) {
@@ -235,16 +212,22 @@ SearchRequest search_request(const Settings& settings, int poses) {
 
 SearchRequest spaced_request(const Study& study, const Settings& settings, int poses) {
   SearchRequest request = search_request(settings, poses);
-  if (study.has_minimum_distance) request.spacing = &study.minimum_distance;
+  if (study.distance.kept) request.spacing = &study.minimum_distance;
   return request;
 }
 
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion) {
+  return space_maker(study, criterion, study.configurations, known_before(study), study.distance.spacing);
+}
+
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(
+    const Study& study, const std::string& criterion, const Configurations& candidates, const Configurations& known,
+    const Spacing& spacing) {
   const bool with_effects = find_criterion(criterion)->needs_truth;
   // An effect that is assumed says too little for moves between candidates.
   if (!study.list.empty() || (with_effects && study.discrepancy == nullptr)) return {};
-  return [&study, with_effects](const Eigen::MatrixXd& R) {
+  return [&study, with_effects, &candidates, known, &spacing](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const Variant& v : study.variants)
       parts.push_back({v.model.get(), v.workspace.get(), v.columns.selected, {}, v.features.get()});
@@ -253,7 +236,7 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
       parts.front().mix = study.discrepancy->mix;
       parts.front().features = nullptr;
     }
-    return make_configuration_space(std::move(parts), study.configurations, known_before(study), study.spacing, R);
+    return make_configuration_space(std::move(parts), candidates, known, spacing, R);
   };
 }
 

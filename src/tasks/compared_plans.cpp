@@ -48,7 +48,7 @@ SearchRequest request_for(const Study& study, const Variant& variant, const Sett
   if (!study.list.empty()) return request;
   request.make_space = [&study, &variant](const Eigen::MatrixXd& R) {
     return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns.selected, {}}},
-                                    study.configurations, study.measured, study.spacing, R);
+                                    study.configurations, study.measured, study.distance.spacing, R);
   };
   return request;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "fill_plan.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -77,11 +76,7 @@ class ListEvaluation {
     const double phi = phi_of(*measure_, settings_.criterion, study_, poses_, settings_);
     plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
     fill_variants(plan, judgement, study_, references);
-    SearchResult shape;
-    for (std::size_t i = 0; i < poses_.count(); ++i)
-      shape.design.members.push_back(int(study_.configurations.count() + i));
-    shape.without = without_each(phi);
-    fill_poses(plan, study_, poses_, shape, judgement);
+    fill_poses(plan, study_, poses_, {}, without_each(phi), judgement);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
     if (settings_.robust && !stopped)
@@ -222,30 +217,27 @@ class ListEvaluation {
   /// k more with the list as what is known already.
   ListChange add(int k, double phi, const std::vector<double>& references) {
     const int threads = settings_.planner.threads;
-    // The list is what is there already; the last thing that is done, so the candidates may change.
-    const Configurations before = study_.measured;
-    study_.measured.values.insert(study_.measured.values.end(), poses_.values.begin(), poses_.values.end());
-    Settings more = settings_;
-    more.poses = k;
-    keep_apart(study_, stated_distance_, more);
-    keep_away_from_measured(study_, settings_.repeats);
+    const Configurations known = with_measured(study_, poses_);
+    const PoseDistance distance =
+        pose_distance(study_.first().workspace->coordinates(), stated_distance_, settings_.repeats,
+                      study_.configurations, known, k, !study_.list.empty());
+    const Configurations candidates = distance.away_from(known, study_.configurations, settings_.repeats);
+    std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, candidates, threads);
     // Parts know what was measured before the list; the list's own information comes on top of it, once.
-    Configurations all = std::exchange(study_.measured, before);
-    std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, study_.configurations, threads);
     const std::vector<SearchPart> list = search_parts(study_, settings_.criterion, poses_, threads);
     for (std::size_t v = 0; v < parts.size(); ++v) {
-      const Eigen::MatrixXd known = list[v].blocks.all().transpose() * list[v].blocks.all();
-      parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + known) : known;
+      const Eigen::MatrixXd own = list[v].blocks.all().transpose() * list[v].blocks.all();
+      parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + own) : own;
     }
-    study_.measured = std::move(all);
-    SearchRequest wanted = spaced_request(study_, settings_, k);
-    wanted.make_space = space_maker(study_, settings_.criterion);
+    SearchRequest wanted = search_request(settings_, k);
+    const Spacing spacing = with_points(distance.spacing, candidates);
+    if (distance.kept) wanted.spacing = &spacing;
+    wanted.make_space = space_maker(study_, settings_.criterion, candidates, known, distance.spacing);
     wanted.references = references;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
-    const Configurations added = chosen_by(found.design, study_.configurations);
+    const Configurations added = chosen_by(found.design, candidates);
     Configurations longer = poses_;
     longer.values.insert(longer.values.end(), added.values.begin(), added.values.end());
-    study_.measured = before;
     ListChange change = changed(longer, phi);
     for (std::size_t i = 0; i < added.count(); ++i) {
       change.added.push_back(pose_of(*study_.first().model, added[i]));

@@ -172,8 +172,8 @@ void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, c
                              references[v], std::min(1.0, std::exp(efficiency[v]))});
 }
 
-void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const SearchResult& found,
-                const Judgement& judgement) {
+void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const std::vector<int>& members,
+                const std::vector<double>& without, const Judgement& judgement) {
   const IdentificationModel& model = *study.first().model;
   const Workspace& workspace = *study.first().workspace;
   const Eigen::VectorXd& contribution = judgement.evaluations.front().contribution;
@@ -189,16 +189,16 @@ void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, co
     pose.nearest = nearest_at(*study.cell, q);
     pose.contribution = contribution[Eigen::Index(i)];
     if (i >= before) {
-      const int member = found.design.members[i - before];
-      if (std::size_t(member) < study.configurations.count()) {
-        pose.candidate = member;
+      const std::size_t candidates = members.empty() ? 0 : study.configurations.count();
+      if (const auto member = std::size_t(members.empty() ? 0 : members[i - before]); member < candidates) {
+        pose.candidate = int(member);
         if (!study.configurations.rows.empty()) {
-          const ListedRow& row = study.configurations.rows[std::size_t(member)];
+          const ListedRow& row = study.configurations.rows[member];
           pose.candidate = row.index;
           pose.listed = PlannedPose::Listed{row.id, row.line};
         }
       }
-      pose.without = found.without[i - before];
+      pose.without = without[i - before];
     }
     plan.poses.push_back(std::move(pose));
   }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "posewright/outputs/plan.hpp"
-#include "posewright/search/search.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
 
@@ -16,9 +15,11 @@ void fill_candidates(PlanStatistics& statistics, const Study& study);
 /// Efficiency of every variant; nothing if the plan serves one.
 void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, const std::vector<double>& references);
 
-/// Poses that are measured already, fixed ones, then those that the search chose, and how they lie in the workspace.
-void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const SearchResult& found,
-                const Judgement& judgement);
+/// Poses that are measured already, fixed ones, then the chosen ones, and how they lie in the workspace.
+/// @param members  of the chosen among the candidates, or beyond them; empty: they are no candidates
+/// @param without  efficiency without each of the chosen
+void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const std::vector<int>& members,
+                const std::vector<double>& without, const Judgement& judgement);
 
 /// The criterion that a plan is for, with what the outputs must know of it.
 void name_criterion(Plan& plan, const std::string& name);

@@ -33,20 +33,19 @@ class PlanSearch {
   PlanSearch(const Problem& problem, const RunOptions& run, const Monitor& monitor)
       : problem_(problem),
         settings_(settings_of_plan(problem, run)),
-        list_notes_(take_fixed(problem, run, settings_)),
+        notes_(take_fixed(problem, run, settings_)),
         monitor_(monitor),
         study_(make_study(problem, settings_, monitor)) {
-    study_.notes.insert(study_.notes.end(), list_notes_.begin(), list_notes_.end());
-    study_.first().everything_counts = run.everything_counts;
-    if (study_.has_minimum_distance)
-      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.spacing);
-    if (study_.usual_distance)
-      study_.notes.push_back(
+    notes_.insert(notes_.begin(), study_.notes.begin(), study_.notes.end());
+    if (study_.distance.kept)
+      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.distance.spacing);
+    if (study_.distance.usual)
+      notes_.push_back(
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
                       minimum_distance_));
     if (std::string note = choose_criterion(problem_, study_, settings_); !note.empty())
-      study_.notes.push_back(std::move(note));
+      notes_.push_back(std::move(note));
   }
 
   const Settings& settings() const { return settings_; }
@@ -206,9 +205,10 @@ class PlanSearch {
       whole->within = proposed_within(*study_.first().workspace, *study_.first().model);
     // References of everything are none of the parameters'.
     if (!study_.first().everything_counts) fill_variants(plan, judgement, study_, found.references);
-    fill_poses(plan, study_, chosen, found, judgement);
+    fill_poses(plan, study_, chosen, found.design.members, found.without, judgement);
     fill_without_fixed(plan, chosen, found, phi);
     fill_candidates(plan.statistics, study_);
+    plan.statistics.notes = notes_;
     plan.statistics.cell = cell_notes(*study_.cell);
     plan.statistics.limit_margins = limit_margins(*study_.first().workspace, problem_);
     plan.statistics.exchanges = found.design.exchanges;
@@ -247,7 +247,7 @@ class PlanSearch {
 
   const Problem& problem_;
   Settings settings_;
-  std::vector<std::string> list_notes_;
+  std::vector<std::string> notes_;
   const Monitor& monitor_;
   Study study_;
   std::string minimum_distance_;  // for people; empty: none

@@ -314,7 +314,7 @@ class ReportBuilder {
                                      const Spacing& apart) const {
     try {
       SearchRequest wanted = search_request(settings_, poses);
-      if (study_.has_minimum_distance) wanted.spacing = &apart;
+      if (study_.distance.kept) wanted.spacing = &apart;
       wanted.bound_tolerance = start_tolerance;
       const double share = double(new_.count()) / poses;
       wanted.planner.kicks = int(std::lround(curve_kicks * share * share));
@@ -341,7 +341,7 @@ class ReportBuilder {
     std::atomic<bool> left_out = false;
     std::vector<SearchPart> parts;
     if (!wanted.empty()) parts = parts_of(pool);
-    const Spacing apart = with_points(study_.spacing, pool);
+    const Spacing apart = with_points(study_.distance.spacing, pool);
     // One search of few restarts keeps no second thread busy.
     parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (monitor_.should_stop()) {

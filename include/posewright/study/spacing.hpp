@@ -24,6 +24,21 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
 Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
                       const Configurations& measured, int poses);
 
+/// Distance that poses keep from each other.
+struct PoseDistance {
+  Spacing spacing{};   ///< for configurations that are not candidates
+  bool kept = false;   ///< by candidates, too: stated, or the usual one
+  bool usual = false;  ///< nobody stated it
+
+  /// Candidates that repeat no known pose and are as far from each, as the policy wants it. Throws CannotDo if none is.
+  Configurations away_from(const Configurations& known, const Configurations& candidates, Repeats repeats) const;
+};
+/// As stated, else usual_spacing() where it applies.
+/// @param listed  candidates are a list: its author chose how near they are to each other
+PoseDistance pose_distance(const std::vector<Coordinate>& coordinates,
+                           const std::optional<DesignSpec::MinimumDistance>& stated, Repeats repeats,
+                           const Configurations& candidates, const Configurations& known, int poses, bool listed);
+
 /// Overload for these candidates.
 Spacing with_points(Spacing spacing, const Configurations& candidates);
 

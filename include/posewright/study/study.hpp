@@ -12,6 +12,7 @@
 #include "posewright/search/search.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/study/run_options.hpp"
+#include "posewright/study/spacing.hpp"
 #include "posewright/study/variant.hpp"
 
 namespace posewright {
@@ -34,8 +35,8 @@ struct Settings {
   std::filesystem::path measured_file, candidates_file;
   std::optional<PoseList> fixed{};  ///< poses that are in any plan; only what plans a whole list asks for them
   PlannerOptions planner;
-  bool candidates_alone = false;             ///< as RunOptions
-  std::shared_ptr<const Cell> same_robot{};  ///< the same
+  bool candidates_alone = false, everything_counts = false;  ///< as RunOptions
+  std::shared_ptr<const Cell> same_robot{};                  ///< the same
   ProofLimits proof{};
   std::optional<RobustSpec> robust{};  ///< only what plans or judges a whole list asks for drawn robots
 };
@@ -64,11 +65,9 @@ struct Study {
   std::string list;                ///< that the candidates came from; empty: they were drawn
   std::vector<std::string> notes;  ///< of how it was read
   Configurations measured;
-  Configurations fixed;      ///< still to be measured, in any plan: known to the search beside the measured ones
-  Spacing spacing;           ///< for configurations that are not candidates
-  Spacing minimum_distance;  ///< the same with the candidates' points, where a distance was asked for
-  bool has_minimum_distance = false;
-  bool usual_distance = false;                     ///< nobody stated it
+  Configurations fixed;  ///< still to be measured, in any plan: known to the search beside the measured ones
+  PoseDistance distance;
+  Spacing minimum_distance;                        ///< with the candidates' points, where a distance is kept
   std::shared_ptr<const Discrepancy> discrepancy;  ///< of the first variant; null: no truth is named
 
   Variant& first() { return variants.front(); }
@@ -103,12 +102,13 @@ std::vector<SearchPart> search_parts(const Study& study, const std::string& crit
 /// A copy of the parts of search_parts for every variant: a search moves its parts.
 std::vector<SearchPart> copied_parts(const std::vector<SearchPart>& parts);
 
-/// The workspace of the problem for searches beyond the candidates; `study` must outlive the result.
+/// The workspace of the problem for searches beyond candidates; study, candidates and spacing must outlive the result.
+std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(
+    const Study& study, const std::string& criterion, const Configurations& candidates, const Configurations& known,
+    const Spacing& spacing);
+/// Overload for the candidates of the study, beside what is there before.
 std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> space_maker(const Study& study,
                                                                                          const std::string& criterion);
-
-/// Spacing of poses: as stated, else usual_spacing() where it applies.
-void keep_apart(Study& study, const std::optional<DesignSpec::MinimumDistance>& stated, const Settings& settings);
 
 /// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
 /// policy forbids it; rebuilds all that depends on the candidates. Throws CannotDo if none is left.

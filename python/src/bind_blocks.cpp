@@ -53,8 +53,6 @@ Plan select(const py::object& blocks, const py::object& poses, const py::kwargs&
   const std::optional<int> nuisance = options.nuisance < 0 ? std::nullopt : std::optional(options.nuisance);
   Labelled given = labelled(blocks, options.rows, nuisance);
   options.nuisance = given.nuisance;
-  options.seed = keywords.seed;
-  options.threads = keywords.threads;
   const std::optional<double> limit = keywords.time_limit();
   keywords.finish();
   BlockFile file{std::move(given.array), {}, {}};

@@ -44,7 +44,6 @@ MadeCompensation compensate(const Shared& problem, const py::object& poses, cons
   Keywords keywords(named);
   CompensateCall call;
   keywords.read(compensate_options(), call);
-  call.threads = keywords.threads;
   keywords.finish();
   std::vector<std::filesystem::path> files;
   if (const auto file = file_name(poses)) files.push_back(*file);

@@ -60,8 +60,6 @@ MadeNext next_poses_of(const Shared& problem, const py::object& data, const py::
   keywords.read(next_options(), options);
   if (const py::object list = keywords.take("candidates_from"); !list.is_none())
     options.candidates_from = pose_list(list, without_limits(coordinates_of(*problem, options.variant)));
-  options.seed = keywords.seed;
-  options.threads = keywords.threads;
   const std::filesystem::path state_file = keywords.text("state");
   const bool anew = keywords.flag("restart");
   const Limit limit = keywords.time_limit();

@@ -61,7 +61,6 @@ MadeCalibration calibrate(const Shared& problem, const py::object& data, const p
   call.campaigns.assign(files.begin() + 1, files.end());
   keywords.read(calibrate_options(), call);
   if (call.models.size() > 1) throw InputError({}, "several variants are named", "calibrate one at a time");
-  call.threads = keywords.threads;
   keywords.finish();
   return MadeCalibration::of(problem, call, {}, keywords.progress, calibrate_problem);
 }
@@ -101,8 +100,6 @@ MadeSimulation simulate(const Shared& problem, const py::object& poses, const py
   keywords.set("variant", variant);
   SimulateOptions options;
   keywords.read(simulate_options(), options);
-  options.experiment.seed = keywords.seed;
-  options.experiment.threads = keywords.threads;
   const Limit limit = keywords.time_limit();
   const PoseList list = pose_list(poses, coordinates_of(*problem, options.variant), keywords.text("from_"));
   keywords.finish();
@@ -122,8 +119,6 @@ MadeComparison compare(const Shared& problem, const py::dict& plans, const py::k
   for (const char* name : {"poses", "method", "restarts"})
     if (!plans.empty() && named.contains(name) && !named[name].is_none())
       throw InputError({}, std::string(name) + " is for plans that are searched", "leave it out, or the plans");
-  options.run.seed = keywords.seed;
-  options.run.threads = keywords.threads;
   const std::string format = keywords.text("from_");
   const auto compared = keywords.designed(*problem, of_compare, options.run);
   const std::vector<Coordinate> coordinates =
@@ -138,8 +133,6 @@ MadeStations stations(const Shared& problem, const py::kwargs& named) {
   Keywords keywords(named);
   StationOptions options;
   keywords.read(station_options(), options);
-  options.run.seed = keywords.seed;
-  options.run.threads = keywords.threads;
   const Limit limit = keywords.time_limit();
   return MadeStations::of(keywords.designed(*problem, {}, options.run), options, limit, keywords.progress,
                           place_stations);
@@ -149,7 +142,6 @@ Report report(const Shared& problem, const std::filesystem::path& plan, const py
   Keywords keywords(named);
   ReportOptions options;
   keywords.read(report_options(), options);
-  options.threads = keywords.threads;
   const Limit limit = keywords.time_limit();
   keywords.finish();
   return watched(*problem, limit, keywords.progress, OnInterrupt::raise,

@@ -44,9 +44,9 @@ bool is_absent(const py::object& value) {
 }  // namespace
 
 Keywords::Keywords(const py::kwargs& given) : rest_(py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr()))) {
-  if (const py::object value = take("seed"); !value.is_none()) seed = seed_of(value);
+  if (const py::object value = take("seed"); !value.is_none()) seed_ = seed_of(value);
   if (const py::object value = take("threads"); !value.is_none())
-    threads = checked("threads", value.cast<long long>(), 0, most_threads);
+    threads_ = checked("threads", value.cast<long long>(), 0, most_threads);
   progress = take("progress");
 }
 

@@ -17,8 +17,6 @@ class Keywords {
  public:
   explicit Keywords(const py::kwargs& given);
 
-  std::uint64_t seed = 0;
-  int threads = 0;
   py::object progress;
 
   /// An argument that has a place of its own in the call.
@@ -27,9 +25,11 @@ class Keywords {
   py::object take(const std::string& name);
   std::string text(const std::string& name);
 
+  /// Options of the table, and seed and threads where the struct has them.
   template <class Options>
   void read(const OptionTable<Options>& table, Options& options) {
     table.read(options, [&](const OptionRow& row) { return given(row); });
+    take_run(options);
   }
   bool flag(const std::string& name);
   std::optional<double> time_limit() { return take("time_limit").cast<std::optional<double>>(); }
@@ -45,6 +45,17 @@ class Keywords {
  private:
   std::optional<GivenOption> given(const OptionRow& row);
 
+  template <class Options>
+  void take_run(Options& options) const {
+    if constexpr (requires { options.options.run; }) take_run(options.options.run);
+    else if constexpr (requires { options.run; }) take_run(options.run);
+    else if constexpr (requires { options.experiment; }) take_run(options.experiment);
+    if constexpr (requires { options.seed; }) options.seed = seed_;
+    if constexpr (requires { options.threads; }) options.threads = threads_;
+  }
+
+  std::uint64_t seed_ = 0;
+  int threads_ = 0;
   py::dict rest_;
 };
 

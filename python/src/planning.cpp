@@ -18,8 +18,6 @@ py::object plan(const GivenProblem& given, const py::object& poses, const py::kw
   keywords.set("poses", poses);
   PlanCall call;
   keywords.read(plan_options(), call);
-  call.run.seed = keywords.seed;
-  call.run.threads = keywords.threads;
   const std::optional<double> limit = keywords.time_limit();
   const auto problem = keywords.designed(given, {}, call.run);
   const auto search = [&](const auto& work) {
@@ -40,8 +38,6 @@ PoseListEvaluation evaluate(const GivenProblem& given, const py::object& poses, 
   Keywords keywords(named);
   EvaluateCall call;
   keywords.read(evaluate_options(), call);
-  call.options.run.seed = keywords.seed;
-  call.options.run.threads = keywords.threads;
   const std::optional<double> limit = keywords.time_limit();
   const auto problem = keywords.designed(given, {"poses"}, call.options.run);
   const std::vector<Coordinate> coordinates = coordinates_of(*problem);
@@ -58,8 +54,6 @@ py::dict observe(const GivenProblem& given, const py::object& variant, const py:
   keywords.set("variant", variant);
   ObserveOptions options;
   keywords.read(observe_options(), options);
-  options.seed = keywords.seed;
-  options.threads = keywords.threads;
   keywords.finish();
   auto found = watched(given, {}, keywords.progress, OnInterrupt::raise,
                        [&](const Monitor& monitor) { return observe_problem(given.problem, options, monitor); });
@@ -75,8 +69,6 @@ Route route(const GivenProblem& given, const py::object& poses, const py::kwargs
   Keywords keywords(named);
   RouteOptions options;
   keywords.read(route_options(), options);
-  options.seed = keywords.seed;
-  options.threads = keywords.threads;
   const std::optional<double> limit = keywords.time_limit();
   const PoseList list = pose_list(poses, coordinates_of(given), keywords.text("from_"));
   keywords.finish();

@@ -103,29 +103,17 @@ class Residuals {
 
   Evidence evidence_of(const UnmodelledSize& shape) const {
     const auto effect = std::make_shared<UnmodelledEffect>(model_, shape);
-    std::vector<int> first;
-    Eigen::MatrixXd A = along(*effect, &first);
-    effect->take_sizes(A);
+    FittedRows rows = along(*effect);
+    effect->take_sizes(rows.J);
     const Eigen::MatrixXd places = places_of(*effect, poses_);
-    const Eigen::MatrixXd F = effect_columns(EffectFeatures(effect, places, int(places.cols())), places, A, first);
-    return {fitted_->left(F), r_, freedom_};
+    const EffectFeatures features(effect, places, int(places.cols()));
+    return {fitted_->left(effect_columns(features, places, rows.J, rows.first)), r_, freedom_};
   }
 
   Evidence without_effect() const { return {Eigen::MatrixXd::Zero(r_.size(), 1), r_, freedom_}; }
 
   /// Derivatives along unit twists.
-  Eigen::MatrixXd along(const UnmodelledEffect& effect, std::vector<int>* first = nullptr) const {
-    VariantColumns twists;
-    twists.selected = effect.columns();
-    const BlockArray blocks = blocks_of(model_, twists, poses_);
-    std::vector<int> rows{0};
-    for (const MeasuredPose& pose : poses_) rows.push_back(rows.back() + int(indices_read(pose.y).size()));
-    Eigen::MatrixXd A(rows.back(), blocks.columns());
-    for (std::size_t k = 0; k < poses_.size(); ++k)
-      A.middleRows(rows[k], rows[k + 1] - rows[k]) = blocks.block(k).topRows(rows[k + 1] - rows[k]);
-    if (first != nullptr) *first = std::move(rows);
-    return A;
-  }
+  FittedRows along(const UnmodelledEffect& effect) const { return whitened_rows(model_, effect.columns(), poses_, {}); }
 
  private:
   const IdentificationModel& model_;
@@ -179,7 +167,7 @@ std::vector<PossibleEffects> possible_effects(const IdentificationModel& model, 
   std::vector<double> effects;
   if (model.tips() == 0) effects = {0.0};
   else {
-    const Eigen::MatrixXd twists = residuals.along(UnmodelledEffect(model, {1.0, 1.0, 1.0}));
+    const Eigen::MatrixXd twists = residuals.along(UnmodelledEffect(model, {1.0, 1.0, 1.0})).J;
     shapes = shapes_of(twists);
     double squares = 0;
     for (Eigen::Index c = 0; c < twists.cols(); ++c) squares += c % 6 < 3 ? twists.col(c).squaredNorm() : 0.0;

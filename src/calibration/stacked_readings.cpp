@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 
@@ -37,19 +38,34 @@ Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<doub
   return own;
 }
 
+FittedRows whitened_rows(const IdentificationModel& model, const std::vector<int>& selected,
+                         const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
+                         const std::vector<Eigen::VectorXd>& residuals) {
+  FittedRows rows{{}, {}, {0}};
+  for (const MeasuredPose& pose : poses) rows.first.push_back(rows.first.back() + int(indices_read(pose.y).size()));
+  rows.J.resize(rows.first.back(), Eigen::Index(selected.size()));
+  if (!residuals.empty()) rows.r.resize(rows.first.back());
+  Linearisation at;
+  Eigen::VectorXd y;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (!linearise_at(model, poses[k], correction, selected, at, y))
+      throw CannotDo("pose " + std::to_string(poses[k].id) + " is out of reach with the current parameters");
+    const std::vector<int> read = indices_read(poses[k].y);
+    factorise_covariance(at.covariance(read, read), at.factor);
+    const auto own = Eigen::seqN(rows.first[k], Eigen::Index(read.size()));
+    rows.J(own, Eigen::all) = at.factor.matrixL().solve(Eigen::MatrixXd(at.G(read, Eigen::all)));
+    if (!residuals.empty()) rows.r(own) = at.factor.matrixL().solve(Eigen::VectorXd(residuals[k](read)));
+  }
+  return rows;
+}
+
 FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,
                        const std::vector<MeasuredPose>& poses, const std::vector<double>& correction, const Fit& fit) {
-  VariantColumns columns;
-  columns.selected = selected;
-  const BlockArray blocks = blocks_of(model, columns, poses, correction);
-  FittedRows rows{Eigen::MatrixXd(fit.readings, blocks.columns()), Eigen::VectorXd(fit.readings), {0}};
+  FittedRows rows = whitened_rows(model, selected, poses, correction);
+  rows.r.resize(rows.J.rows());
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    // Rows of what was not read are at the end of a block.
     const std::vector<int> read = indices_read(poses[k].y);
-    const int first = rows.first.back(), count = int(read.size());
-    rows.J.middleRows(first, count) = blocks.block(k).topRows(count);
-    rows.r.segment(first, count) = fit.whitened[k](read);
-    rows.first.push_back(first + count);
+    rows.r.segment(rows.first[k], Eigen::Index(read.size())) = fit.whitened[k](read);
   }
   return rows;
 }

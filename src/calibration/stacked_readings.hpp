@@ -27,6 +27,13 @@ struct FittedRows {
   Eigen::VectorXd r;
   std::vector<int> first;  ///< row of each pose; one more at the end
 };
+/// Rows of the poses one below the other, whitened by the covariance of `model`. Throws CannotDo for a pose out of
+/// reach.
+/// @param residuals  of each pose, as Fit has them; empty: r stays empty
+FittedRows whitened_rows(const IdentificationModel& model, const std::vector<int>& selected,
+                         const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
+                         const std::vector<Eigen::VectorXd>& residuals = {});
+/// Overload with the whitened residuals of the fit.
 /// @param poses  those of the fit
 /// @param correction  of all parameters of `model`
 FittedRows fitted_rows(const IdentificationModel& model, const std::vector<int>& selected,

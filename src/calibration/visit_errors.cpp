@@ -18,24 +18,6 @@ constexpr double first_logarithmic_step = 2.0, settled_logarithm = 1e-3;
 constexpr int most_trials = 300;
 constexpr double refused_noise = 0.01;
 
-/// Columns and residuals at the fit, whitened by the covariance of this model, which may count less than the fit's.
-FittedRows rows_with_stated_noise(const IdentificationModel& model, const std::vector<int>& selected,
-                                  const std::vector<MeasuredPose>& poses, const Fit& fit) {
-  FittedRows rows{Eigen::MatrixXd(fit.readings, Eigen::Index(selected.size())), Eigen::VectorXd(fit.readings), {0}};
-  Linearisation at;
-  Eigen::VectorXd y;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    linearise_at(model, poses[k], fit.correction, selected, at, y);
-    const std::vector<int> read = indices_read(poses[k].y);
-    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(at.covariance(read, read)));
-    const int first = rows.first.back(), count = int(read.size());
-    rows.J.middleRows(first, count) = root.matrixL().solve(Eigen::MatrixXd(at.G(read, Eigen::all)));
-    rows.r.segment(first, count) = root.matrixL().solve(Eigen::VectorXd(fit.residuals[k](read)));
-    rows.first.push_back(first + count);
-  }
-  return rows;
-}
-
 /// −2 ln of the restricted likelihood of variances s = (stated covariance, displacement, rotation), the last two in
 /// units in which they are as large as the noise.
 class VisitLikelihood {
@@ -44,7 +26,7 @@ class VisitLikelihood {
                   const std::vector<MeasuredPose>& poses, const Fit& fit, Prior prior) {
     std::vector<int> selected = columns.selected;
     for (int k = 0; k < tip_twists; ++k) selected.push_back(model.tip_column(0, k));
-    const FittedRows rows = rows_with_stated_noise(model, selected, poses, fit);
+    const FittedRows rows = whitened_rows(model, selected, poses, fit.correction, fit.residuals);
     const auto m = Eigen::Index(columns.selected.size());
     const Eigen::VectorXd length = rows.J.leftCols(m).colwise().norm().cwiseMax(1e-300);
     take_prior(columns, fit, prior, length);

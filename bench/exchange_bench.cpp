@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/planning/whiten.hpp"

@@ -8,7 +8,7 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/urdf_reader.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/random.hpp"

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <posewright/lists/parameters_file.hpp>
 #include <posewright/lists/read_poses.hpp>
-#include <posewright/model/variant.hpp>
+#include <posewright/model/variant_columns.hpp>
 #include <posewright/problem/read_problem.hpp>
 #include <posewright/results/calibration.hpp>
 #include <posewright/study/variant.hpp>

@@ -6,10 +6,10 @@
 #include "made.hpp"
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/options/tables.hpp"
+#include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/compensation.hpp"
-#include "posewright/results/dh_table.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compensate_documents.hpp"
 

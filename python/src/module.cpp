@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/version.hpp"

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/model/campaigns.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/error.hpp"

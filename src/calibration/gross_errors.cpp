@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_weights.hpp"

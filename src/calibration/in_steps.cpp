@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 
 namespace posewright {
 namespace {

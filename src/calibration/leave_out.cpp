@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "posewright/calibration/gain_in_range.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"

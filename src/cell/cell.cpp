@@ -4,7 +4,7 @@
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/pair_names.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -10,7 +10,7 @@
 #include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/model/urdf_reader.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
 #include "scene.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/random.hpp"
 #include "scene.hpp"
 

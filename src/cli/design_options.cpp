@@ -7,7 +7,7 @@
 #include <array>
 
 #include "option_facts.hpp"
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/problem/design_keys.hpp"

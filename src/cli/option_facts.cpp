@@ -4,7 +4,7 @@
 #include <map>
 #include <sstream>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/tasks/known_cameras.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bias_state.hpp"
-#include "effects.hpp"
-#include "posewright/criterion/discrepancy.hpp"
+#include "effect_mix.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "effects.hpp"
-#include "posewright/criterion/discrepancy.hpp"
+#include "effect_mix.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 #include "posewright/support/dense.hpp"
 #include "product_curvature.hpp"
 #include "regular.hpp"

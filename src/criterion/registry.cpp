@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "posewright/criterion/determinant.hpp"
-#include "posewright/criterion/discrepancy.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 #include "posewright/criterion/multi_variant.hpp"
 #include "posewright/criterion/spectral.hpp"
 #include "posewright/criterion/trace.hpp"

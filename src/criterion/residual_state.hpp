@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewright/criterion/criterion.hpp"
-#include "posewright/criterion/discrepancy.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 
 namespace posewright {
 

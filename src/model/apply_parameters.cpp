@@ -8,7 +8,7 @@
 #include "parameter_names.hpp"
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/near_words.hpp"
 
 namespace posewright {

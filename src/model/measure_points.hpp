@@ -3,7 +3,7 @@
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/measurement_model.hpp"
 #include "posewright/problem/problem.hpp"
-#include "stations.hpp"
+#include "station_frames.hpp"
 
 namespace posewright {
 

@@ -11,7 +11,7 @@
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/six_legs.hpp"
 #include "posewright/model/urdf_reader.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
 namespace {

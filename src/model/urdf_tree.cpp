@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "posewright/blocks/pose_choices.hpp"
 #include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 
@@ -101,9 +102,8 @@ void check_name(const std::string& name, const Values& joint) {
   if (broken)
     joint.fail("joint name " + in_quotes(name) + " would break lists of poses",
                "no comma, semicolon, quote, bracket, # or line break, no blank at either end");
-  for (const char* word : {"pose", "id", "weight", "load_case", "station"})
-    if (name == word)
-      joint.fail("joint name " + in_quotes(name) + " is a column of its own in lists", "rename the joint");
+  if (name == "pose" || name == "id" || name == "weight" || choice_key(name) != nullptr)
+    joint.fail("joint name " + in_quotes(name) + " is a column of its own in lists", "rename the joint");
 }
 
 UrdfJoint::Type type_of(const std::string& name, const Values& joint) {

@@ -1,4 +1,4 @@
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/controller/known_controllers.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/lists/read_poses.hpp"

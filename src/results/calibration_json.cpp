@@ -4,7 +4,7 @@
 #include "document.hpp"
 #include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
-#include "posewright/results/dh_table.hpp"
+#include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/tasks/model_choice.hpp"
 
 namespace posewright {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "document.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/outputs/table.hpp"
 #include "station_map.hpp"
 

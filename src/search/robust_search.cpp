@@ -9,9 +9,9 @@
 #include "planners/local_search.hpp"
 #include "posewright/criterion/scenarios.hpp"
 #include "posewright/support/parallel.hpp"
-#include "robust_weights.hpp"
 #include "scenario_figures.hpp"
 #include "scenario_pool.hpp"
+#include "scenario_weights.hpp"
 
 namespace posewright {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/reserve.hpp"

@@ -8,7 +8,7 @@
 
 #include "posewright/cell/line_of_sight.hpp"
 #include "posewright/model/readable.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/study/spacing.hpp"
 #include "posewright/study/unmodelled.hpp"

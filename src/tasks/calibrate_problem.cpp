@@ -18,7 +18,7 @@
 #include "placed_campaigns.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/model/campaigns.hpp"
 #include "posewright/model/elastic_chain.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

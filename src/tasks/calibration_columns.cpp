@@ -1,7 +1,7 @@
 #include "calibration_columns.hpp"
 
 #include "posewright/blocks/identifiability.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/random.hpp"
 

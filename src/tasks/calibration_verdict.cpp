@@ -9,7 +9,7 @@
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/gain_in_range.hpp"
 #include "posewright/calibration/gross_errors.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright {

@@ -8,7 +8,7 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/workspace.hpp"
 

@@ -12,7 +12,7 @@
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"

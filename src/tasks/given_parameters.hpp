@@ -6,7 +6,7 @@
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/score_tests.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 
 namespace posewright {

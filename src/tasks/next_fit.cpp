@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calibrated_error.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/outputs/table.hpp"

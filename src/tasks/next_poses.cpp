@@ -11,7 +11,7 @@
 #include "fill_plan.hpp"
 #include "next_known.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/error_limits.hpp"
 #include "posewright/study/forecast.hpp"

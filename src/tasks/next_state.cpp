@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "posewright/lists/parameters_file.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/model/campaigns.hpp"
 
 namespace posewright {

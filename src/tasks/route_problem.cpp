@@ -12,7 +12,7 @@
 #include "nearest_turn.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/route/tour.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"

@@ -6,7 +6,7 @@
 
 #include "posewright/calibration/experiment.hpp"
 #include "posewright/criterion/criterion_data.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 

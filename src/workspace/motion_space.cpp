@@ -7,7 +7,7 @@
 #include "limits.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/pair_names.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "tests/kit/example_problems.hpp"

@@ -11,7 +11,7 @@
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/calibration/gain_in_range.hpp"
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/distributions.hpp"

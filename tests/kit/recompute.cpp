@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
 

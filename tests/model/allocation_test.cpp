@@ -9,7 +9,7 @@
 
 #include "posewright/model/command_solver.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 

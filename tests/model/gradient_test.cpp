@@ -14,7 +14,7 @@
 #include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "tests/kit/example_problems.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"

@@ -17,7 +17,7 @@ HELD = {
         "usr/share/posewright/examples/kr270/kr270.urdf", "usr/share/doc/posewright/README.md",
         "usr/share/doc/posewright/report-licenses.txt", "usr/share/doc/posewright/docs/problem-file.md"],
     "libposewright-dev": [
-        "usr/include/posewright/version.hpp", "usr/include/posewright/planners/registry.hpp",
+        "usr/include/posewright/version.hpp", "usr/include/posewright/planners/planner_registry.hpp",
         "usr/lib/ARCH/libposewright.a", "usr/lib/ARCH/cmake/posewright/posewright-config.cmake",
         "usr/lib/ARCH/cmake/posewright/posewright-targets.cmake", "usr/lib/ARCH/cmake/posewright/dependencies.cmake"],
     "python3-posewright": ["usr/lib/python3/dist-packages/posewright/__init__.py", "usr/lib/python3/dist-packages/posewright/py.typed"],

@@ -8,7 +8,7 @@
 
 #include "planners/continuous.hpp"
 #include "planners/design_tree.hpp"
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/planning/ascent.hpp"

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "planners/design_tree.hpp"
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "planners/row_inertia.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "tests/kit/random_blocks.hpp"

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/criterion/registry.hpp"

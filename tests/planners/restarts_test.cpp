@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "tests/kit/random_blocks.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "posewright/criterion/determinant.hpp"
-#include "posewright/criterion/discrepancy.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/trace.hpp"
 #include "posewright/planning/whiten.hpp"

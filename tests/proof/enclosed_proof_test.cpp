@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/proof/workspace_proof.hpp"
 #include "posewright/study/space.hpp"

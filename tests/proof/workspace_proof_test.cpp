@@ -14,7 +14,7 @@
 
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"

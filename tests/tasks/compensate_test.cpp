@@ -12,7 +12,7 @@
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/urdf_reader.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/compensate_problem.hpp"

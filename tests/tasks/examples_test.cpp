@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"

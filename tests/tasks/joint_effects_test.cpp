@@ -11,7 +11,7 @@
 
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"

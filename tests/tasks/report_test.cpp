@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/cell/drawing.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/study/study.hpp"

@@ -5,7 +5,7 @@
 
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/unmodelled_effect.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
 

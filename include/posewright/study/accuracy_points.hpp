@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewright/criterion/criterion_data.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {

@@ -6,7 +6,7 @@
 
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/model/identification_model.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/workspace/candidates.hpp"
 

@@ -10,7 +10,7 @@
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/unmodelled_effect.hpp"
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/support/monitor.hpp"

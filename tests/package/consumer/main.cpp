@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "planners/registry.hpp"
+#include "planners/planner_registry.hpp"
 #include "posewright/criterion/observability_indices.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 

@@ -1,11 +1,11 @@
-#include "posewright/results/dh_table.hpp"
+#include "posewright/results/calibrated_dh_table.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/support/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "posewright/model/variant.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "stations.hpp"
+#include "station_frames.hpp"
 
 #include <numbers>
 

@@ -1,4 +1,4 @@
-#include "robust_weights.hpp"
+#include "scenario_weights.hpp"
 
 #include <algorithm>
 #include <cmath>

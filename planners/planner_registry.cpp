@@ -1,4 +1,4 @@
-#include "registry.hpp"
+#include "planner_registry.hpp"
 
 #include "automatic.hpp"
 #include "branch_and_bound.hpp"

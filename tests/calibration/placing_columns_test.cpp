@@ -1,6 +1,6 @@
 // Angles of frames in one range, whatever side a fit came from.
 
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 
 #include "posewright/model/placement.hpp"
 #include "tests/kit/drawn_positioner.hpp"

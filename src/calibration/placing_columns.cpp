@@ -1,4 +1,4 @@
-#include "posewright/calibration/placement.hpp"
+#include "posewright/calibration/placing_columns.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Criteria that plan against effects of a truth: known answers, derivatives.
 
-#include "posewright/criterion/discrepancy.hpp"
+#include "posewright/criterion/effect_criteria.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,12 +15,15 @@ def numbers(element, key, default):
 
 
 class Joint:
-    """A moving joint; the fixed ones before it are in `parent`. `bodies`: what it carries up to the next, (kg, m)."""
+    """A moving joint; the fixed ones before it are in `parent`. `bodies`: what it carries up to the next, (kg, m).
+    Passed from child to parent it moves the other way, and its frame is displaced on the child link."""
 
-    def __init__(self, element, parent):
+    def __init__(self, element, parent, backward=False):
         self.name, self.parent, self.bodies = element.get("name"), parent, []
         axis = np.array(numbers(element.find("axis"), "xyz", "1 0 0"))
         self.axis, self.prismatic = axis / np.linalg.norm(axis), element.get("type") == "prismatic"
+        if backward:
+            self.axis = -self.axis
         self.mimic = element.find("mimic")
         # A joint that follows another one: what bends it bends that one, geared.
         self.leader = self.name if self.mimic is None else self.mimic.get("joint")
@@ -39,17 +42,29 @@ def read_chain(urdf, base, tip):
     by_child = {e.find("child").get("link"): e for e in elements}
     if tip is None:
         (tip,) = set(links) - {e.find("parent").get("link") for e in elements}
-    path, link = [], tip
-    while link in by_child and link != base:
-        path.insert(0, by_child[link])
+    up, link = [], base
+    while link in by_child:
+        up.append(by_child[link])
         link = by_child[link].find("parent").get("link")
+    ancestors = [base] + [e.find("parent").get("link") for e in up]
+    down, link = [], tip
+    while link in by_child and link not in ancestors:
+        down.insert(0, by_child[link])
+        link = by_child[link].find("parent").get("link")
+    backward = up[:ancestors.index(link)] if base is not None else []
     joints, X = [], np.eye(4)
-    for element in path:
+    for element in backward + down:
         origin = element.find("origin")
-        X = X @ frame(numbers(origin, "xyz", "0 0 0"), turn_rpy(*numbers(origin, "rpy", "0 0 0")))
+        passed = frame(numbers(origin, "xyz", "0 0 0"), turn_rpy(*numbers(origin, "rpy", "0 0 0")))
+        up_the_tree = element in backward
+        if not up_the_tree:
+            X = X @ passed
         if element.get("type") != "fixed":
-            joints.append(Joint(element, X))
+            joints.append(Joint(element, X, up_the_tree))
             X = np.eye(4)
+        if up_the_tree:
+            X = X @ np.linalg.inv(passed)
+            continue
         inertial = links[element.find("child").get("link")].find("inertial")
         if inertial is not None and joints:
             centre = np.array(numbers(inertial.find("origin"), "xyz", "0 0 0"))

@@ -96,7 +96,7 @@ def check_listed(program, folder, poses, name, options, evaluate, check):
         # One pose less must determine everything still; with a reserve, after the loss of another.
         less = len(chosen) - 1 - bool(plan["criterion"]["reserve"])
         drop = [["--drop", "1"]] * bool(np.isfinite(meaning.fit.log_det(chosen_sets(chosen, less))).all())
-        done = subprocess.run([program, "evaluate", problem_file, csv, "--json", "--quiet", "--add", "1", *itertools.chain(*drop)],
+        done = subprocess.run([program, "evaluate", problem_file, csv, "--criterion", "o1", "--json", "--quiet", "--add", "1", *itertools.chain(*drop)],
                               capture_output=True, text=True)
         check.holds(f"evaluate: {done.stderr.strip()[:150]}", done.returncode == 0)
         if done.returncode == 0:

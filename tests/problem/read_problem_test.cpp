@@ -221,7 +221,7 @@ variants: {all: {parameters: auto}}
   EXPECT_TRUE(problem.workspace.limits.empty());
   EXPECT_FALSE(problem.design.variant.has_value());
   EXPECT_FALSE(problem.design.poses.has_value());
-  EXPECT_EQ(problem.design.criterion.value, "o1");
+  EXPECT_EQ(problem.design.criterion.value, "auto");
   EXPECT_EQ(problem.design.repeats, Repeats{1});
 }
 

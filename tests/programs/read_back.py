@@ -17,7 +17,7 @@ robot: {urdf: arm.urdf, base: l0, tip: l6}
 measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.2 mrad}}}
 variants: {all: {parameters: auto}}
 workspace: {collision: {self: false, obstacles: [{name: post, box: [0.1, 0.1, 2], at: [0.45, 0.3, 1]}, {name: other, box: [0.1, 0.1, 2], at: [0.4, -0.4, 1]}]}}
-design: {poses: 14, candidates: 60, method: greedy, restarts: 1}
+design: {criterion: o1, poses: 14, candidates: 60, method: greedy, restarts: 1}
 """
 YASKAWA = "sign: [1, -1, 1, -1, 1, 1]\nzero_deg: [0, 5, 0, 0, 0, 0]\npulses_per_degree: [1435.1, 1435.1, 1300.5, 1024, 1024, 568.9]\ncoupling: 0\naxes: [S, L, U, R, B, T]\n"
 UNIVERSAL = "axes: [base, shoulder, elbow, wrist1, wrist2, wrist3]\n"

@@ -29,11 +29,7 @@ class ChainFrames : public BodyFrames {
     frame.then(chain_.X_MeasureBase);
     X[0].setIdentity();
     for (std::size_t k = 0; k < chain_.joints.size(); ++k) {
-      const ChainJoint& joint = chain_.joints[k];
-      frame.then(joint.X_ParentJoint);
-      const double value = joint.multiplier * q[place(pose, k)] + joint.offset;
-      if (joint.prismatic) frame.then_translate(joint.axis * value);
-      else frame.then_rotate(joint.axis, value);
+      frame.then_joint(chain_.joints[k], q[place(pose, k)]);
       X[k + 1].setIdentity();
       X[k + 1].linear() = frame.R;
       X[k + 1].translation() = frame.p;

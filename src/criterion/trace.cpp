@@ -22,7 +22,7 @@ Eigen::MatrixXd whitened(const CriterionData& data, const Eigen::MatrixXd& A) {
 void require_test_points(const CriterionData& data) {
   if (data.test_points.empty())
     throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
-  if (std::ranges::all_of(data.test_points, [](const TestPoint& t) { return t.A.isZero(0); }))
+  if (!any_is_moved(data.test_points))
     throw CannotDo(
         "no parameter that is identified moves the robot at the test poses, so that every plan is as accurate there: "
         "other test_poses (an elastic arm: another load_case) or another criterion");
@@ -146,6 +146,10 @@ class WorstTestPoint : public InformationFunction {
 };
 
 }  // namespace
+
+bool any_is_moved(const std::vector<TestPoint>& points) {
+  return std::ranges::any_of(points, [](const TestPoint& t) { return !t.A.isZero(0); });
+}
 
 Eigen::MatrixXd variance_rows(const CriterionData& data) {
   const Eigen::Index m = data.R.cols();

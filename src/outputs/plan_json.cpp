@@ -1,6 +1,6 @@
 #include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text.hpp"

@@ -6,7 +6,7 @@
 
 #include "nearest.hpp"
 #include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/expected_error.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 

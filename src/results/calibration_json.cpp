@@ -2,8 +2,8 @@
 
 #include "calibration_parts.hpp"
 #include "document.hpp"
-#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/tasks/model_choice.hpp"
 

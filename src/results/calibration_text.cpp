@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/expected_error.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 
 namespace posewright {

@@ -1,7 +1,7 @@
 #include "document.hpp"
 #include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/expected_error.hpp"
 #include "posewright/outputs/json_values.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/results/comparison.hpp"
 
 namespace posewright {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/expected_error.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/results/comparison.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "fill_plan.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/criterion/trace.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/study/discrepancy.hpp"
@@ -114,9 +115,7 @@ class ListEvaluation {
           (study_.discrepancy == nullptr || study_.discrepancy->group.columns == 0))
         continue;
       const bool chosen = entry.name == settings_.criterion;
-      // Every list is as accurate where no identified parameter moves the robot.
-      const bool moves = std::ranges::any_of(study_.first().test_points, [](const auto& t) { return !t.A.isZero(0); });
-      if (entry.needs_test_poses && !moves && !chosen) continue;
+      if (entry.needs_test_poses && !any_is_moved(study_.first().test_points) && !chosen) continue;
       if (!chosen && monitor_.should_stop()) continue;
       const Bound bound = bound_of(entry.name);
       const double phi = phi_of(*bound.measure, entry.name, study_, poses_, settings_);

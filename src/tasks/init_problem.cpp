@@ -72,12 +72,7 @@ std::vector<Eigen::Vector3d> places(const InitFacts& facts, const InitRobot& rob
 std::pair<Eigen::Vector3d, Eigen::Vector3d> hand_at(const InitFacts& facts, const InitRobot& robot,
                                                     const std::vector<double>& q) {
   Frame<double> tip;
-  for (const ChainJoint& joint : robot.chain.joints) {
-    tip.then(joint.X_ParentJoint);
-    const double value = joint.multiplier * q[std::size_t(joint.coordinate)] + joint.offset;
-    if (joint.prismatic) tip.then_translate(joint.axis * value);
-    else tip.then_rotate(joint.axis, value);
-  }
+  for (const ChainJoint& joint : robot.chain.joints) tip.then_joint(joint, q[std::size_t(joint.coordinate)]);
   tip.then(robot.chain.X_LastTip);
   return {tip.p + tip.R * mounted_at(facts, robot), tip.R * robot.outward};
 }

@@ -13,6 +13,8 @@ namespace posewright {
 /// A of the criteria Φ = −ln tr(A M⁻¹ Aᵀ) in whitened coordinates (k × m).
 /// `a`: the parameters of interest in units of `scale`; φ is the sum of their variances.
 Eigen::MatrixXd variance_rows(const CriterionData& data);
+/// False: every plan is as accurate at these points.
+bool any_is_moved(const std::vector<TestPoint>& points);
 /// `test_pose`: rows √(w_t/Σw) A_t; φ is the mean squared position error at the test points.
 /// Throws CannotDo if there are no test points.
 Eigen::MatrixXd test_point_rows(const CriterionData& data);

@@ -56,6 +56,13 @@ struct Frame {
     R = (R * X.linear().cast<T>()).eval();
   }
   void then_translate(const Eigen::Matrix<T, 3, 1>& t) { p += R * t; }
+  /// The frame of a joint, moved as its coordinate says.
+  void then_joint(const ChainJoint& joint, const T& coordinate) {
+    then(joint.X_ParentJoint);
+    const T value = joint.multiplier * coordinate + joint.offset;
+    if (joint.prismatic) then_translate(joint.axis.cast<T>() * value);
+    else then_rotate(joint.axis, value);
+  }
   /// R ← R · (rotation about the unit axis a), Rodrigues: I + sin K + (1 − cos) (a aᵀ − I), K x = a × x.
   void then_rotate(const Eigen::Vector3d& axis, const T& angle) {
     using std::cos, std::sin;

@@ -1,4 +1,4 @@
-#include "posewright/outputs/expected_error.hpp"
+#include "posewright/outputs/stated_error.hpp"
 
 #include <fmt/format.h>
 

@@ -9,6 +9,7 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/outputs/pose_formats.hpp"
+#include "posewright/study/accuracy_points.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text_file.hpp"
@@ -31,13 +32,14 @@ bool loads_the_arm(const LoadCaseSpec& load) { return !load.force.isZero() || !l
 using Load = std::optional<std::pair<std::size_t, double>>;
 
 /// The load case under which the robot works at the test poses: what is asked for, or the first that loads it.
-Load load_case_of(const Problem& seen, const std::vector<Coordinate>& coordinates) {
-  const TestPosesSpec& spec = *seen.design.test_poses;
+Load load_case_of(const Variant& variant, const std::vector<Coordinate>& coordinates) {
+  const Problem& problem = *variant.problem;
+  const TestPosesSpec& spec = *problem.design.test_poses;
   const auto found = std::ranges::find(coordinates, "load_case", &Coordinate::name);
-  const auto* arm = std::get_if<SerialArmSpec>(&seen.robot);
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
   if (found == coordinates.end() || arm == nullptr || !arm->elastostatic) {
     if (!spec.load_case) return std::nullopt;
-    throw InputError(seen.at(spec.load_case->line), "design.test_poses.load_case: there is no choice of load cases",
+    throw InputError(problem.at(spec.load_case->line), "design.test_poses.load_case: there is no choice of load cases",
                      "robot.elastostatic with at least two loads");
   }
   const std::vector<LoadCaseSpec>& loads = arm->elastostatic->loads;
@@ -45,7 +47,7 @@ Load load_case_of(const Problem& seen, const std::vector<Coordinate>& coordinate
     return spec.load_case ? l.name == spec.load_case->value : loads_the_arm(l);
   });
   if (load == loads.end() && spec.load_case)
-    throw InputError(seen.at(spec.load_case->line), "'" + spec.load_case->value + "' is not a load case",
+    throw InputError(problem.at(spec.load_case->line), "'" + spec.load_case->value + "' is not a load case",
                      fmt::format("allowed: {}", fmt::join(found->labels, ", ")));
   return std::pair(std::size_t(found - coordinates.begin()), load == loads.end() ? 0.0 : double(load - loads.begin()));
 }
@@ -210,9 +212,9 @@ Points points_from(const std::filesystem::path& file) {
   return points;
 }
 
-TestConfigurations reach(const Points& points, const Problem& seen, const IdentificationModel& model,
+TestConfigurations reach(const Points& points, const Variant& variant, const IdentificationModel& model,
                          const Workspace& workspace, const Load& load, std::uint64_t seed) {
-  const TestPosesSpec& spec = *seen.design.test_poses;
+  const TestPosesSpec& spec = *variant.problem->design.test_poses;
   const Reach reach(model, workspace, spec.point, load, seed);
   TestConfigurations result;
   result.weights = points.weights;
@@ -222,18 +224,19 @@ TestConfigurations reach(const Points& points, const Problem& seen, const Identi
       throw CannotDo(
           fmt::format("{}:{}: the robot does not reach the test point ({:.6g}, {:.6g}, {:.6g}) m within its "
                       "workspace",
-                      seen.file.string(), spec.line, target.x(), target.y(), target.z()));
+                      variant.problem->file.string(), spec.line, target.x(), target.y(), target.z()));
   }
   return result;
 }
 
 }  // namespace
 
-TestConfigurations test_configurations(const Problem& seen, const IdentificationModel& model, std::uint64_t seed) {
+TestConfigurations test_configurations(const Variant& variant, const IdentificationModel& model, std::uint64_t seed) {
+  const Problem seen = with_pose_seen(*variant.problem);
   const TestPosesSpec& spec = *seen.design.test_poses;
   TestConfigurations result;
   result.weights = spec.weights;
-  const Load load = load_case_of(seen, model.coordinates());
+  const Load load = load_case_of(variant, model.coordinates());
   for (const auto& written : spec.at) {
     result.configurations.push_back(configuration_of(written, model.coordinates(), seen.at(spec.line)));
     if (load) result.configurations.back()[load->first] = load->second;
@@ -245,10 +248,10 @@ TestConfigurations test_configurations(const Problem& seen, const Identification
                        fmt::format("test pose {} is not feasible: {}", i + 1, workspace.reasons()[std::size_t(reason)]),
                        "configurations within the workspace");
   if (!spec.at.empty()) return result;
-  if (spec.grid) return reach(points_of(*spec.grid), seen, model, workspace, load, seed);
+  if (spec.grid) return reach(points_of(*spec.grid), variant, model, workspace, load, seed);
   if (!spec.file.empty()) {
     if (lists_points(spec.file, workspace.coordinates()))
-      return reach(points_from(spec.file), seen, model, workspace, load, seed);
+      return reach(points_from(spec.file), variant, model, workspace, load, seed);
     if (spec.load_case)
       throw InputError(seen.at(spec.load_case->line),
                        "design.test_poses.load_case cannot be combined with a file of configurations",

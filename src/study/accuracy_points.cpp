@@ -4,6 +4,7 @@
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/study/accuracy_configurations.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -16,17 +17,16 @@ Problem with_pose_seen(Problem problem) {
   return problem;
 }
 
-std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
-                                                    const IdentificationModel& model) {
-  Problem seen = with_pose_seen(problem);
+std::unique_ptr<IdentificationModel> make_pose_seen(const Variant& variant) {
+  Problem seen = with_pose_seen(*variant.problem);
   seen.parameters.reset();
   if (auto* arm = std::get_if<SerialArmSpec>(&seen.robot)) arm->parameter_names.clear();
-  VariantSpec plain = variant;
+  VariantSpec plain = *variant.spec;
   plain.nominal.clear();
   std::unique_ptr<IdentificationModel> result = make_model(seen, plain);
   for (int i = 0; i < int(result->parameters().size()); ++i) {
     const Parameter& own = result->parameters()[std::size_t(i)];
-    for (const Parameter& p : model.parameters())
+    for (const Parameter& p : variant.model->parameters())
       if (p.name == own.name && p.nominal != own.nominal) {
         result->set_nominal(i, p.nominal);
         break;
@@ -40,12 +40,11 @@ namespace {
 /// The robot with its pose seen, and what its parameters do to a point of the tip.
 class SeenPoses {
  public:
-  SeenPoses(const Problem& problem, const VariantSpec& variant, const IdentificationModel& model,
-            const VariantColumns& columns)
-      : model_(make_pose_seen(problem, variant, model)), columns_(Eigen::Index(columns.selected.size())) {
+  SeenPoses(const Variant& variant, const VariantColumns& columns)
+      : model_(make_pose_seen(variant)), columns_(Eigen::Index(columns.selected.size())) {
     // Columns by name: the instrument's own (targets, stations, a lens) do not move the robot.
     for (std::size_t j = std::size_t(columns.nuisance); j < columns.selected.size(); ++j) {
-      const std::string& name = model.parameters()[std::size_t(columns.selected[j])].name;
+      const std::string& name = variant.model->parameters()[std::size_t(columns.selected[j])].name;
       for (int i = 0; i < int(model_->parameters().size()); ++i)
         if (model_->parameters()[std::size_t(i)].name == name) {
           selected_.push_back(i);
@@ -80,16 +79,16 @@ class SeenPoses {
 
 }  // namespace
 
-std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
-                                      const IdentificationModel& model, const VariantColumns& columns,
-                                      std::uint64_t seed, std::vector<TestPlace>* test_places) {
+std::vector<TestPoint> test_points_of(const Variant& variant, const VariantColumns& columns, std::uint64_t seed,
+                                      std::vector<TestPlace>* test_places) {
+  const Problem& problem = *variant.problem;
   std::vector<TestPoint> points;
   if (!problem.design.test_poses) return points;
   if (std::holds_alternative<CompensatorGeometrySpec>(problem.robot))
     throw CannotDo("design: test_poses are those of a robot with a tip; a compensator alone has none");
   const TestPosesSpec& spec = *problem.design.test_poses;
-  SeenPoses seen(problem, variant, model, columns);
-  const TestConfigurations places = test_configurations(with_pose_seen(problem), seen.model(), seed);
+  SeenPoses seen(variant, columns);
+  const TestConfigurations places = test_configurations(variant, seen.model(), seed);
   for (const std::vector<double>& q : places.configurations) {
     TestPoint point;
     TestPlace place;
@@ -102,18 +101,16 @@ std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec&
   return points;
 }
 
-std::vector<TestPoint> test_points_at(const Problem& problem, const VariantSpec& variant,
-                                      const IdentificationModel& model, const VariantColumns& columns,
-                                      const std::vector<std::vector<double>>& configurations,
-                                      std::vector<TestPlace>* test_places) {
-  SeenPoses seen(problem, variant, model, columns);
+std::vector<TestPoint> test_points_at(const Variant& variant, const std::vector<std::vector<double>>& configurations,
+                                      std::vector<TestPlace>& test_places) {
+  SeenPoses seen(variant, variant.columns);
   std::vector<TestPoint> points;
   for (const std::vector<double>& q : configurations) {
     TestPoint point;
     TestPlace place;
     if (!seen.at(q, Eigen::Vector3d::Zero(), point, place)) continue;
     points.push_back(std::move(point));
-    if (test_places != nullptr) test_places->push_back(std::move(place));
+    test_places.push_back(std::move(place));
   }
   return points;
 }

@@ -48,12 +48,13 @@ BlockArray with_features_last(const Variant& variant, const EffectFeatures& feat
 
 /// Information from before: of the parameters as the variant has it; of the features their size, and what poses that
 /// are measured already contain of them.
-Eigen::MatrixXd known_with_features(const Study& study, const EffectFeatures& features, int threads) {
+Eigen::MatrixXd known_with_features(const Study& study, const EffectFeatures& features, int threads,
+                                    const Eigen::MatrixXd& prior) {
   const Variant& variant = study.first();
   const auto own = Eigen::Index(variant.columns.selected.size()), all = own + features.columns();
   Eigen::MatrixXd known = Eigen::MatrixXd::Zero(all, all);
-  if (variant.prior.size() > 0) {
-    known.topLeftCorner(own, own) = variant.prior.bottomRightCorner(own, own);
+  if (prior.size() > 0) {
+    known.topLeftCorner(own, own) = prior.bottomRightCorner(own, own);
     if (const Configurations poses = known_before(study); poses.count() > 0) {
       // The variant's own search may have other features: what these poses say is taken anew, in one piece.
       const BlockArray before = search_blocks(variant, poses, threads);
@@ -71,7 +72,8 @@ Eigen::MatrixXd known_with_features(const Study& study, const EffectFeatures& fe
 
 bool moves_the_tip(const Study& study, int threads) { return contain_the_tip(along_the_tip(study, threads)); }
 
-SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads) {
+SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads,
+                                    const Eigen::MatrixXd& prior) {
   const Variant& variant = study.first();
   const auto effect = effect_of(study, threads);
   const EffectFeatures features =
@@ -84,7 +86,7 @@ SearchPart part_with_assumed_effect(const Study& study, const Configurations& co
   part.nuisance = variant.columns.nuisance;
   part.scale = Eigen::VectorXd::Ones(own + columns);
   part.scale.head(own) = variant.scale;
-  part.prior = known_with_features(study, features, threads);
+  part.prior = known_with_features(study, features, threads, prior);
   const BlockArray places = with_features_last(variant, features, thinned(study.configurations, error_places), threads);
   const Eigen::MatrixXd errors = places.all() / std::sqrt(double(places.count()));
   part.effects = {int(columns), Eigen::MatrixXd::Identity(columns, columns), errors.leftCols(own),

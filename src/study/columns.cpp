@@ -50,9 +50,8 @@ Configurations thinned(const Configurations& configurations, std::size_t count) 
 }
 
 ResolvedColumns resolve_columns(const IdentificationModel& model, const Configurations& configurations,
-                                const Problem& problem, const VariantSpec& variant, bool prior, int threads) {
+                                VariantColumns all, bool prior, int threads) {
   ResolvedColumns resolved;
-  VariantColumns all = select_columns(model, problem, variant);
   const BlockArray sample = build_blocks(model, all.selected, thinned(configurations, structural_sample), threads);
   if (!all.automatic) {
     const Identifiability found = identifiability(sample, all.parameters, exact_options());
@@ -65,7 +64,7 @@ ResolvedColumns resolve_columns(const IdentificationModel& model, const Configur
   options.tiers = all.tiers;
   const Identifiability found = identifiability(sample, all.parameters, options);
   if (found.rank == 0)
-    throw CannotDo("variant '" + variant.name + "': no parameter changes a reading of the instrument at any of " +
+    throw CannotDo("variant '" + all.name + "': no parameter changes a reading of the instrument at any of " +
                    std::to_string(sample.count()) +
                    " configurations; check position and line of sight of the instrument");
   for (const Dependency& d : found.dependencies) {
@@ -76,7 +75,7 @@ ResolvedColumns resolve_columns(const IdentificationModel& model, const Configur
   if (int(resolved.columns.selected.size()) == resolved.columns.nuisance) {
     std::string text;
     for (const std::string& reason : resolved.reasons) text += (text.empty() ? "" : ", ") + reason;
-    throw CannotDo("variant '" + variant.name +
+    throw CannotDo("variant '" + all.name +
                    "': no parameter of interest can be identified separately from the nuisance ones: " + text);
   }
   return resolved;

@@ -17,23 +17,23 @@ namespace {
 // rounding.
 constexpr double imitated = 1e-12;
 
-SourcePlace place_of(const Problem& problem, const Settings& settings) { return problem.at(settings.truth.line); }
-
-Effects checked_effects(const Problem& problem, const Study& study, const Settings& settings) {
+Effects checked_effects(const Study& study) {
   const Variant& fitted = study.first();
-  const VariantSpec& truth = find_variant(problem, settings.truth.value);
-  const SourcePlace place = place_of(problem, settings);
+  const VariantSpec& truth = *study.truth;
+  const SourcePlace place = study.problem->at(study.truth_line);
   if (truth.name == fitted.spec->name)
     throw InputError(place, "the truth '" + truth.name + "' is the variant that is fitted", "another variant");
-  const Variant other = place_variant(problem, truth, study.cell);
+  const Variant other = place_variant(*study.problem, truth, study.cell);
   if (!one_catalogue(*fitted.model, *other.model))
     throw InputError(place,
                      "variants '" + fitted.spec->name + "' and '" + truth.name + "' use different kinds of parameters",
                      "a truth in the same convention");
   // Where the truth's own columns depend on one another matters to whoever fits it; nobody does here.
   const VariantColumns columns =
-      resolve_columns(*fitted.model, study.configurations, problem, truth, true, settings.planner.threads).columns;
-  Effects effects = effects_of(fitted, *other.model, columns, settings.prior);
+      resolve_columns(*fitted.model, study.configurations, select_columns(*fitted.model, *study.problem, truth), true,
+                      study.planner.threads)
+          .columns;
+  Effects effects = effects_of(fitted, *other.model, columns, study.prior);
   if (effects.count() == 0)
     throw InputError(place,
                      "truth '" + truth.name + "' has no effect that '" + fitted.spec->name + "' does not estimate",
@@ -122,32 +122,30 @@ void fill_errors(Discrepancy& result, const Variant& fitted, const Eigen::Matrix
   result.group.error_offset = rows * effects.combinations - rows.leftCols(own) * beta;
 }
 
-void require_a_residual(const Study& study, const Discrepancy& found, const Settings& settings) {
+void require_a_residual(const Study& study, const Discrepancy& found) {
   const int rows = study.first().model->block_rows(found.effects.columns.selected), own = found.effects.fitted;
-  if (!find_criterion(settings.criterion)->needs_residual || settings.poses == 0 || study.first().known_before ||
-      settings.poses * rows > own)
+  if (!find_criterion(study.criterion)->needs_residual || !study.poses || study.first().known_before ||
+      *study.poses * rows > own)
     return;
   throw CannotDo(
       fmt::format("{} poses give {} equations for {} parameters: no degree of freedom is left to distinguish '{}' from "
                   "'{}'; at least {} poses are needed",
-                  settings.poses, settings.poses * rows, own, study.first().spec->name, found.truth, own / rows + 1));
+                  *study.poses, *study.poses * rows, own, study.first().spec->name, found.truth, own / rows + 1));
 }
 
 }  // namespace
 
-std::shared_ptr<const Discrepancy> make_discrepancy(const Problem& problem, const Study& study,
-                                                    const Settings& settings) {
+std::shared_ptr<const Discrepancy> make_discrepancy(const Study& study) {
   const auto result = std::make_shared<Discrepancy>();
   const Variant& fitted = study.first();
-  const int threads = settings.planner.threads;
-  result->truth = settings.truth.value;
-  result->effects = checked_effects(problem, study, settings);
-  require_a_residual(study, *result, settings);
-  result->test_points =
-      test_points_of(problem, *fitted.spec, *fitted.model, result->effects.columns, settings.planner.seed);
+  const int threads = study.planner.threads;
+  result->truth = study.truth->name;
+  result->effects = checked_effects(study);
+  require_a_residual(study, *result);
+  result->test_points = test_points_of(fitted, result->effects.columns, study.planner.seed);
   const Eigen::MatrixXd measured = measured_before(study, result->effects, threads);
   const Eigen::MatrixXd rows = stacked(study, result->effects, measured, threads);
-  const Eigen::MatrixXd beta = find_basis(*result, rows, told_by_tolerances(result->effects, settings.prior));
+  const Eigen::MatrixXd beta = find_basis(*result, rows, told_by_tolerances(result->effects, study.prior));
   fill_errors(*result, fitted, beta);
   if (measured.size() == 0) return result;
   const Eigen::MatrixXd known = result->mix.transpose() * measured * result->mix;

@@ -59,14 +59,13 @@ Configurations some_of(const Configurations& all, const std::vector<int>& which)
 
 }  // namespace
 
-DrawnRobots::DrawnRobots(const Problem& problem, const Study& study, const Configurations& sought, std::uint64_t seed,
-                         int threads, const Monitor& monitor)
+DrawnRobots::DrawnRobots(const Study& study, const Configurations& sought, const Monitor& monitor)
     : columns_(study.first().columns),
-      model_(place_variant(problem, *study.first().spec, study.cell, monitor).model),
-      seed_(seed) {
+      model_(place_variant(*study.problem, *study.first().spec, study.cell, monitor).model),
+      seed_(study.planner.seed) {
   if (study.cell->sight_is_asked && study.cell->sight != nullptr)
     model_->set_visibility(std::make_shared<RememberedSight>(
-        std::shared_ptr<const Visibility>(study.cell, study.cell->sight.get()), sought, threads));
+        std::shared_ptr<const Visibility>(study.cell, study.cell->sight.get()), sought, study.planner.threads));
 }
 
 std::vector<double> DrawnRobots::correction(int robot) const {
@@ -89,19 +88,19 @@ BlockArray DrawnRobots::blocks(int robot, const Configurations& configurations) 
   return blocks;
 }
 
-RobustRequest robust_request(const Study& study, const Settings& settings, const DrawnRobots& robots,
-                             const Configurations& configurations, std::vector<int> plan) {
+RobustRequest robust_request(const Study& study, const DrawnRobots& robots, const Configurations& configurations,
+                             std::vector<int> plan) {
   const Variant& variant = study.first();
   RobustRequest request;
-  request.aim = settings.robust->aim;
-  request.scenarios = settings.robust->draws;
+  request.aim = study.robust->aim;
+  request.scenarios = study.robust->draws;
   request.poses = int(plan.size());
   request.nuisance = variant.everything_counts ? 0 : variant.columns.nuisance;
-  request.repeats = settings.repeats;
+  request.repeats = study.repeats;
   if (study.distance.kept) request.spacing = with_points(study.distance.spacing, configurations);
-  request.planner = settings.planner;
+  request.planner = study.planner;
   request.plan = std::move(plan);
-  request.nominal = search_blocks(variant, configurations, settings.planner.threads);
+  request.nominal = search_blocks(variant, configurations, study.planner.threads);
   request.prior = variant.prior;
   request.blocks = [&robots, &configurations](int robot, const std::vector<int>& which) {
     return robots.blocks(robot, which.empty() ? configurations : some_of(configurations, which));
@@ -110,7 +109,7 @@ RobustRequest robust_request(const Study& study, const Settings& settings, const
   // Tolerances are the same for every robot; what is measured already tells each something else.
   const auto m = Eigen::Index(variant.columns.selected.size());
   Eigen::MatrixXd tolerances = Eigen::MatrixXd::Zero(m, m);
-  if (settings.prior) tolerances.diagonal() = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
+  if (study.prior) tolerances.diagonal() = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
   request.prior_of = [&robots, known = known_before(study), tolerances](int robot) {
     Eigen::MatrixXd prior = tolerances;
     if (known.count() == 0) return prior;

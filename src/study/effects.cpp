@@ -62,8 +62,7 @@ Effects effects_of(const Variant& fitted, const IdentificationModel& truth, cons
   return effects;
 }
 
-EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Configurations& poses,
-                      const Settings& settings) {
+EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Configurations& poses, const Setup& setup) {
   const Eigen::Index own = effects.fitted;
   EffectFit fit;
   if (effects.count() == 0) {
@@ -71,12 +70,12 @@ EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Confi
     return fit;
   }
   // One array for both, so that rows are whitened and factored alike.
-  const BlockArray blocks = build_blocks(*fitted.model, effects.columns.selected, poses, settings.planner.threads);
+  const BlockArray blocks = build_blocks(*fitted.model, effects.columns.selected, poses, setup.planner.threads);
   BlockArray arranged(blocks.count(), blocks.rows(), int(own + effects.count()));
   arranged.all().leftCols(own) = blocks.all().leftCols(own);
   arranged.all().rightCols(effects.count()) = blocks.all() * effects.combinations;
   Eigen::VectorXd known;
-  if (settings.prior) {
+  if (setup.prior) {
     known.resize(own);
     for (Eigen::Index j = 0; j < own; ++j) known[j] = fitted.columns.parameters[std::size_t(j)].tolerance;
   }

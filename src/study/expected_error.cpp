@@ -114,17 +114,16 @@ class PlacesThatCount {
 };
 
 /// Effect of the variant, of an earlier calibration, or as large as the noise.
-std::shared_ptr<const UnmodelledEffect> effect_of(const Problem& problem, const Variant& variant,
-                                                  ExpectedError& result) {
+std::shared_ptr<const UnmodelledEffect> effect_of(const Variant& variant, ExpectedError& result) {
   if (variant.effect != nullptr) {
     result.size = ExpectedError::Size::counted;
     return variant.effect;
   }
   UnmodelledSize size{result.noise, 0.0, UnmodelledSize::assumed_length};
-  if (problem.parameters && problem.parameters->unmodelled) {
+  if (const auto& calibrated = variant.problem->parameters; calibrated && calibrated->unmodelled) {
     result.size = ExpectedError::Size::measured;
-    size.translation = problem.parameters->unmodelled->size;
-    size.length = problem.parameters->unmodelled->length;
+    size.translation = calibrated->unmodelled->size;
+    size.length = calibrated->unmodelled->length;
   }
   return std::make_shared<UnmodelledEffect>(*variant.model, size);
 }
@@ -193,9 +192,8 @@ void take_measured(const FittedResiduals& residuals, const Eigen::MatrixXd& left
 
 }  // namespace
 
-std::optional<ExpectedError> expected_error(const Problem& problem, const Configurations& candidates,
-                                            const Variant& variant, const Configurations& poses,
-                                            const Eigen::MatrixXd& covariance, int threads,
+std::optional<ExpectedError> expected_error(const Configurations& candidates, const Variant& variant,
+                                            const Configurations& poses, const Eigen::MatrixXd& covariance, int threads,
                                             const std::optional<FittedResiduals>& residuals) {
   const IdentificationModel& model = *variant.model;
   ExpectedError result;
@@ -203,15 +201,15 @@ std::optional<ExpectedError> expected_error(const Problem& problem, const Config
   if (model.tips() == 0 || (!result.at_test_poses && model.tips() > 1)) return std::nullopt;
   std::vector<TestPoint> points = variant.test_points;
   std::vector<TestPlace> test_places = variant.test_places;
-  if (points.empty()) points = test_points_at_candidates(problem, candidates, variant, test_places);
+  if (points.empty()) points = test_points_at_candidates(candidates, variant, test_places);
   result.places = int(points.size());
-  result.required = problem.design.require.accuracy;
+  result.required = variant.problem->design.require.accuracy;
 
   Readings readings = readings_of(variant, poses, threads);
   result.noise = noise_of_a_pose(readings.along.leftCols<3>(), poses.count());
-  const auto effect = effect_of(problem, variant, result);
+  const auto effect = effect_of(variant, result);
   result.length = effect->size().length;
-  const auto seen = make_pose_seen(problem, *variant.spec, model);
+  const auto seen = make_pose_seen(variant);
   const std::array<bool, rigid_motions> out = taken_out(variant, *seen, poses, readings);
   result.base_out = std::any_of(out.begin(), out.begin() + tip_twists, [](bool o) { return o; });
   result.tool_out = std::any_of(out.begin() + tip_twists, out.end(), [](bool o) { return o; });

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "posewright/lists/read_poses.hpp"
+#include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -44,8 +44,8 @@ PoseList fixed_of(const PoseList& list) {
 }
 
 /// Why a variant's workspace forbids q; empty: none does.
-std::string violation(const Study& study, const std::vector<double>& q) {
-  for (const Variant& v : study.variants)
+std::string violation(const Setup& setup, const std::vector<double>& q) {
+  for (const Variant& v : setup.variants)
     if (const int reason = v.workspace->violation(q); reason >= 0) return v.workspace->reasons()[std::size_t(reason)];
   return {};
 }
@@ -58,40 +58,32 @@ bool contains(const Configurations& list, const std::vector<double>& q) {
 
 }  // namespace
 
-void fix_poses(Study& study, const PoseList& list, Repeats repeats) {
-  require_fits(list, study.first().workspace->coordinates());
-  for (std::size_t i = 0; i < list.configurations.size(); ++i) {
-    const std::vector<double>& q = list.configurations[i];
-    if (const std::string reason = violation(study, q); !reason.empty())
-      throw InputError(place_of(list, i), fmt::format("pose {} cannot be fixed: {}", id_of(list, i), reason),
-                       "poses that the robot can take as the problem describes it");
-    const bool measured = contains(study.measured, q);
-    if (repeats.most == 1 && (measured || contains(study.fixed, q)))
-      throw InputError(place_of(list, i),
-                       fmt::format("pose {} is {}", id_of(list, i), measured ? "measured already" : "fixed twice"),
-                       "each pose once, or repeats: allow");
-    append(study.fixed, q);
-  }
-}
-
-std::vector<std::string> take_fixed(const Problem& problem, const RunOptions& run, Settings& settings) {
-  const std::filesystem::path file = run.fixed ? "" : problem.design.fixed.value_or("");
-  if (!run.fixed && file.empty()) return {};
-  const PoseList list =
-      run.fixed ? *run.fixed : read_poses(file, pose_coordinates(problem, settings.variants.front().name.value));
-  if (list.configurations.empty()) return {};
-  PoseList fixed = fixed_of(list);
+void fix_poses(Setup& setup, const PoseList& list) {
+  if (list.configurations.empty()) return;
+  const PoseList fixed = fixed_of(list);
   const std::size_t count = fixed.configurations.size();
   if (count == 0) throw InputError({list.name, 0}, "fixes no pose", "'yes' in column 'fixed' of at least one");
-  if (settings.poses > 0 && int(count) >= settings.poses)
-    throw InputError(place_of(fixed, std::size_t(settings.poses) - 1),
-                     fmt::format("{} poses are fixed of a plan of {}", count, settings.poses),
+  if (setup.poses && int(count) >= *setup.poses)
+    throw InputError(place_of(fixed, std::size_t(*setup.poses) - 1),
+                     fmt::format("{} poses are fixed of a plan of {}", count, *setup.poses),
                      "fix fewer poses (evaluate scores a complete list)");
-  if (settings.reserve)
+  if (setup.reserve)
     throw InputError({list.name, 0}, "reserve and fixed poses cannot be combined",
                      "leave one of them out: a fixed pose may be lost, too");
-  settings.fixed = std::move(fixed);
-  return list.notes;
+  require_fits(fixed, setup.first().workspace->coordinates());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<double>& q = fixed.configurations[i];
+    if (const std::string reason = violation(setup, q); !reason.empty())
+      throw InputError(place_of(fixed, i), fmt::format("pose {} cannot be fixed: {}", id_of(fixed, i), reason),
+                       "poses that the robot can take as the problem describes it");
+    const bool measured = contains(setup.measured, q);
+    if (setup.repeats.most == 1 && (measured || contains(setup.fixed, q)))
+      throw InputError(place_of(fixed, i),
+                       fmt::format("pose {} is {}", id_of(fixed, i), measured ? "measured already" : "fixed twice"),
+                       "each pose once, or repeats: allow");
+    append(setup.fixed, q);
+  }
+  setup.fixed_notes = list.notes;
 }
 
 }  // namespace posewright

@@ -7,11 +7,11 @@
 namespace posewright {
 namespace {
 
-void add_effects(Judgement& judgement, const Study& study, const Configurations& poses, const Settings& settings) {
+void add_effects(Judgement& judgement, const Study& study, const Configurations& poses) {
   const Discrepancy& known = *study.discrepancy;
   const Variant& fitted = study.first();
-  const EffectFit fit = fit_effects(known.effects, fitted, poses, settings);
-  judgement.discrimination = discrimination_of(known.truth, known.effects, fit.unfitted, fitted, poses, settings.prior);
+  const EffectFit fit = fit_effects(known.effects, fitted, poses, study);
+  judgement.discrimination = discrimination_of(known.truth, known.effects, fit.unfitted, fitted, poses, study.prior);
 }
 
 void fill_errors(Judgement& judgement, const Variant& variant, const VariantWorth& worth) {
@@ -21,19 +21,19 @@ void fill_errors(Judgement& judgement, const Variant& variant, const VariantWort
 
 }  // namespace
 
-Judgement judge(const Study& study, const Configurations& poses, const Settings& settings) {
+Judgement judge(const Study& study, const Configurations& poses) {
   const Configurations all = with_measured(study, poses);
   Judgement judgement;
-  const Prior prior = settings.prior ? Prior::every : Prior::none;
+  const Prior prior = study.prior ? Prior::every : Prior::none;
   for (const Variant& variant : study.variants) {
-    VariantWorth worth = worth_of(variant, all, prior, settings.planner.threads);
+    VariantWorth worth = worth_of(variant, all, prior, study.planner.threads);
     if (&variant == &study.first()) {
       judgement.unmodelled = worth.unmodelled;
       if (!variant.test_points.empty()) fill_errors(judgement, variant, worth);
     }
     judgement.evaluations.push_back(std::move(worth.evaluation));
   }
-  if (study.discrepancy != nullptr) add_effects(judgement, study, all, settings);
+  if (study.discrepancy != nullptr) add_effects(judgement, study, all);
   return judgement;
 }
 
@@ -49,8 +49,8 @@ std::vector<double> log_efficiencies(const Judgement& judgement, const Study& st
 }
 
 double phi_of(const DesignMeasure& measure, const std::string& criterion, const Study& study,
-              const Configurations& poses, const Settings& settings) {
-  return measure.phi(search_parts(study, criterion, poses, settings.planner.threads));
+              const Configurations& poses) {
+  return measure.phi(search_parts(study, criterion, poses, study.planner.threads));
 }
 
 }  // namespace posewright

@@ -16,26 +16,29 @@ namespace {
 constexpr int most_named = 5;
 
 /// Names of columns that hold what an instrument read.
-std::vector<std::string> names_of_readings(const Problem& problem, const IdentificationModel& model) {
+std::vector<std::string> names_of_readings(const Variant& variant) {
   std::vector<std::string> names;
-  for (const Reading& reading : model.readings()) names.push_back(reading.name);
-  if (const InstrumentView view = view_of(problem.measurement); view.fits_pose)
+  for (const Reading& reading : variant.model->readings()) names.push_back(reading.name);
+  if (const InstrumentView view = view_of(variant.problem->measurement); view.fits_pose)
     for (const TargetSpec& marker : view.targets) names.push_back(marker.name + ".x");
   return names;
 }
 
 class ListedPoses {
  public:
-  ListedPoses(Study& study, const Problem& problem, const PoseList& list)
-      : study_(study), list_(list), coordinates_(study.first().workspace->coordinates()), out_(study.configurations) {
-    const std::vector<std::string> readings = names_of_readings(problem, *study.first().model);
-    measured_ = std::any_of(list.columns.begin(), list.columns.end(), [&](const std::string& column) {
+  explicit ListedPoses(Study& study)
+      : study_(study),
+        list_(*study.candidates_from),
+        coordinates_(study.first().workspace->coordinates()),
+        out_(study.configurations) {
+    const std::vector<std::string> readings = names_of_readings(study.first());
+    measured_ = std::any_of(list_.columns.begin(), list_.columns.end(), [&](const std::string& column) {
       return std::find(readings.begin(), readings.end(), column) != readings.end();
     });
     out_ = {};
     out_.dimension = int(coordinates_.size());
-    study.list = list.name;
-    study.notes = list.notes;
+    study.list = list_.name;
+    study.notes = list_.notes;
   }
 
   void take() {
@@ -131,8 +134,6 @@ class ListedPoses {
 
 }  // namespace
 
-void take_listed_candidates(Study& study, const Problem& problem, const PoseList& list) {
-  ListedPoses(study, problem, list).take();
-}
+void take_listed_candidates(Study& study) { ListedPoses(study).take(); }
 
 }  // namespace posewright

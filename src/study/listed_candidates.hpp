@@ -1,7 +1,5 @@
 #pragma once
 
-#include "posewright/lists/pose_list.hpp"
-#include "posewright/problem/problem.hpp"
 #include "posewright/study/study.hpp"
 
 namespace posewright {
@@ -11,9 +9,8 @@ namespace posewright {
 /// A list with readings of the problem's instrument was measured: the robot was there, so limits and cell reject
 /// nothing and a note says which poses they would. Any other list is still to be measured: what no variant's workspace
 /// allows is rejected, counted by its reason and named in a note; a hair beyond a limit is the limit.
-/// @param study  with its variants
-/// @param list  read without limits
+/// @param study  with its variants and a list
 /// Throws CannotDo if nothing is left.
-void take_listed_candidates(Study& study, const Problem& problem, const PoseList& list);
+void take_listed_candidates(Study& study);
 
 }  // namespace posewright

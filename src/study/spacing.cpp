@@ -66,9 +66,9 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
 }
 
 Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
-                      const Configurations& measured, int poses) {
+                      const Configurations& measured, const std::optional<int>& poses) {
   // Whoever draws poses at random comes to fewer than fit: four times as many leave them room.
-  const std::size_t wanted = poses > 0 ? 4 * std::size_t(poses) : std::min(candidates.count() / 2, most_unknown);
+  const std::size_t wanted = poses ? 4 * std::size_t(*poses) : std::min(candidates.count() / 2, most_unknown);
   if (wanted == 0 || candidates.count() < wanted) return {};
   Spacing spacing = spacing_by(coordinates, [](const Coordinate& c) {
     const double share = usual_share * (c.upper - c.lower);
@@ -100,7 +100,8 @@ std::string distance_text(const std::vector<Coordinate>& coordinates, const Spac
 
 PoseDistance pose_distance(const std::vector<Coordinate>& coordinates,
                            const std::optional<DesignSpec::MinimumDistance>& stated, Repeats repeats,
-                           const Configurations& candidates, const Configurations& known, int poses, bool listed) {
+                           const Configurations& candidates, const Configurations& known,
+                           const std::optional<int>& poses, bool listed) {
   PoseDistance distance{spacing_of(coordinates, stated, repeats), stated.has_value()};
   if (stated || repeats.most > 1 || listed) return distance;
   Spacing usual = usual_spacing(coordinates, candidates, known, poses);

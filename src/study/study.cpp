@@ -5,10 +5,8 @@
 
 #include "assumed_effect.hpp"
 #include "criterion_choice.hpp"
-#include "fixed_poses.hpp"
 #include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/lists/read_poses.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
@@ -19,30 +17,6 @@
 
 namespace posewright {
 namespace {
-
-void require_same_coordinates(const Variant& a, const Variant& b) {
-  const auto& x = a.workspace->coordinates();
-  const auto& y = b.workspace->coordinates();
-  const auto same = [](const Coordinate& c, const Coordinate& d) { return c.name == d.name && c.labels == d.labels; };
-  if (x.size() != y.size() || !std::equal(x.begin(), x.end(), y.begin(), same))
-    throw CannotDo("variants '" + a.spec->name + "' and '" + b.spec->name +
-                   "' have different coordinates: no pose can serve both");
-}
-
-Configurations drawn(const Study& study, const Settings& settings, const Monitor& monitor) {
-  SamplingOptions sampling;
-  sampling.count = std::size_t(settings.candidates);
-  sampling.seed = settings.planner.seed;
-  sampling.threads = settings.planner.threads;
-  return sample_configurations(*study.first().workspace, sampling, monitor);
-}
-
-std::optional<PoseList> given_or_read(const std::optional<PoseList>& given, const std::filesystem::path& file,
-                                      const std::vector<Coordinate>& coordinates) {
-  if (given) require_fits(*given, coordinates);
-  if (given || file.empty()) return given;
-  return read_poses(file, coordinates);
-}
 
 /// Candidates of the first variant that all others can take.
 Configurations common(const std::vector<Variant>& variants, Configurations all) {
@@ -79,35 +53,66 @@ Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configura
 }
 
 /// Prior information on the columns of a search: tolerances, measured poses, the size of an effect.
-void fill_prior(const Study& study, Variant& variant, const Settings& settings) {
+void fill_prior(const Study& study, Variant& variant) {
   const Configurations known = known_before(study);
-  if (!settings.prior && known.count() == 0 && variant.features == nullptr) return;
+  if (!study.prior && known.count() == 0 && variant.features == nullptr) return;
   const auto features = variant.features == nullptr ? 0 : Eigen::Index(variant.features->columns());
   const auto m = Eigen::Index(variant.columns.selected.size());
-  variant.known_before = settings.prior || known.count() > 0;
+  variant.known_before = study.prior || known.count() > 0;
   variant.prior = Eigen::MatrixXd::Zero(features + m, features + m);
   variant.prior.diagonal().head(features).setOnes();
-  if (settings.prior) variant.prior.diagonal().tail(m) = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
+  if (study.prior) variant.prior.diagonal().tail(m) = tolerances_of(variant.columns).cwiseAbs2().cwiseInverse();
   if (known.count() == 0) return;
-  const BlockArray blocks = search_blocks(variant, known, settings.planner.threads);
+  const BlockArray blocks = search_blocks(variant, known, study.planner.threads);
   variant.prior += blocks.all().transpose() * blocks.all();
 }
 
-void resolve(Study& study, Variant& variant, const Problem& problem, const Settings& settings) {
-  const bool known = settings.prior || study.measured.count() + study.fixed.count() > 0;
+void resolve_variant(const Study& study, Variant& variant) {
+  const int threads = study.planner.threads;
+  const bool known = study.prior || study.measured.count() + study.fixed.count() > 0;
   ResolvedColumns resolved =
-      resolve_columns(*variant.model, study.configurations, problem, *variant.spec, known, settings.planner.threads);
+      resolve_columns(*variant.model, study.configurations, all_columns(variant), known, threads);
   variant.columns = std::move(resolved.columns);
   variant.dropped = std::move(resolved.dropped);
   variant.reasons = std::move(resolved.reasons);
-  const VariantColumns& columns = variant.columns;
-  variant.scale = scale_of(variant, study.configurations, settings.scaling, settings.planner.threads);
-  variant.test_points =
-      test_points_of(problem, *variant.spec, *variant.model, columns, settings.planner.seed, &variant.test_places);
-  allow_for_unmodelled(problem, study.configurations, settings.planner.threads, variant);
-  if (!known && settings.poses > 0)
-    require_enough_poses(*variant.model, study.configurations, columns, settings.poses, settings.planner.threads);
-  fill_prior(study, variant, settings);
+  variant.scale = scale_of(variant, study.configurations, study.scaling, threads);
+  variant.test_points = test_points_of(variant, variant.columns, study.planner.seed, &variant.test_places);
+  allow_for_unmodelled(study.configurations, threads, variant);
+  if (!known && study.poses)
+    require_enough_poses(*variant.model, study.configurations, variant.columns, *study.poses, threads);
+  fill_prior(study, variant);
+}
+
+/// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
+/// policy forbids it. Throws CannotDo if none is left.
+void keep_away_from_known(Study& study) {
+  const std::size_t before = study.configurations.count();
+  study.configurations = study.distance.away_from(known_before(study), study.configurations, study.repeats);
+  if (const long lost = long(before - study.configurations.count()); lost > 0)
+    study.configurations.rejected.emplace_back(
+        study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
+  if (study.distance.kept) study.minimum_distance = with_points(study.distance.spacing, study.configurations);
+}
+
+Study with_candidates(Study study, Unidentifiable unidentifiable) {
+  for (Variant& variant : study.variants) {
+    try {
+      resolve_variant(study, variant);
+    } catch (const CannotDo& error) {
+      if (unidentifiable == Unidentifiable::refuse) throw;
+      variant.why_not = error.what();
+    }
+  }
+  const Problem& problem = *study.problem;
+  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
+  if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
+    study.notes.push_back(std::move(warning));
+  study.notes.insert(study.notes.end(), study.fixed_notes.begin(), study.fixed_notes.end());
+  study.distance = pose_distance(coordinates, problem.design.minimum_distance, study.repeats, study.configurations,
+                                 known_before(study), study.poses, !study.list.empty());
+  keep_away_from_known(study);
+  if (study.truth != nullptr) study.discrepancy = make_discrepancy(study);
+  return study;
 }
 
 }  // namespace
@@ -134,10 +139,10 @@ void append(Configurations& list, std::span<const double> q) {
   list.values.insert(list.values.end(), q.begin(), q.end());
 }
 
-Configurations known_before(const Study& study) { return with_measured(study, study.fixed); }
+Configurations known_before(const Setup& setup) { return with_measured(setup, setup.fixed); }
 
-Configurations with_measured(const Study& study, const Configurations& poses) {
-  Configurations all = study.measured;
+Configurations with_measured(const Setup& setup, const Configurations& poses) {
+  Configurations all = setup.measured;
   all.dimension = poses.dimension;
   all.values.insert(all.values.end(), poses.values.begin(), poses.values.end());
   return all;
@@ -148,70 +153,45 @@ void append(Configurations& list, const Configurations& from, std::size_t i) {
   if (!from.rows.empty()) list.rows.push_back(from.rows[i]);
 }
 
-Study make_study(const Problem& problem, const Settings& settings, const Monitor& monitor,
-                 Unidentifiable unidentifiable) {
-  Study study;
-  study.cell = make_cell(problem, settings.same_robot.get());
-  for (const DesignSpec::Weighted& wanted : settings.variants) {
-    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), study.cell, monitor);
-    variant.weight = wanted.weight;
-    variant.everything_counts = settings.everything_counts;
-    study.variants.push_back(std::move(variant));
-    require_same_coordinates(study.first(), study.variants.back());
-  }
-  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
-  // Bad lists are told before the long work.
-  study.measured.dimension = int(coordinates.size());
-  if (const auto measured = given_or_read(settings.measured, settings.measured_file, without_limits(coordinates)))
-    for (const auto& q : measured->configurations) append(study.measured, q);
-  study.fixed.dimension = study.measured.dimension;
-  if (settings.fixed) fix_poses(study, *settings.fixed, settings.repeats);
-  if (const auto list = given_or_read(settings.candidates_from, settings.candidates_file, without_limits(coordinates)))
-    take_listed_candidates(study, problem, *list);
-  else if (settings.drawn) study.configurations = common(study.variants, *settings.drawn);
-  else study.configurations = common(study.variants, drawn(study, settings, monitor));
-  for (Variant& variant : study.variants) {
-    try {
-      resolve(study, variant, problem, settings);
-    } catch (const CannotDo& error) {
-      if (unidentifiable == Unidentifiable::refuse) throw;
-      variant.why_not = error.what();
-    }
-  }
-
-  if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
-    study.notes.push_back(std::move(warning));
-  study.distance = pose_distance(coordinates, problem.design.minimum_distance, settings.repeats, study.configurations,
-                                 known_before(study), settings.poses, !study.list.empty());
-  keep_away_from_measured(study, settings.repeats);
-  if (!settings.truth.value.empty()) study.discrepancy = make_discrepancy(problem, study, settings);
-  return study;
+Configurations draw_candidates(const Setup& setup, const Monitor& monitor) {
+  SamplingOptions sampling;
+  sampling.count = std::size_t(setup.candidates);
+  sampling.seed = setup.planner.seed;
+  sampling.threads = setup.planner.threads;
+  return sample_configurations(*setup.first().workspace, sampling, monitor);
 }
 
-void keep_away_from_measured(Study& study, Repeats repeats) {
-  const std::size_t before = study.configurations.count();
-  study.configurations = study.distance.away_from(known_before(study), study.configurations, repeats);
-  if (const long lost = long(before - study.configurations.count()); lost > 0)
-    study.configurations.rejected.emplace_back(
-        study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
-  if (study.distance.kept) study.minimum_distance = with_points(study.distance.spacing, study.configurations);
+Study make_study(Setup setup, Configurations drawn, Unidentifiable unidentifiable) {
+  Study study{std::move(setup)};
+  study.configurations = common(study.variants, std::move(drawn));
+  return with_candidates(std::move(study), unidentifiable);
 }
 
-SearchRequest search_request(const Settings& settings, int poses) {
+Study make_study(Setup setup, const Monitor& monitor, Unidentifiable unidentifiable) {
+  if (!setup.candidates_from) {
+    Configurations drawn = draw_candidates(setup, monitor);
+    return make_study(std::move(setup), std::move(drawn), unidentifiable);
+  }
+  Study study{std::move(setup)};
+  take_listed_candidates(study);
+  return with_candidates(std::move(study), unidentifiable);
+}
+
+SearchRequest search_request(const Setup& setup, int poses) {
   SearchRequest request;
   // Weights over the columns of an assumed effect bound nothing.
-  request.certify = !assumes_effect(settings);
-  request.criterion = settings.criterion;
-  request.method = settings.method;
+  request.certify = !assumes_effect(setup);
+  request.criterion = setup.criterion;
+  request.method = setup.method;
   request.poses = poses;
-  request.repeats = settings.repeats;
-  request.reserve = settings.reserve;
-  request.planner = settings.planner;
+  request.repeats = setup.repeats;
+  request.reserve = setup.reserve;
+  request.planner = setup.planner;
   return request;
 }
 
-SearchRequest spaced_request(const Study& study, const Settings& settings, int poses) {
-  SearchRequest request = search_request(settings, poses);
+SearchRequest spaced_request(const Study& study, int poses) {
+  SearchRequest request = search_request(study, poses);
   if (study.distance.kept) request.spacing = &study.minimum_distance;
   return request;
 }
@@ -258,7 +238,8 @@ std::vector<TestPoint> test_points_with_features(const Variant& variant) {
   return points;
 }
 
-SearchPart search_part(const Variant& variant, const Configurations& configurations, int threads) {
+SearchPart search_part(const Variant& variant, const Configurations& configurations, int threads,
+                       const Eigen::MatrixXd& prior) {
   const int features = variant.features == nullptr ? 0 : variant.features->columns();
   SearchPart part;
   part.blocks = search_blocks(variant, configurations, threads);
@@ -267,7 +248,7 @@ SearchPart search_part(const Variant& variant, const Configurations& configurati
   part.scale = Eigen::VectorXd::Ones(features + variant.scale.size());
   part.scale.tail(variant.scale.size()) = variant.scale;
   part.test_points = test_points_with_features(variant);
-  part.prior = variant.prior;
+  part.prior = prior;
   return part;
 }
 
@@ -275,19 +256,22 @@ SearchPart search_part(const Variant& variant, const Configurations& configurati
 
 std::vector<SearchPart> search_parts(const Variant& variant, const Configurations& configurations, int threads) {
   std::vector<SearchPart> parts;
-  parts.push_back(search_part(variant, configurations, threads));
+  parts.push_back(search_part(variant, configurations, threads, variant.prior));
   return parts;
 }
 
 std::vector<SearchPart> search_parts(const Study& study, const std::string& criterion,
-                                     const Configurations& configurations, int threads) {
+                                     const Configurations& configurations, int threads, const Eigen::MatrixXd* known) {
+  const auto prior = [&](const Variant& variant) -> const Eigen::MatrixXd& { return known ? *known : variant.prior; };
   std::vector<SearchPart> parts;
   if (find_criterion(criterion)->needs_truth) {
-    parts.push_back(study.discrepancy == nullptr ? part_with_assumed_effect(study, configurations, threads)
-                                                 : part_with_effects(study, configurations, threads));
+    parts.push_back(study.discrepancy == nullptr
+                        ? part_with_assumed_effect(study, configurations, threads, prior(study.first()))
+                        : part_with_effects(study, configurations, threads));
     return parts;
   }
-  for (const Variant& variant : study.variants) parts.push_back(search_part(variant, configurations, threads));
+  for (const Variant& variant : study.variants)
+    parts.push_back(search_part(variant, configurations, threads, prior(variant)));
   return parts;
 }
 

@@ -31,7 +31,8 @@ constexpr double told_apart = 0.01;
 
 /// Parameters that somebody reckons with and that the variant neither estimates nor fixes nor could tell from those it
 /// estimates: other variants of the file estimate them, or it states their tolerance. A catalogue holds more.
-std::vector<Parameter> not_estimated(const Problem& problem, const Variant& variant, std::vector<int>& indices) {
+std::vector<Parameter> not_estimated(const Variant& variant, std::vector<int>& indices) {
+  const Problem& problem = *variant.problem;
   std::vector<int> known = fixed_parameters(*variant.model, problem, *variant.spec);
   known.insert(known.end(), variant.columns.selected.begin(), variant.columns.selected.end());
   std::set<std::string> dropped;
@@ -53,9 +54,9 @@ std::vector<Parameter> not_estimated(const Problem& problem, const Variant& vari
   return rest;
 }
 
-double size_by_tolerances(const Problem& problem, const Variant& variant, const Configurations& sample, int threads) {
+double size_by_tolerances(const Variant& variant, const Configurations& sample, int threads) {
   std::vector<int> indices;
-  const std::vector<Parameter> rest = not_estimated(problem, variant, indices);
+  const std::vector<Parameter> rest = not_estimated(variant, indices);
   std::vector<int> selected = variant.columns.selected;
   const auto own = Eigen::Index(selected.size());
   selected.insert(selected.end(), indices.begin(), indices.end());
@@ -76,13 +77,13 @@ double size_by_tolerances(const Problem& problem, const Variant& variant, const 
   return std::max(noise, std::sqrt(squares / (3.0 * double(blocks.count()))));
 }
 
-void require_told_apart(const Problem& problem, const Variant& variant, const Configurations& sample, int threads) {
+void require_told_apart(const Variant& variant, const Configurations& sample, int threads) {
   const EffectFeatures features(variant.effect, effect_places(*variant.effect, sample), most_features);
   const BlockArray blocks = expanded_blocks(variant, features, sample, threads);
   const Eigen::MatrixXd F = blocks.all().leftCols(features.columns());
   const Eigen::MatrixXd left = left_beside(blocks.all().rightCols(blocks.columns() - features.columns()), F);
   if (left.squaredNorm() > told_apart * F.squaredNorm()) return;
-  throw InputError(problem.at(variant.spec->unmodelled->line),
+  throw InputError(variant.problem->at(variant.spec->unmodelled->line),
                    fmt::format("an unmodelled effect with a length of {:.3g} deg is almost absorbed by the parameters "
                                "of variant '{}': {:.2g} % of it remains over the workspace",
                                variant.effect->size().length * 180 / std::numbers::pi, variant.spec->name,
@@ -176,20 +177,20 @@ BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& feature
   return blocks;
 }
 
-void allow_for_unmodelled(const Problem& problem, const Configurations& candidates, int threads, Variant& variant) {
+void allow_for_unmodelled(const Configurations& candidates, int threads, Variant& variant) {
   if (!variant.spec->unmodelled) return;
   const UnmodelledSpec& spec = *variant.spec->unmodelled;
   // What a calibration found stands for what nobody states.
-  const CalibratedEffect* found =
-      problem.parameters && problem.parameters->unmodelled ? &*problem.parameters->unmodelled : nullptr;
+  const std::optional<CalibratedParameters>& calibrated = variant.problem->parameters;
+  const CalibratedEffect* found = calibrated && calibrated->unmodelled ? &*calibrated->unmodelled : nullptr;
   const Configurations sample = thinned(candidates, size_sample);
   UnmodelledSize size{1.0, spec.rotation,
                       spec.length.value_or(found != nullptr ? found->length : UnmodelledSize::assumed_length)};
   variant.effect = std::make_shared<UnmodelledEffect>(*variant.model, size);
-  require_told_apart(problem, variant, sample, threads);
+  require_told_apart(variant, sample, threads);
   size.translation = spec.size          ? *spec.size
                      : found != nullptr ? found->size
-                                        : size_by_tolerances(problem, variant, sample, threads);
+                                        : size_by_tolerances(variant, sample, threads);
   variant.effect = std::make_shared<UnmodelledEffect>(*variant.model, size);
   variant.features = enough_features(variant, candidates, threads);
 }

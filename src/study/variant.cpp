@@ -30,14 +30,14 @@ VariantColumns named_columns(const VariantColumns& all, const std::vector<std::s
 }
 
 /// As many as the problem asks for, the same at every call.
-std::vector<std::vector<double>> robots_to_read(const Problem& problem, const VariantSpec& spec,
-                                                const IdentificationModel& model) {
+std::vector<std::vector<double>> robots_to_read(const Variant& variant) {
   std::vector<std::vector<double>> robots;
-  if (problem.workspace.readable_for == 0 || model.unmeasurable_reason().empty()) return robots;
-  const VariantColumns columns = select_columns(model, problem, spec);
-  for (int k = 0; k < problem.workspace.readable_for; ++k) {
+  const int count = variant.problem->workspace.readable_for;
+  if (count == 0 || variant.model->unmeasurable_reason().empty()) return robots;
+  const VariantColumns columns = all_columns(variant);
+  for (int k = 0; k < count; ++k) {
     Random random(readable_seed, std::uint64_t(k));
-    robots.push_back(drawn_correction(columns, model.parameters().size(), random));
+    robots.push_back(drawn_correction(columns, variant.model->parameters().size(), random));
   }
   return robots;
 }
@@ -46,7 +46,7 @@ std::vector<std::vector<double>> robots_to_read(const Problem& problem, const Va
 
 Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
                       const Monitor& monitor) {
-  Variant variant{&spec, cell, make_model(problem, spec), nullptr};
+  Variant variant{&problem, &spec, cell, make_model(problem, spec), nullptr};
   if (cell != nullptr && cell->sight_is_asked) {
     if (variant.model->rows_per_target() > 0 &&
         variant.model->rows() != cell->sight->targets() * variant.model->rows_per_target())
@@ -54,9 +54,12 @@ Variant place_variant(const Problem& problem, const VariantSpec& spec, const std
     variant.model->set_visibility({cell, cell->sight.get()});
   }
   variant.repeatability = problem.measurement.repeatability;
-  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor,
-                                                  robots_to_read(problem, spec, *variant.model));
+  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor, robots_to_read(variant));
   return variant;
+}
+
+VariantColumns all_columns(const Variant& variant) {
+  return select_columns(*variant.model, *variant.problem, *variant.spec);
 }
 
 std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::string& variant) {
@@ -65,7 +68,7 @@ std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::stri
 
 Variant make_variant(const Problem& problem, const VariantOptions& options, const Monitor& monitor) {
   Variant variant = place_variant(problem, find_variant(problem, options.variant), make_cell(problem), monitor);
-  variant.columns = select_columns(*variant.model, problem, *variant.spec);
+  variant.columns = all_columns(variant);
   if (!options.parameters.empty()) {
     variant.columns = named_columns(variant.columns, options.parameters);
   } else if (variant.columns.automatic) {
@@ -74,7 +77,8 @@ Variant make_variant(const Problem& problem, const VariantOptions& options, cons
     sampling.seed = options.seed;
     sampling.threads = options.threads;
     const Configurations sample = sample_configurations(*variant.workspace, sampling, monitor);
-    variant.columns = resolve_columns(*variant.model, sample, problem, *variant.spec, false, options.threads).columns;
+    variant.columns =
+        resolve_columns(*variant.model, sample, std::move(variant.columns), false, options.threads).columns;
   }
   return variant;
 }

@@ -45,7 +45,7 @@ std::optional<ExpectedError> calibrated_error(const Problem& problem, const Vari
   Variant variant = place_variant(there, find_variant(there, spec.name), make_cell(there), monitor);
   if (variant.model->tips() == 0) return std::nullopt;
   variant.columns = columns;
-  variant.test_points = test_points_of(there, *variant.spec, *variant.model, columns, 0, &variant.test_places);
+  variant.test_points = test_points_of(variant, columns, 0, &variant.test_places);
   Configurations candidates, measured;
   if (variant.test_points.empty()) {
     SamplingOptions sampling;
@@ -57,7 +57,7 @@ std::optional<ExpectedError> calibrated_error(const Problem& problem, const Vari
   if (found.counted)
     variant.effect = std::make_shared<UnmodelledEffect>(
         *variant.model, UnmodelledSize{found.counted->size, spec.unmodelled->rotation, found.counted->length});
-  return expected_error(there, candidates, variant, measured, fit.covariance / (fit.noise_factor * fit.noise_factor), 0,
+  return expected_error(candidates, variant, measured, fit.covariance / (fit.noise_factor * fit.noise_factor), 0,
                         fitted_residuals(fit));
 }
 

@@ -18,17 +18,15 @@ namespace {
 class ComparisonRun {
  public:
   ComparisonRun(const Problem& problem, const CompareOptions& options, const Monitor& monitor)
-      : problem_(problem),
+      : problem_(compared_problem(problem, !options.plans.empty())),
         options_(options),
         monitor_(monitor),
-        settings_(comparison_settings(problem, options)),
-        study_(make_study(problem, settings_, monitor, Unidentifiable::keep)),
+        study_(comparison_study(problem_, options, monitor)),
         pool_(study_.configurations) {}
 
   Comparison compare() {
     describe_variants();
-    take(options_.plans.empty() ? searched_plans(study_, settings_, monitor_)
-                                : given_plans(problem_, study_, options_.plans));
+    take(options_.plans.empty() ? searched_plans(study_, monitor_) : given_plans(study_, options_.plans));
     for (const Configurations& poses : poses_)
       for (std::size_t i = 0; i < poses.count(); ++i)
         if (!holds(pool_, poses[i])) append(pool_, poses[i]);
@@ -53,8 +51,8 @@ class ComparisonRun {
   }
 
   void take(PlansToCompare plans) {
-    result_.criterion = options_.plans.empty() ? settings_.criterion : "";
-    result_.method = options_.plans.empty() ? settings_.method : "";
+    result_.criterion = options_.plans.empty() ? study_.criterion : "";
+    result_.method = options_.plans.empty() ? study_.method : "";
     result_.plans = std::move(plans.plans);
     result_.notes = std::move(plans.notes);
     result_.not_planned = std::move(plans.not_planned);
@@ -81,14 +79,12 @@ class ComparisonRun {
     try {
       const VariantColumns& columns = variant.columns;
       const Configurations all = with_measured(study_, poses_[plan]);
-      VariantWorth worth =
-          worth_of(variant, all, settings_.prior ? Prior::every : Prior::none, settings_.planner.threads);
+      VariantWorth worth = worth_of(variant, all, study_.prior ? Prior::every : Prior::none, study_.planner.threads);
       const Evaluation& e = judged_[plan][&variant] = std::move(worth.evaluation);
       score.log_det = e.log_det;
       score.condition = e.condition;
       if (!monitor_.should_stop())
-        score.expected =
-            expected_error(problem_, study_.configurations, variant, all, e.covariance, settings_.planner.threads);
+        score.expected = expected_error(study_.configurations, variant, all, e.covariance, study_.planner.threads);
       fill_sigma(score, columns, e);
       std::vector<double> each;
       if (!variant.test_points.empty()) score.rho0 = predicted_error(variant.test_points, worth.errors, each);
@@ -120,11 +116,11 @@ class ComparisonRun {
     const auto key = std::pair(&variant, poses);
     if (const auto known = bounds_.find(key); known != bounds_.end()) return known->second;
     if (monitor_.should_stop()) return std::nullopt;
-    SearchRequest wanted = request_for(study_, variant, settings_, poses);
+    SearchRequest wanted = request_for(study_, variant, poses);
     wanted.criterion = "o1";
     std::optional<double> bound;
     if (double(poses) <= double(pool_.count()) * wanted.repeats.most)
-      bound = bound_only(search_parts(variant, pool_, settings_.planner.threads), wanted,
+      bound = bound_only(search_parts(variant, pool_, study_.planner.threads), wanted,
                          NamedMonitor(monitor_, variant.spec->name))
                   .certificate.bound;
     return bounds_[key] = bound;
@@ -141,7 +137,7 @@ class ComparisonRun {
         if (!options_.truth.empty() && options_.truth != truth.spec->name) continue;
         if (monitor_.should_stop()) return;
         VariantAlias found =
-            variant_alias(problem_, fitted, truth, with_measured(study_, poses_[plan]), evaluation->second, settings_);
+            variant_alias(study_, fitted, truth, with_measured(study_, poses_[plan]), evaluation->second);
         found.plan = result_.plans[plan].name;
         add_worth(truth, {&fitted, &evaluation->second, found.plan}, found, plan);
         result_.aliases.push_back(std::move(found));
@@ -160,11 +156,10 @@ class ComparisonRun {
     }
   }
 
-  const Problem& problem_;
+  const Problem problem_;  ///< as it is compared
   const CompareOptions& options_;
   const Monitor& monitor_;
-  Settings settings_;
-  Study study_;
+  const Study study_;
   Configurations pool_;
   std::vector<Configurations> poses_;                         ///< of each plan
   std::vector<std::map<const Variant*, Evaluation>> judged_;  ///< of each plan

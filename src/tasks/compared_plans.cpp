@@ -11,40 +11,39 @@
 
 namespace posewright {
 
-Settings comparison_settings(const Problem& problem, const CompareOptions& options) {
-  Problem compared = problem;
-  DesignSpec& design = compared.design;
-  // What the file states is for its own plan; an option is for the comparison.
-  if (design.method.line >= 0) design.method = {"exchange", 0};
-  // Each variant is planned for alone.
-  if (const CriterionEntry* entry = find_criterion(design.criterion.value);
-      design.criterion.value == automatic_criterion ||
-      (entry != nullptr && (entry->several_variants || entry->needs_truth)))
-    design.criterion = {"o1", design.criterion.line};
-  const bool given = !options.plans.empty();
+Problem compared_problem(Problem problem, bool given) {
+  DesignSpec& design = problem.design;
   if (!given && design.smallest)
     throw InputError(problem.at(design.line), "poses: auto gives no number of poses for the comparison",
                      "--poses N, or plans");
   if (!given) require_number_of_poses(problem);
-  Settings settings = settings_of(compared, options.run);
-  if (given) settings.poses = 0;  // lists bring their own numbers
-  settings.truth = {};
-  std::vector<std::string> names = options.variants;
+  // What the file states is for its own plan; an option is for the comparison.
+  if (design.method.line >= 0) design.method = {"exchange", 0};
+  if (const CriterionEntry* entry = find_criterion(design.criterion.value);
+      design.criterion.value == automatic_criterion ||
+      (entry != nullptr && (entry->several_variants || entry->needs_truth)))
+    design.criterion = {"o1", design.criterion.line};
+  design.truth.reset();
+  if (given) design.poses.reset();  // lists bring their own numbers
+  return problem;
+}
+
+Study comparison_study(const Problem& problem, const CompareOptions& options, const Monitor& monitor) {
+  RunOptions run = options.run;
+  run.variants = options.variants;
+  std::vector<std::string>& names = run.variants;
   if (names.empty())
     for (const VariantSpec& variant : problem.variants) names.push_back(variant.name);
   if (!options.truth.empty() && std::find(names.begin(), names.end(), options.truth) == names.end())
     names.push_back(options.truth);
-  settings.variants.clear();
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i)
     if (std::find(names.begin(), names.begin() + long(i), names[i]) != names.begin() + long(i))
       throw InputError({}, "variant '" + names[i] + "' is named twice", "each once");
-    settings.variants.push_back({{find_variant(problem, names[i]).name, 0}, 1.0});
-  }
-  return settings;
+  return make_study(resolve(problem, run, monitor), monitor, Unidentifiable::keep);
 }
 
-SearchRequest request_for(const Study& study, const Variant& variant, const Settings& settings, int poses) {
-  SearchRequest request = spaced_request(study, settings, poses);
+SearchRequest request_for(const Study& study, const Variant& variant, int poses) {
+  SearchRequest request = spaced_request(study, poses);
   if (!study.list.empty()) return request;
   request.make_space = [&study, &variant](const Eigen::MatrixXd& R) {
     return make_configuration_space({{variant.model.get(), variant.workspace.get(), variant.columns.selected, {}}},
@@ -53,7 +52,7 @@ SearchRequest request_for(const Study& study, const Variant& variant, const Sett
   return request;
 }
 
-PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor) {
+PlansToCompare searched_plans(const Study& study, const Monitor& monitor) {
   const Configurations& candidates = study.configurations;
   std::vector<const Variant*> variants;
   for (const Variant& variant : study.variants)
@@ -61,8 +60,8 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
   PlansToCompare result;
   const auto values_of = [&](const Variant& variant) {
     const SearchResult found =
-        search(search_parts(variant, candidates, settings.planner.threads),
-               request_for(study, variant, settings, settings.poses), NamedMonitor(monitor, variant.spec->name));
+        search(search_parts(variant, candidates, study.planner.threads), request_for(study, variant, *study.poses),
+               NamedMonitor(monitor, variant.spec->name));
     ByteWriter bytes;
     bytes.put(found.stopped || monitor.was_interrupted());
     bytes.put(chosen_by(found.design, candidates).values);
@@ -92,7 +91,7 @@ PlansToCompare searched_plans(const Study& study, const Settings& settings, cons
   return result;
 }
 
-PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists) {
+PlansToCompare given_plans(const Study& study, const std::vector<CompareOptions::List>& lists) {
   PlansToCompare result;
   for (const CompareOptions::List& list : lists) {
     const PoseList& read = list.poses;
@@ -106,7 +105,7 @@ PlansToCompare given_plans(const Problem& problem, const Study& study, const std
     }
     if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
     result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
-    note_parameters(read, problem, result.notes);
+    note_parameters(read, *study.problem, result.notes);
     result.plans.push_back({list.name, "", int(poses.count())});
     result.poses.push_back(std::move(poses));
   }

@@ -8,8 +8,11 @@
 
 namespace posewright {
 
-/// Plans of all compared variants, with the criterion of each. Throws InputError.
-Settings comparison_settings(const Problem& problem, const CompareOptions& options);
+/// The problem with the design of a comparison: each variant is planned for alone. Throws InputError.
+Problem compared_problem(Problem problem, bool given);
+/// All compared variants with their candidates. Throws InputError.
+/// @param problem  by compared_problem()
+Study comparison_study(const Problem& problem, const CompareOptions& options, const Monitor& monitor);
 
 struct PlansToCompare {
   std::vector<ComparedPlan> plans;
@@ -18,12 +21,12 @@ struct PlansToCompare {
   std::vector<std::string> not_planned{};  ///< variants whose plan was not done when the search was ended
 };
 /// The best plan for each variant that can be identified. CannotDo if the search is ended before one is done.
-PlansToCompare searched_plans(const Study& study, const Settings& settings, const Monitor& monitor);
+PlansToCompare searched_plans(const Study& study, const Monitor& monitor);
 /// Lists as they are. Throws InputError if one cannot be read.
-PlansToCompare given_plans(const Problem& problem, const Study& study, const std::vector<CompareOptions::List>& lists);
+PlansToCompare given_plans(const Study& study, const std::vector<CompareOptions::List>& lists);
 
 /// Request for a search or bound for one variant alone.
-SearchRequest request_for(const Study& study, const Variant& variant, const Settings& settings, int poses);
+SearchRequest request_for(const Study& study, const Variant& variant, int poses);
 
 /// Progress with a name before it.
 class NamedMonitor {

@@ -31,57 +31,48 @@ class ListEvaluation {
   ListEvaluation(const Problem& problem, const PoseList& list, const EvaluateOptions& options, const Monitor& monitor)
       : options_(options),
         monitor_(monitor),
-        stated_distance_(problem.design.minimum_distance),
-        settings_(settings_of(problem, options.run)) {
-    take_robust(problem, settings_);
-    settings_.poses = 0;  // the list is judged as it is: too few poses are told by its own rank
-    study_ = make_study(problem, settings_, monitor);
+        study_(prepared(resolve(problem, options.run, monitor, Purpose::list), list, monitor)) {
     if (monitor.should_stop()) throw CannotDo("stopped before all candidates for the comparison were drawn");
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
-    require_fits(list, coordinates);
     notes_ = study_.notes;
     notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
     note_parameters(list, problem, notes_);
     poses_.dimension = int(coordinates.size());
     std::vector<int> near;  // ids
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
-      // What the problem names as measured counts once.
-      const bool measured = !list.measured.empty() && list.measured[i];
-      if (measured && study_.measured.count() > 0) continue;
-      if (!measured) require_feasible(list.configurations[i], i, list);
+      if (is_known(study_, list, i)) continue;
+      if (list.measured.empty() || !list.measured[i]) require_feasible(list.configurations[i], i, list);
       append(poses_, list.configurations[i]);
       if (!study_.first().workspace->within_margin(list.configurations[i]).empty())
         near.push_back(i < list.ids.size() ? list.ids[i] : int(i) + 1);
     }
     if (!near.empty()) notes_.push_back(margin_note(list.name, near));
-    settings_.poses = int(poses_.count());
     fill_pool();
-    if (std::string note = choose_criterion(problem, study_, settings_); !note.empty())
-      notes_.push_back(std::move(note));
+    if (!study_.why_criterion.empty()) notes_.push_back(study_.why_criterion);
   }
 
-  PoseListEvaluation evaluate(const Problem& problem) {
+  PoseListEvaluation evaluate() {
+    const Problem& problem = *study_.problem;
     PoseListEvaluation result;
     result.notes = notes_;
-    const Judgement judgement = judge(study_, poses_, settings_);
+    const Judgement judgement = judge(study_, poses_);
     Plan& plan = result.plan;
-    plan.seed = settings_.planner.seed;
+    plan.seed = study_.planner.seed;
     plan.problem_file = problem.file.string();
     plan.problem_sha256 = problem.sha256;
     plan.parameters_file = parameters_of(problem);
     plan.method = "given";
-    fill_judgement(plan, judgement, study_, settings_);
-    plan.expected = expected_error(problem, study_.configurations, study_.first(), with_measured(study_, poses_),
-                                   judgement.evaluations.front().covariance, settings_.planner.threads);
+    fill_judgement(plan, judgement, study_);
+    plan.expected = expected_error(study_.configurations, study_.first(), with_measured(study_, poses_),
+                                   judgement.evaluations.front().covariance, study_.planner.threads);
     const std::vector<double> references = score_all(result, judgement);
-    const double phi = phi_of(*measure_, settings_.criterion, study_, poses_, settings_);
-    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
+    const double phi = phi_of(*measure_, study_.criterion, study_, poses_);
+    plan.criterion_value = find_criterion(study_.criterion)->shown(phi, judgement.evaluations.front().indices);
     fill_variants(plan, judgement, study_, references);
     fill_poses(plan, study_, poses_, {}, without_each(phi), judgement);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
-    if (settings_.robust && !stopped)
-      plan.robust = judge_robust_list(problem, study_, settings_, pool_, in_pool_, monitor_);
+    if (study_.robust && !stopped) plan.robust = judge_robust_list(study_, pool_, in_pool_, monitor_);
     if (options_.drop && !stopped) result.drop = drop(*options_.drop, phi, references);
     if (options_.add && !monitor_.should_stop()) result.add = add(*options_.add, phi, references);
     plan.interrupted = monitor_.should_stop();
@@ -94,6 +85,18 @@ class ListEvaluation {
   }
 
  private:
+  /// What the problem names as measured counts once.
+  static bool is_known(const Setup& setup, const PoseList& list, std::size_t i) {
+    return setup.measured.count() > 0 && !list.measured.empty() && list.measured[i];
+  }
+
+  static Study prepared(Setup setup, const PoseList& list, const Monitor& monitor) {
+    require_fits(list, setup.first().workspace->coordinates());
+    int poses = 0;
+    for (std::size_t i = 0; i < list.configurations.size(); ++i) poses += is_known(setup, list, i) ? 0 : 1;
+    return choose_criterion(make_study(std::move(setup), monitor), poses);
+  }
+
   void require_feasible(const std::vector<double>& q, std::size_t i, const PoseList& list) const {
     for (const Variant& variant : study_.variants)
       if (const int reason = variant.workspace->violation(q); reason >= 0)
@@ -110,15 +113,15 @@ class ListEvaluation {
   std::vector<double> score_all(PoseListEvaluation& result, const Judgement& judgement) {
     std::vector<double> references;
     for (const CriterionEntry& entry : criterion_registry()) {
-      if (entry.several_variants != (study_.variants.size() > 1) && entry.name != settings_.criterion) continue;
-      if (entry.needs_truth && entry.name != settings_.criterion &&
+      if (entry.several_variants != (study_.variants.size() > 1) && entry.name != study_.criterion) continue;
+      if (entry.needs_truth && entry.name != study_.criterion &&
           (study_.discrepancy == nullptr || study_.discrepancy->group.columns == 0))
         continue;
-      const bool chosen = entry.name == settings_.criterion;
+      const bool chosen = entry.name == study_.criterion;
       if (entry.needs_test_poses && !any_is_moved(study_.first().test_points) && !chosen) continue;
       if (!chosen && monitor_.should_stop()) continue;
       const Bound bound = bound_of(entry.name);
-      const double phi = phi_of(*bound.measure, entry.name, study_, poses_, settings_);
+      const double phi = phi_of(*bound.measure, entry.name, study_, poses_);
       CriterionScore score{entry.name, entry.shown(phi, judgement.evaluations.front().indices), std::nullopt};
       if (bound.certificate.proved) {
         Certificate certificate = bound.certificate;
@@ -151,14 +154,14 @@ class ListEvaluation {
   }
 
   Bound bound_of(const std::string& criterion) {
-    SearchRequest wanted = search_request(settings_, settings_.poses);
+    SearchRequest wanted = search_request(study_, int(poses_.count()));
     wanted.criterion = criterion;
     return bound_only(parts_of_pool(criterion), wanted, monitor_);
   }
 
   /// Made once for all criteria that need no truth.
   std::vector<SearchPart> parts_of_pool(const std::string& criterion) {
-    const int threads = settings_.planner.threads;
+    const int threads = study_.planner.threads;
     if (find_criterion(criterion)->needs_truth) return search_parts(study_, criterion, pool_, threads);
     if (parts_.empty()) parts_ = search_parts(study_, criterion, pool_, threads);
     return copied_parts(parts_);
@@ -167,8 +170,8 @@ class ListEvaluation {
   /// Φ of another list; −∞ where it leaves parameters open.
   std::optional<std::pair<Judgement, double>> judged(const Configurations& list) const {
     try {
-      Judgement judgement = judge(study_, list, settings_);
-      return std::pair{std::move(judgement), phi_of(*measure_, settings_.criterion, study_, list, settings_)};
+      Judgement judgement = judge(study_, list);
+      return std::pair{std::move(judgement), phi_of(*measure_, study_.criterion, study_, list)};
     } catch (const CannotDo&) {
       return std::nullopt;
     }
@@ -197,14 +200,14 @@ class ListEvaluation {
   ListChange drop(int k, double phi, const std::vector<double>& references) {
     const int n = int(poses_.count());
     if (k >= n) throw CannotDo(fmt::format("{} of {} poses cannot be dropped: at least one must be left", k, n));
-    SearchRequest wanted = search_request(settings_, n - k);
+    SearchRequest wanted = search_request(study_, n - k);
     double sets = 1.0;
     for (int i = 0; i < k; ++i) sets *= double(n - i) / (i + 1);
     wanted.method = sets <= proved_drop && degree_ > 0 ? "branch_and_bound" : "exchange";
     wanted.repeats = Repeats{1};
     wanted.references = references;
     const SearchResult found =
-        search(search_parts(study_, settings_.criterion, poses_, settings_.planner.threads), wanted, monitor_);
+        search(search_parts(study_, study_.criterion, poses_, study_.planner.threads), wanted, monitor_);
     std::vector<int> dropped;
     for (int i = 0; i < n; ++i)
       if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
@@ -215,23 +218,23 @@ class ListEvaluation {
 
   /// k more with the list as what is known already.
   ListChange add(int k, double phi, const std::vector<double>& references) {
-    const int threads = settings_.planner.threads;
+    const int threads = study_.planner.threads;
     const Configurations known = with_measured(study_, poses_);
     const PoseDistance distance =
-        pose_distance(study_.first().workspace->coordinates(), stated_distance_, settings_.repeats,
+        pose_distance(study_.first().workspace->coordinates(), study_.problem->design.minimum_distance, study_.repeats,
                       study_.configurations, known, k, !study_.list.empty());
-    const Configurations candidates = distance.away_from(known, study_.configurations, settings_.repeats);
-    std::vector<SearchPart> parts = search_parts(study_, settings_.criterion, candidates, threads);
+    const Configurations candidates = distance.away_from(known, study_.configurations, study_.repeats);
+    std::vector<SearchPart> parts = search_parts(study_, study_.criterion, candidates, threads);
     // Parts know what was measured before the list; the list's own information comes on top of it, once.
-    const std::vector<SearchPart> list = search_parts(study_, settings_.criterion, poses_, threads);
+    const std::vector<SearchPart> list = search_parts(study_, study_.criterion, poses_, threads);
     for (std::size_t v = 0; v < parts.size(); ++v) {
       const Eigen::MatrixXd own = list[v].blocks.all().transpose() * list[v].blocks.all();
       parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + own) : own;
     }
-    SearchRequest wanted = search_request(settings_, k);
+    SearchRequest wanted = search_request(study_, k);
     const Spacing spacing = with_points(distance.spacing, candidates);
     if (distance.kept) wanted.spacing = &spacing;
-    wanted.make_space = space_maker(study_, settings_.criterion, candidates, known, distance.spacing);
+    wanted.make_space = space_maker(study_, study_.criterion, candidates, known, distance.spacing);
     wanted.references = references;
     const SearchResult found = search(std::move(parts), wanted, monitor_);
     const Configurations added = chosen_by(found.design, candidates);
@@ -247,9 +250,7 @@ class ListEvaluation {
 
   const EvaluateOptions& options_;
   const Monitor& monitor_;
-  std::optional<DesignSpec::MinimumDistance> stated_distance_;
-  Settings settings_;
-  Study study_;
+  const Study study_;
   Configurations poses_, pool_;
   std::vector<SearchPart> parts_;  ///< of the pool
   std::vector<int> in_pool_;       ///< the list's poses, by index in the pool
@@ -264,7 +265,7 @@ PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& list
                                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(list, most_judged, "evaluate scores");
-  PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate(problem);
+  PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate();
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -86,12 +86,14 @@ double margin_of(const Coordinate& in_force, const Coordinate& proposed) {
 
 }  // namespace
 
-std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem) {
+std::vector<LimitMargin> limit_margins(const Variant& variant) {
+  const Workspace& workspace = *variant.workspace;
+  const WorkspaceSpec& spec = variant.problem->workspace;
   std::vector<LimitMargin> margins;
   for (std::size_t i = 0; i < workspace.coordinates().size(); ++i) {
     const Coordinate &all = workspace.coordinates()[i], &inner = workspace.proposed()[i];
     const double margin = margin_of(all, inner);
-    const auto& asked = all.unit == "rad" ? problem.workspace.joint_margin : problem.workspace.joint_margin_length;
+    const auto& asked = all.unit == "rad" ? spec.joint_margin : spec.joint_margin_length;
     if (margin > 0) margins.push_back({all.name, all.unit, margin, !asked});
   }
   return margins;
@@ -133,14 +135,14 @@ CellNotes cell_notes(const Cell& cell) {
   return notes;
 }
 
-void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, const Settings& settings) {
+void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study) {
   const Evaluation& first = judgement.evaluations.front();
   for (const Variant& variant : study.variants)
     plan.variant += (plan.variant.empty() ? "" : " + ") + variant.spec->name;
-  name_criterion(plan, settings.criterion);
-  plan.scaling = scaling_text(settings.scaling);
-  plan.prior = settings.prior;
-  plan.reserve = settings.reserve;
+  name_criterion(plan, study.criterion);
+  plan.scaling = scaling_text(study.scaling);
+  plan.prior = study.prior;
+  plan.reserve = study.reserve;
   plan.rho0 = judgement.rho0;
   plan.test_errors = judgement.test_errors;
   plan.turn = judgement.turn;

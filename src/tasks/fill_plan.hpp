@@ -7,7 +7,7 @@
 namespace posewright {
 
 /// Summary of a judgement: log det, indices, accuracy, parameters; names of variant and criterion.
-void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study, const Settings& settings);
+void fill_judgement(Plan& plan, const Judgement& judgement, const Study& study);
 
 /// Statistics of candidates: number, source, reasons of rejections.
 void fill_candidates(PlanStatistics& statistics, const Study& study);
@@ -36,7 +36,7 @@ std::optional<BodyDistance> body_distance(const std::optional<Separation>& found
 /// Nearest pair of bodies at q; none without collision checks.
 std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
 /// Margins of proposed configurations to the limits in force.
-std::vector<LimitMargin> limit_margins(const Workspace& workspace, const Problem& problem);
+std::vector<LimitMargin> limit_margins(const Variant& variant);
 /// "within the joint limits less 1.5 to 2 deg": all configurations that are proposed, in words.
 std::string proposed_within(const Workspace& workspace, const IdentificationModel& model);
 CellNotes cell_notes(const Cell& cell);

@@ -30,12 +30,11 @@ bool is_same(const IdentificationModel& model, const std::vector<int>& columns, 
 
 }  // namespace
 
-std::vector<double> nearest_turn(const Problem& problem, const Variant& variant, std::span<const double> home,
-                                 std::vector<double> q) {
-  if (!std::holds_alternative<SerialArmSpec>(problem.robot)) return q;
+std::vector<double> nearest_turn(const Variant& variant, std::span<const double> home, std::vector<double> q) {
+  if (!std::holds_alternative<SerialArmSpec>(variant.problem->robot)) return q;
   std::vector<double> other = turned(variant.workspace->proposed(), home, q);
   if (other == q) return q;
-  const std::vector<int> columns = select_columns(*variant.model, problem, *variant.spec).selected;
+  const std::vector<int> columns = all_columns(variant).selected;
   return is_same(*variant.model, columns, q, other) ? other : q;
 }
 

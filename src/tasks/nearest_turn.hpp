@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "posewright/problem/problem.hpp"
 #include "posewright/study/variant.hpp"
 
 namespace posewright {
@@ -11,7 +10,6 @@ namespace posewright {
 /// The same pose with every joint of an arm that can turn more than once on the turn nearest to home. A configuration
 /// stays as it is if the tip or a column of the variant is another one there: a gear's error grows from turn to turn.
 /// @param home  a whole configuration
-std::vector<double> nearest_turn(const Problem& problem, const Variant& variant, std::span<const double> home,
-                                 std::vector<double> q);
+std::vector<double> nearest_turn(const Variant& variant, std::span<const double> home, std::vector<double> q);
 
 }  // namespace posewright

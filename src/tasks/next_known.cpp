@@ -16,7 +16,8 @@ constexpr const char* method = "exchange";
 // One pose is found by looking at all; of more, the better of two local optima.
 constexpr int starts = 2;
 
-Settings settings_of_search(Problem problem, const NextOptions& options, PoseList measured) {
+/// Design of the search, whatever the file's own plan is.
+void state_search(Problem& problem, const NextOptions& options) {
   const auto state = [&](const char* key, const std::string& value) { set(problem, key, value, "next"); };
   if (!options.variant.empty()) problem.design.variant = {options.variant, 0};
   state("design.criterion", "o1");  // until it is chosen: what it needs is known then
@@ -25,13 +26,18 @@ Settings settings_of_search(Problem problem, const NextOptions& options, PoseLis
   state("design.restarts", std::to_string(starts));
   if (options.candidates) state("design.candidates", std::to_string(*options.candidates));
   state("design.prior", "tolerance");
+}
+
+RunOptions run_of(const NextOptions& options, const std::vector<MeasuredPose>& poses) {
   RunOptions run;
   run.candidates_from = options.candidates_from;
-  run.measured = std::move(measured);
+  run.measured.emplace();
+  run.measured->name = options.data.string();
+  for (const MeasuredPose& pose : poses) run.measured->configurations.push_back(pose.q);
   run.candidates_alone = true;
   run.seed = options.seed;
   run.threads = options.threads;
-  return settings_of(problem, run);
+  return run;
 }
 
 }  // namespace
@@ -51,78 +57,70 @@ KnownSoFar::KnownSoFar(const Problem& problem, const NextOptions& options, const
 }
 
 void KnownSoFar::prepare() {
-  settle();
-  reuse_candidates();
-  make();
-  rows_ = rows_of(study_.first(), fit_.poses);
-  told_ = rank_of_readings();
-}
-
-void KnownSoFar::settle() {
-  PoseList measured;
-  measured.name = options_.data.string();
-  for (const MeasuredPose& pose : fit_.poses) measured.configurations.push_back(pose.q);
-  settings_ = settings_of_search(fit_.problem, options_, std::move(measured));
-  const DesignSpec& design = nominal_.design;
-  const std::string& named = options_.criterion.empty() ? design.criterion.value : options_.criterion;
-  settings_.criterion_automatic = named == automatic_criterion;
-  settings_.criterion = settings_.criterion_automatic ? "o1" : named;
-  require_known(settings_.criterion, method, nominal_.at(design.criterion.line), {}, automatic_criterion);
-  const CriterionEntry& entry = *find_criterion(settings_.criterion);
-  if (entry.several_variants || (entry.needs_truth && !settings_.truth.value.empty()))
-    throw CannotDo("next supports only criteria of a single variant: criterion '" + settings_.criterion +
-                   "' needs several (--criterion names another)");
-}
-
-/// The study; an effect that the residuals seem to hold may still be one that the parameters take up.
-void KnownSoFar::make() {
+  state_search(fit_.problem, options_);
   try {
-    study_ = make_study(fit_.problem, settings_, monitor_);
+    study_ = made();
   } catch (const InputError&) {
+    // An effect that the residuals seem to hold may still be one that the parameters take up.
     const auto own = std::find_if(fit_.problem.variants.begin(), fit_.problem.variants.end(),
                                   [&](const VariantSpec& spec) { return spec.name == nominal_spec().name; });
     if (!fit_.effect || nominal_spec().unmodelled) throw;
     own->unmodelled.reset();
     fit_.effect.reset();
-    study_ = make_study(fit_.problem, settings_, monitor_);
+    study_ = made();
   }
-  place_tests();
+  name_criterion();
+  study_ = with_places(std::move(study_));
+  rows_ = rows_of(study_.first(), fit_.poses);
+  told_ = rank_of_readings();
+}
+
+void KnownSoFar::name_criterion() {
+  const DesignSpec& design = nominal_.design;
+  const std::string& named = options_.criterion.empty() ? design.criterion.value : options_.criterion;
+  automatic_ = named == automatic_criterion;
+  criterion_ = automatic_ ? "o1" : named;
+  require_known(criterion_, method, nominal_.at(design.criterion.line), {}, automatic_criterion);
+  const CriterionEntry& entry = *find_criterion(criterion_);
+  if (entry.several_variants || (entry.needs_truth && study_.truth != nullptr))
+    throw CannotDo("next supports only criteria of a single variant: criterion '" + criterion_ +
+                   "' needs several (--criterion names another)");
+}
+
+Study KnownSoFar::made() {
+  Setup setup = resolve(fit_.problem, run_of(options_, fit_.poses), monitor_);
+  if (setup.candidates_from) return make_study(std::move(setup), monitor_);
+  reuse_candidates(setup);
+  return make_study(std::move(setup), kept_->configurations);
 }
 
 /// Keeps the drawn candidates until the first fit.
-void KnownSoFar::reuse_candidates() {
-  const int asked = settings_.candidates;
-  if (settings_.candidates_from || !settings_.candidates_file.empty()) return;
-  if (options_.kept && options_.kept->asked == asked && options_.kept->calibrated == fit_.fitted) {
-    kept_ = options_.kept;
-  } else {
-    const auto cell = make_cell(fit_.problem);
-    const Variant placed = place_variant(fit_.problem, find_variant(fit_.problem, options_.variant), cell, monitor_);
-    SamplingOptions sampling;
-    sampling.count = std::size_t(asked);
-    sampling.seed = settings_.planner.seed;
-    sampling.threads = settings_.planner.threads;
-    kept_ = std::make_shared<KeptCandidates>(
-        KeptCandidates{sample_configurations(*placed.workspace, sampling, monitor_), asked, fit_.fitted});
-  }
-  settings_.drawn = kept_->configurations;
+void KnownSoFar::reuse_candidates(const Setup& setup) {
+  const auto fits = [&](const std::shared_ptr<const KeptCandidates>& kept) {
+    return kept && kept->asked == setup.candidates && kept->calibrated == fit_.fitted;
+  };
+  if (fits(kept_)) return;
+  kept_ = fits(options_.kept) ? options_.kept
+                              : std::make_shared<const KeptCandidates>(
+                                    KeptCandidates{draw_candidates(setup, monitor_), setup.candidates, fit_.fitted});
 }
 
 /// Default test poses: throughout the workspace.
-void KnownSoFar::place_tests() {
-  Variant& variant = study_.first();
+Study KnownSoFar::with_places(Study study) {
+  Variant& variant = study.variants.front();
   places_stated_ = !variant.test_points.empty();
   if (!places_stated_) {
     Configurations all;
     if (kept_) all = kept_->configurations;
-    else all = with_measured(study_, study_.configurations);  // of a list: those that were taken from it, too
+    else all = with_measured(study, study.configurations);  // of a list: those that were taken from it, too
     try {
       variant.test_places.clear();
-      variant.test_points = test_points_at_candidates(fit_.problem, all, variant, variant.test_places);
+      variant.test_points = test_points_at_candidates(all, variant, variant.test_places);
     } catch (const CannotDo&) {
       variant.test_points.clear();  // a robot without a tip
     }
   }
+  return study;
 }
 
 int KnownSoFar::rank_of_readings() const {

@@ -16,12 +16,12 @@ class KnownSoFar {
   KnownSoFar(const Problem& problem, const NextOptions& options, const Monitor& monitor);
 
   const NextFit& fit() const { return fit_; }
-  /// With test points, unless the robot has no tip. Its candidates may shrink.
-  Study& study() { return study_; }
+  /// With test points, unless the robot has no tip.
   const Study& study() const { return study_; }
   const Variant& variant() const { return study_.first(); }
-  /// Criterion: as problem or options state it, else the default.
-  const Settings& settings() const { return settings_; }
+  /// As problem or options state it; o1 where nobody does, or until the readings let another be chosen.
+  const std::string& criterion() const { return criterion_; }
+  bool criterion_automatic() const { return automatic_; }
   const std::vector<PoseRows>& rows() const { return rows_; }
   /// Null if a list of candidates was given.
   const std::shared_ptr<const KeptCandidates>& kept() const { return kept_; }
@@ -34,10 +34,10 @@ class KnownSoFar {
 
  private:
   void prepare();
-  void settle();
-  void make();
-  void reuse_candidates();
-  void place_tests();
+  void name_criterion();
+  Study made();
+  void reuse_candidates(const Setup& setup);
+  Study with_places(Study study);
   int rank_of_readings() const;
   const VariantSpec& nominal_spec() const { return find_variant(nominal_, options_.variant); }
 
@@ -45,7 +45,8 @@ class KnownSoFar {
   const NextOptions& options_;
   const Monitor& monitor_;
   NextFit fit_;
-  Settings settings_;
+  std::string criterion_;
+  bool automatic_ = false;
   Study study_;
   std::shared_ptr<const KeptCandidates> kept_;
   std::vector<PoseRows> rows_;

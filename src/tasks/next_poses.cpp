@@ -27,6 +27,8 @@ class NextRun {
  public:
   NextRun(const Problem& problem, const NextOptions& options, const Monitor& monitor)
       : options_(options), monitor_(monitor), known_(problem, options, monitor), study_(known_.study()) {
+    candidates_ = study_.configurations;
+    spacing_ = study_.minimum_distance;
     result_.required = options.required ? options.required : problem.design.require.accuracy;
   }
 
@@ -61,8 +63,8 @@ class NextRun {
     result_.kept = known_.kept();
     result_.places = int(variant.test_points.size());
     result_.places_stated = known_.places_stated();
-    result_.smallest = smallest_number_of_poses(*variant.model, study_.configurations, variant.columns,
-                                                known_.settings().planner.threads);
+    result_.smallest =
+        smallest_number_of_poses(*variant.model, study_.configurations, variant.columns, study_.planner.threads);
     result_.candidates = study_.list.empty()
                              ? fmt::format("{} candidates", study_.configurations.count())
                              : fmt::format("{} candidates of {}", study_.configurations.count(), study_.list);
@@ -71,9 +73,9 @@ class NextRun {
   }
 
   void choose_criterion() {
-    result_.criterion = known_.settings().criterion;
+    result_.criterion = known_.criterion();
     const bool places = result_.places > 0;
-    if (known_.settings().criterion_automatic && places && known_.determined() && result_.smallest &&
+    if (known_.criterion_automatic() && places && known_.determined() && result_.smallest &&
         result_.measured >= enough_to_predict * *result_.smallest)
       result_.criterion = "test_pose";
     if (find_criterion(result_.criterion)->needs_test_poses && !places)
@@ -82,27 +84,30 @@ class NextRun {
 
   /// Candidates beside what is known.
   SearchParts parts_for(const std::string& criterion) {
-    Variant& variant = study_.first();
     const Prior prior = known_.determined() ? options_.prior : Prior::every;
-    variant.prior = known_information(variant, known_.rows(), prior, known_.fit().noise.factor);
-    return search_parts(study_, criterion, study_.configurations, known_.settings().planner.threads);
+    information_ = known_information(study_.first(), known_.rows(), prior, known_.fit().noise.factor);
+    return parts_of(criterion);
+  }
+
+  SearchParts parts_of(const std::string& criterion) const {
+    return search_parts(study_, criterion, candidates_, study_.planner.threads, &information_);
   }
 
   /// The best that are feasible at the estimated values, too.
   Configurations search_for(const SearchParts& parts, const std::string& criterion, int poses) {
-    SearchRequest request = spaced_request(study_, known_.settings(), poses);
+    SearchRequest request = search_request(study_, poses);
+    if (study_.distance.kept) request.spacing = &spacing_;
     request.criterion = criterion;
     request.certify = false;
     request.planner.kicks = 0;
     if (poses == 1) request.planner.restarts = 1;
     const SearchResult found = search(copied_parts(parts), request, monitor_);
     Configurations chosen;
-    chosen.dimension = study_.configurations.dimension;
-    for (const int member : found.design.members) append(chosen, study_.configurations, std::size_t(member));
+    chosen.dimension = candidates_.dimension;
+    for (const int member : found.design.members) append(chosen, candidates_, std::size_t(member));
     if (!study_.list.empty() || all_feasible(chosen)) return in_order(chosen);
     remove_infeasible();
-    return search_for(search_parts(study_, criterion, study_.configurations, known_.settings().planner.threads),
-                      criterion, poses);
+    return search_for(parts_of(criterion), criterion, poses);
   }
 
   bool all_feasible(const Configurations& chosen) const {
@@ -113,18 +118,18 @@ class NextRun {
 
   /// Drawn at other values: the whole set is looked at once.
   void remove_infeasible() {
-    const Configurations all = study_.configurations;
-    study_.configurations.values.clear();
+    const Configurations all = candidates_;
+    candidates_.values.clear();
     for (std::size_t i = 0; i < all.count(); ++i)
-      if (study_.first().workspace->violation(all[i]) < 0) append(study_.configurations, all, i);
-    if (study_.configurations.count() == 0) throw CannotDo("no candidate is feasible at the estimated values");
-    keep_away_from_measured(study_, known_.settings().repeats);
+      if (study_.first().workspace->violation(all[i]) < 0) append(candidates_, all[i]);
+    if (candidates_.count() == 0) throw CannotDo("no candidate is feasible at the estimated values");
+    if (study_.distance.kept) spacing_ = with_points(study_.distance.spacing, candidates_);
   }
 
   /// The pose that tells most first: whoever measures one only measures that.
   Configurations in_order(const Configurations& chosen) const {
     if (chosen.count() < 2 || result_.places == 0) return chosen;
-    const std::vector<PoseRows> more = rows_of(study_.first(), chosen, known_.settings().planner.threads);
+    const std::vector<PoseRows> more = rows_of(study_.first(), chosen, study_.planner.threads);
     const ForecastOfError error(study_.first(), noise());
     Configurations ordered;
     ordered.dimension = chosen.dimension;
@@ -160,17 +165,15 @@ class NextRun {
     if (result_.places == 0) return;
     const ForecastOfError error(study_.first(), noise());
     std::vector<PoseRows> all = known_.rows();
-    for (PoseRows& row : rows_of(study_.first(), chosen, known_.settings().planner.threads))
-      all.push_back(std::move(row));
+    for (PoseRows& row : rows_of(study_.first(), chosen, study_.planner.threads)) all.push_back(std::move(row));
     const auto errors = error.after_each(all);
     for (std::size_t n = 0; n < errors.size(); ++n)
       (n <= known_.rows().size() ? result_.curve : result_.ahead).push_back({int(n), errors[n]});
     if (!known_.determined()) return;
-    const int ahead = std::min(poses_looked_ahead, int(study_.configurations.count()));
+    const int ahead = std::min(poses_looked_ahead, int(candidates_.count()));
     const Configurations three = search_for(parts_for("test_pose"), "test_pose", ahead);
     all.resize(known_.rows().size());
-    for (PoseRows& row : rows_of(study_.first(), three, known_.settings().planner.threads))
-      all.push_back(std::move(row));
+    for (PoseRows& row : rows_of(study_.first(), three, study_.planner.threads)) all.push_back(std::move(row));
     result_.with_three = NextPoint{int(all.size()), error.after_each(all, all.size()).back()};
   }
 
@@ -245,7 +248,10 @@ class NextRun {
   const NextOptions& options_;
   const Monitor& monitor_;
   KnownSoFar known_;
-  Study& study_;
+  const Study& study_;
+  Configurations candidates_;    ///< of the study, feasible at the estimated values
+  Spacing spacing_;              ///< between them, where a distance is kept
+  Eigen::MatrixXd information_;  ///< from before, on the columns of the search
   NextPoses result_;
 };
 

@@ -20,25 +20,26 @@ namespace {
 constexpr double near_share = 0.1;
 
 /// Poses that σ is predicted for: what is asked for, what the design says, but enough to determine everything.
-int judged_poses(const Problem& problem, const ObserveOptions& options, int smallest) {
-  const int wanted = options.poses ? *options.poses : problem.design.poses ? problem.design.poses->value : 2 * smallest;
+int judged_poses(const Variant& variant, const ObserveOptions& options, int smallest) {
+  const auto& stated = variant.problem->design.poses;
+  const int wanted = options.poses ? *options.poses : stated ? stated->value : 2 * smallest;
   return std::max(wanted, smallest);
 }
 
-void add_practical(Observation& o, const BlockArray& pool, const Problem& problem, const ObserveOptions& options,
+void add_practical(Observation& o, const BlockArray& pool, const Variant& variant, const ObserveOptions& options,
                    const Monitor& monitor) {
   if (!o.smallest_poses) return;
   try {
     o.practical =
-        practical_identifiability(pool, o.kept, judged_poses(problem, options, *o.smallest_poses), near_share, monitor);
+        practical_identifiability(pool, o.kept, judged_poses(variant, options, *o.smallest_poses), near_share, monitor);
   } catch (const CannotDo&) {
     // Told apart by less than double precision can use: the dependencies above say so.
   }
 }
 
-Observation observe(const Variant& variant, const Configurations& configurations, const Problem& problem,
-                    const ObserveOptions& options, const Monitor& monitor) {
-  const VariantColumns columns = select_columns(*variant.model, problem, *variant.spec);
+Observation observe(const Variant& variant, const Configurations& configurations, const ObserveOptions& options,
+                    const Monitor& monitor) {
+  const VariantColumns columns = all_columns(variant);
   const BlockArray pool = build_blocks(*variant.model, columns.selected, configurations, options.threads);
   Observation result;
   result.variant = variant.spec->name;
@@ -58,7 +59,7 @@ Observation observe(const Variant& variant, const Configurations& configurations
   const BlockArray kept_pool = build_blocks(*variant.model, kept.selected, configurations, options.threads);
   result.indices = evaluate(kept_pool, kept.parameters).indices;
   result.smallest_poses = smallest_number_of_poses(*variant.model, configurations, kept, options.threads);
-  add_practical(result, kept_pool, problem, options, monitor);
+  add_practical(result, kept_pool, variant, options, monitor);
   return result;
 }
 
@@ -66,7 +67,7 @@ Observation observe(const Variant& variant, const Configurations& configurations
 class Draws {
  public:
   Draws(const Problem& problem, const ObserveOptions& options, const Monitor& monitor)
-      : problem_(problem), cell_(make_cell(problem)), monitor_(monitor) {
+      : problem_(problem), without_roadmap_(without_roadmap(problem)), cell_(make_cell(problem)), monitor_(monitor) {
     sampling_.count = std::size_t(options.candidates);
     sampling_.seed = options.seed;
     sampling_.threads = options.threads;
@@ -79,7 +80,7 @@ class Draws {
       // What a variant estimates says how far its robots may be off that must be readable.
       if (problem_.workspace.readable_for == 0 && known.spec->convention == spec.convention &&
           stand_alike(*known.model, *model))
-        return {place_variant(without_roadmap(problem_), spec, cell_, monitor_), &known.configurations};
+        return {place_variant(without_roadmap_, spec, cell_, monitor_), &known.configurations};
     Variant variant = place_variant(problem_, spec, cell_, monitor_);
     Configurations configurations = sample_configurations(*variant.workspace, sampling_, monitor_);
     drawn_.push_back({&spec, model, std::move(configurations)});
@@ -105,6 +106,7 @@ class Draws {
   };
 
   const Problem& problem_;
+  const Problem without_roadmap_;
   std::shared_ptr<const Cell> cell_;
   const Monitor& monitor_;
   SamplingOptions sampling_;
@@ -121,7 +123,7 @@ std::vector<Observation> observe_problem(const Problem& problem, const ObserveOp
   for (const VariantSpec& spec : problem.variants) {
     if (!options.variant.empty() && spec.name != options.variant) continue;
     const auto [variant, configurations] = draws.of(spec);
-    observations.push_back(observe(variant, *configurations, problem, options, monitor));
+    observations.push_back(observe(variant, *configurations, options, monitor));
   }
   return observations;
 }

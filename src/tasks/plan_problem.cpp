@@ -30,13 +30,8 @@ constexpr double axis_interval = 1.96;
 /// A prepared problem and plans of it.
 class PlanSearch {
  public:
-  PlanSearch(const Problem& problem, const RunOptions& run, const Monitor& monitor)
-      : problem_(problem),
-        settings_(settings_of_plan(problem, run)),
-        notes_(take_fixed(problem, run, settings_)),
-        monitor_(monitor),
-        study_(make_study(problem, settings_, monitor)) {
-    notes_.insert(notes_.begin(), study_.notes.begin(), study_.notes.end());
+  PlanSearch(Setup setup, const Monitor& monitor)
+      : problem_(*setup.problem), monitor_(monitor), study_(prepared(std::move(setup), monitor)), notes_(study_.notes) {
     if (study_.distance.kept)
       minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.distance.spacing);
     if (study_.distance.usual)
@@ -44,22 +39,27 @@ class PlanSearch {
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
                       minimum_distance_));
-    if (std::string note = choose_criterion(problem_, study_, settings_); !note.empty())
-      notes_.push_back(std::move(note));
+    if (!study_.why_criterion.empty()) notes_.push_back(study_.why_criterion);
   }
 
-  const Settings& settings() const { return settings_; }
+  Plan plan() { return study_.poses ? plan(*study_.poses) : smallest(); }
+
+ private:
+  static Study prepared(Setup setup, const Monitor& monitor) {
+    const std::optional<int> poses = setup.poses;
+    return choose_criterion(make_study(std::move(setup), monitor), poses);
+  }
 
   Plan plan(int poses) {
-    SearchRequest request = spaced_request(study_, settings_, poses - fixed());
-    if (!settings_.candidates_alone) request.make_space = space_maker(study_, settings_.criterion);
-    request.prove = settings_.poses > 0;
-    request.proof = settings_.proof;
-    SearchResult found = search(
-        search_parts(study_, settings_.criterion, study_.configurations, settings_.planner.threads), request, monitor_);
-    if (!settings_.robust) return assemble(found);
+    SearchRequest request = spaced_request(study_, poses - fixed());
+    if (!study_.candidates_alone) request.make_space = space_maker(study_, study_.criterion);
+    request.prove = study_.poses.has_value();
+    request.proof = study_.proof;
+    SearchResult found = search(search_parts(study_, study_.criterion, study_.configurations, study_.planner.threads),
+                                request, monitor_);
+    if (!study_.robust) return assemble(found);
     // Last, so that whoever stops it has the plan of the nominal robot.
-    RobustPlan robust = plan_robust(problem_, study_, settings_, found, monitor_);
+    RobustPlan robust = plan_robust(study_, found, monitor_);
     Plan plan = assemble(found);
     plan.interrupted = plan.interrupted || robust.stopped;
     plan.robust = std::move(robust);
@@ -69,7 +69,6 @@ class PlanSearch {
   /// Doubles the number of poses until everything required is reached, then halves the interval.
   Plan smallest() {
     std::vector<CurvePoint> curve;
-    settings_.planner.use_all_time = false;
     int enough = 0, too_few = std::max(fewest(), fixed() + 1) - 1, unfit = limit() + 1;
     Plan best;
     for (int poses = std::min(too_few + 1, limit()); enough == 0;) {
@@ -108,19 +107,11 @@ class PlanSearch {
     return best;
   }
 
- private:
-  static Settings settings_of_plan(const Problem& problem, const RunOptions& run) {
-    require_number_of_poses(problem);
-    Settings settings = settings_of(problem, run);
-    take_robust(problem, settings);
-    return settings;
-  }
-
-  /// Checks the poses of any plan.
+  /// Number of poses in any plan.
   int fixed() const { return int(study_.fixed.count()); }
 
   int limit() const {
-    if (settings_.repeats.most > 1) return most_poses;
+    if (study_.repeats.most > 1) return most_poses;
     return std::min<int>(most_poses, int(study_.configurations.count()) + fixed());
   }
 
@@ -128,8 +119,7 @@ class PlanSearch {
     int most = 1;
     for (const Variant& v : study_.variants) {
       if (v.known_before) continue;
-      const auto number =
-          smallest_number_of_poses(*v.model, study_.configurations, v.columns, settings_.planner.threads);
+      const auto number = smallest_number_of_poses(*v.model, study_.configurations, v.columns, study_.planner.threads);
       if (!number) throw CannotDo("the candidates do not determine all parameters; more candidates are needed");
       most = std::max(most, *number);
     }
@@ -186,19 +176,19 @@ class PlanSearch {
     // Judged from the configurations that will be written, not from anything the search kept.
     const Configurations chosen = chosen_by(found.design, study_.configurations);
     const Configurations poses = with_fixed(chosen);
-    const Judgement judgement = judge(study_, poses, settings_);
+    const Judgement judgement = judge(study_, poses);
     Plan plan;
-    plan.seed = settings_.planner.seed;
+    plan.seed = study_.planner.seed;
     plan.problem_file = problem_.file.string();
     plan.problem_sha256 = problem_.sha256;
     plan.parameters_file = parameters_of(problem_);
-    plan.method = settings_.method;
+    plan.method = study_.method;
     plan.minimum_distance = minimum_distance_;
-    fill_judgement(plan, judgement, study_, settings_);
-    plan.expected = expected_error(problem_, study_.configurations, study_.first(), with_measured(study_, poses),
-                                   judgement.evaluations.front().covariance, settings_.planner.threads);
-    const double phi = phi_of(*found.measure, settings_.criterion, study_, chosen, settings_);
-    plan.criterion_value = find_criterion(settings_.criterion)->shown(phi, judgement.evaluations.front().indices);
+    fill_judgement(plan, judgement, study_);
+    plan.expected = expected_error(study_.configurations, study_.first(), with_measured(study_, poses),
+                                   judgement.evaluations.front().covariance, study_.planner.threads);
+    const double phi = phi_of(*found.measure, study_.criterion, study_, chosen);
+    plan.criterion_value = find_criterion(study_.criterion)->shown(phi, judgement.evaluations.front().indices);
     plan.certificate = found.certificate;
     certify(plan.certificate, phi, found.degree);
     if (auto& whole = plan.certificate.workspace)
@@ -210,7 +200,7 @@ class PlanSearch {
     fill_candidates(plan.statistics, study_);
     plan.statistics.notes = notes_;
     plan.statistics.cell = cell_notes(*study_.cell);
-    plan.statistics.limit_margins = limit_margins(*study_.first().workspace, problem_);
+    plan.statistics.limit_margins = limit_margins(study_.first());
     plan.statistics.exchanges = found.design.exchanges;
     plan.statistics.restarts = found.design.restarts;
     plan.statistics.stages = found.stages;
@@ -222,7 +212,7 @@ class PlanSearch {
   }
 
   void warn_of_lost_poses(Plan& plan, const Configurations& poses) const {
-    std::string risk = poses_at_risk(study_.first(), poses, int(study_.measured.count()) + 1, settings_.planner.seed);
+    std::string risk = poses_at_risk(study_.first(), poses, int(study_.measured.count()) + 1, study_.planner.seed);
     if (!risk.empty()) plan.statistics.notes.push_back(std::move(risk));
   }
 
@@ -236,20 +226,19 @@ class PlanSearch {
   /// Efficiency without each fixed pose, which no search computed.
   void fill_without_fixed(Plan& plan, const Configurations& chosen, const SearchResult& found, double phi) const {
     if (fixed() == 0) return;
-    const int threads = settings_.planner.threads;
+    const int threads = study_.planner.threads;
     const std::vector<double> left =
-        found.measure->phi_without(search_parts(study_, settings_.criterion, chosen, threads),
-                                   search_parts(study_, settings_.criterion, study_.fixed, threads));
+        found.measure->phi_without(search_parts(study_, study_.criterion, chosen, threads),
+                                   search_parts(study_, study_.criterion, study_.fixed, threads));
     for (std::size_t i = 0; i < left.size(); ++i)
       plan.poses[study_.measured.count() + i].without =
           std::min(1.0, std::exp((left[i] - phi) / (found.degree > 0 ? found.degree : 1.0)));
   }
 
   const Problem& problem_;
-  Settings settings_;
-  std::vector<std::string> notes_;
   const Monitor& monitor_;
-  Study study_;
+  const Study study_;
+  std::vector<std::string> notes_;
   std::string minimum_distance_;  // for people; empty: none
 };
 
@@ -257,8 +246,7 @@ class PlanSearch {
 
 Plan plan_problem(const Problem& problem, const RunOptions& run, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  PlanSearch planning(problem, run, monitor);
-  Plan plan = planning.settings().poses > 0 ? planning.plan(planning.settings().poses) : planning.smallest();
+  Plan plan = PlanSearch(resolve(problem, run, monitor, Purpose::plan), monitor).plan();
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

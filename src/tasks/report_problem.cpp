@@ -42,14 +42,23 @@ constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-4;
 constexpr double same_log_det = 1e-6;
 
 /// As the plan was made, but with short searches that stay among the candidates.
-Settings report_settings(const Problem& problem, const WrittenPlan& plan, int threads) {
+Problem reported_problem(const Problem& problem, const WrittenPlan& plan) {
   Problem searched = as_written(problem, plan);
   set(searched, "design.method", "exchange", "report");
   set(searched, "design.restarts", std::to_string(curve_restarts), "report");
+  return searched;
+}
+
+/// What was measured before is in the plan, wherever it came from.
+Study reported_study(const Problem& problem, const WrittenPlan& plan, const PoseList& list, int threads,
+                     const Monitor& monitor) {
   RunOptions run;
   run.seed = plan.seed;
   run.threads = threads;
-  return settings_of(searched, run);
+  run.measured.emplace();
+  for (std::size_t i = 0; i < list.configurations.size(); ++i)
+    if (list.measured[i]) run.measured->configurations.push_back(list.configurations[i]);
+  return choose_criterion(make_study(resolve(problem, run, monitor), monitor), plan.poses);
 }
 
 /// A plan's text with the poses of its route in the place of those that they replace.
@@ -97,24 +106,12 @@ class ReportBuilder {
  public:
   ReportBuilder(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
                 const Monitor& monitor)
-      : problem_(problem),
-        options_(options),
+      : options_(options),
         monitor_(monitor),
         plan_(read_written_plan(file)),
-        settings_(report_settings(problem, plan_, options.threads)) {
-    if (!options.route.empty()) report_.route_json = read_text(options.route, plan_size_limit);
-    DrivenPlan driven = driven_plan(std::move(plan_.text), report_.route_json);
-    report_.plan_json = std::move(driven.text);
-    report_.notes = std::move(driven.notes);
-    // What was measured before is in the plan, wherever it came from.
-    list_ = read_poses_text(report_.plan_json, plan_.file.string(),
-                            pose_coordinates(problem, settings_.variants.front().name.value));
-    PoseList before;
-    for (std::size_t i = 0; i < list_.configurations.size(); ++i)
-      if (list_.measured[i]) before.configurations.push_back(list_.configurations[i]);
-    settings_.measured = std::move(before);
-    study_ = make_study(problem, settings_, monitor_);
-    choose_criterion(problem, study_, settings_);
+        problem_(reported_problem(problem, plan_)),
+        list_(driven_list()),
+        study_(reported_study(problem_, plan_, list_, options.threads, monitor)) {
     // A shortened set of candidates would be shown as if it were whole.
     if (monitor.should_stop()) throw CannotDo("the report was stopped before its first part was finished");
     all_.dimension = new_.dimension = study_.configurations.dimension;
@@ -126,7 +123,7 @@ class ReportBuilder {
 
   Report make() {
     report_.title = title_of(problem_.file);
-    const Judgement judgement = judge(study_, new_, settings_);
+    const Judgement judgement = judge(study_, new_);
     note_changes(judgement);
     note_effect(judgement);
     fill_information(judgement);
@@ -147,6 +144,15 @@ class ReportBuilder {
   }
 
  private:
+  /// The poses of the plan, as the route has them; takes its text into the report.
+  PoseList driven_list() {
+    if (!options_.route.empty()) report_.route_json = read_text(options_.route, plan_size_limit);
+    DrivenPlan driven = driven_plan(std::move(plan_.text), report_.route_json);
+    report_.plan_json = std::move(driven.text);
+    report_.notes = std::move(driven.notes);
+    return read_poses_text(report_.plan_json, plan_.file.string(), pose_coordinates(problem_));
+  }
+
   void note_changes(const Judgement& judgement) {
     const double stated = plan_.log_det;
     const double found = judgement.evaluations.front().log_det;
@@ -190,7 +196,7 @@ class ReportBuilder {
       const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
       information.poses.emplace_back(list_.ids[i], scaled.transpose() * scaled);
     }
-    if (settings_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
+    if (study_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
     for (const TestPoint& point : variant.test_points) {
       const Eigen::MatrixXd scaled = point.A * tolerance.asDiagonal();
       information.test.emplace_back(point.weight, scaled.transpose() * scaled);
@@ -200,7 +206,7 @@ class ReportBuilder {
 
   std::optional<CurvePoint> point_of(const Configurations& list, int poses) const {
     try {
-      const Judgement judgement = judge(study_, list, settings_);
+      const Judgement judgement = judge(study_, list);
       const Evaluation& e = judgement.evaluations.front();
       CurvePoint point{poses, e.log_det, judgement.rho0, 0.0, false};
       const VariantColumns& columns = study_.first().columns;
@@ -251,14 +257,14 @@ class ReportBuilder {
   }
 
   std::vector<SearchPart> parts_of(const Configurations& candidates) const {
-    return search_parts(study_, settings_.criterion, candidates, options_.threads);
+    return search_parts(study_, study_.criterion, candidates, options_.threads);
   }
 
   /// Gain of each candidate, divided by what one must reach to be worth measuring; none if the criterion has no bound.
   void find_gains() {
     const Configurations& pool = study_.configurations;
-    if (double(settings_.poses) > double(pool.count()) * settings_.repeats.most) return;
-    SearchRequest request = search_request(settings_, settings_.poses);
+    if (double(plan_.poses) > double(pool.count()) * study_.repeats.most) return;
+    SearchRequest request = search_request(study_, plan_.poses);
     request.bound_tolerance = shown_tolerance;
     Bound bound = bound_only(parts_of(pool), request, monitor_);
     if (monitor_.should_stop() || !(bound.price > 0)) return;
@@ -285,7 +291,7 @@ class ReportBuilder {
     // With an unmodelled effect parameters are not all that the error comes from.
     if (variant.effect != nullptr || variant.model->tips() != 1) return;
     std::vector<TestPlace> places;
-    const std::vector<TestPoint> points = test_points_at_candidates(problem_, study_.configurations, variant, places);
+    const std::vector<TestPoint> points = test_points_at_candidates(study_.configurations, variant, places);
     predicted_error(points, judgement.evaluations.front().covariance, report_.position_errors);
     // Where only the instrument is estimated (a camera and its board) nothing is said of where the tip goes.
     std::vector<double>& errors = report_.position_errors;
@@ -313,7 +319,7 @@ class ReportBuilder {
   std::optional<CurvePoint> curve_at(int poses, const Configurations& pool, const std::vector<SearchPart>& parts,
                                      const Spacing& apart) const {
     try {
-      SearchRequest wanted = search_request(settings_, poses);
+      SearchRequest wanted = search_request(study_, poses);
       if (study_.distance.kept) wanted.spacing = &apart;
       wanted.bound_tolerance = start_tolerance;
       const double share = double(new_.count()) / poses;
@@ -329,7 +335,7 @@ class ReportBuilder {
   void fill_curve() {
     const int own = int(new_.count());
     const Configurations pool = promising();
-    const double most = double(pool.count()) * settings_.repeats.most;
+    const double most = double(pool.count()) * study_.repeats.most;
     std::set<int> numbers;
     for (const double share : shares)
       if (const int poses = int(std::lround(share * own)); poses >= 1 && poses != own && poses <= most)
@@ -360,16 +366,15 @@ class ReportBuilder {
               [](const auto& a, const auto& b) { return a.poses < b.poses; });
   }
 
-  const Problem& problem_;
   const ReportOptions& options_;
   const Monitor& monitor_;
+  Report report_;
   WrittenPlan plan_;  // its text is in the report
-  Settings settings_;
-  Study study_;
-  PoseList list_;  // the poses of the plan
+  const Problem problem_;
+  const PoseList list_;  // the poses of the plan
+  const Study study_;
   Configurations all_, new_;
   std::vector<double> gains_;  // of the candidates
-  Report report_;
 };
 
 }  // namespace

@@ -10,10 +10,10 @@
 namespace posewright {
 namespace {
 
-RobustPlan figures_of(const RobustResult& result, const Settings& settings, bool searched) {
+RobustPlan figures_of(const RobustResult& result, const RobustSpec& spec, bool searched) {
   RobustPlan plan;
-  plan.draws = settings.robust->draws;
-  plan.aim = settings.robust->aim;
+  plan.draws = spec.draws;
+  plan.aim = spec.aim;
   plan.searched = searched;
   plan.references = result.references;
   plan.nominal = result.nominal.efficiency;
@@ -27,11 +27,9 @@ RobustPlan figures_of(const RobustResult& result, const Settings& settings, bool
 }
 
 /// Efficiency of the plan without each of its poses, for the nominal robot.
-std::vector<double> without_each(const SearchResult& found, const Study& study, const Settings& settings) {
+std::vector<double> without_each(const SearchResult& found, const Study& study) {
   const Configurations chosen = chosen_by(found.design, study.configurations);
-  const auto phi = [&](const Configurations& poses) {
-    return phi_of(*found.measure, settings.criterion, study, poses, settings);
-  };
+  const auto phi = [&](const Configurations& poses) { return phi_of(*found.measure, study.criterion, study, poses); };
   const double whole = phi(chosen), degree = found.degree > 0 ? found.degree : 1.0;
   std::vector<double> left;
   for (std::size_t i = 0; i < chosen.count(); ++i)
@@ -41,29 +39,27 @@ std::vector<double> without_each(const SearchResult& found, const Study& study, 
 
 }  // namespace
 
-RobustPlan plan_robust(const Problem& problem, const Study& study, const Settings& settings, SearchResult& found,
-                       const Monitor& monitor) {
+RobustPlan plan_robust(const Study& study, SearchResult& found, const Monitor& monitor) {
   Configurations all = study.configurations;
   // What optimal weights use counts as candidates, as in the certificate.
   std::vector<std::vector<double>>& added = found.design.added;
   added.insert(added.end(), found.support.begin(), found.support.end());
   for (const std::vector<double>& q : added) append(all, q);
-  const DrawnRobots robots(problem, study, all, settings.planner.seed, settings.planner.threads, monitor);
-  const RobustResult result =
-      search_robust(robust_request(study, settings, robots, all, found.design.members), monitor);
+  const DrawnRobots robots(study, all, monitor);
+  const RobustResult result = search_robust(robust_request(study, robots, all, found.design.members), monitor);
   if (result.plan != found.design.members) {
     found.design.members = result.plan;
     found.design.optimal = false;
-    found.without = without_each(found, study, settings);
+    found.without = without_each(found, study);
   }
   found.design.exchanges += result.exchanges;
-  return figures_of(result, settings, true);
+  return figures_of(result, *study.robust, true);
 }
 
-RobustPlan judge_robust_list(const Problem& problem, const Study& study, const Settings& settings,
-                             const Configurations& candidates, const std::vector<int>& list, const Monitor& monitor) {
-  const DrawnRobots robots(problem, study, candidates, settings.planner.seed, settings.planner.threads, monitor);
-  return figures_of(judge_robust(robust_request(study, settings, robots, candidates, list), monitor), settings, false);
+RobustPlan judge_robust_list(const Study& study, const Configurations& candidates, const std::vector<int>& list,
+                             const Monitor& monitor) {
+  const DrawnRobots robots(study, candidates, monitor);
+  return figures_of(judge_robust(robust_request(study, robots, candidates, list), monitor), *study.robust, false);
 }
 
 }  // namespace posewright

@@ -43,13 +43,12 @@ std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList&
   if (std::find(plan.measured.begin(), plan.measured.end(), true) != plan.measured.end())
     run.measured = subset(plan, [&](std::size_t i, int) { return measured(i); });
   try {
-    const Problem free = without_roadmap(problem);
-    Settings settings = settings_of(free, run);
-    settings.poses = int(kept.configurations.size());
-    const Study study = make_study(free, settings, monitor);
+    Problem free = without_roadmap(problem);
+    free.design.poses = Located<int>{int(kept.configurations.size()), 0};
+    const Study study = make_study(resolve(free, run, monitor), monitor);
     const std::size_t dimension = study.first().workspace->coordinates().size();
-    const Judgement left = judge(study, configurations_of(kept, dimension), settings);
-    const Judgement planned = judge(study, configurations_of(all, dimension), settings);
+    const Judgement left = judge(study, configurations_of(kept, dimension));
+    const Judgement planned = judge(study, configurations_of(all, dimension));
     const VariantColumns& columns = study.first().columns;
     const auto interest = double(columns.parameters.size()) - columns.nuisance;
     const double gain = left.evaluations.front().log_det - planned.evaluations.front().log_det;

@@ -109,7 +109,7 @@ class Router {
       const int id = list.ids.empty() ? int(i) + 1 : list.ids[i];
       std::vector<double> q = list.configurations[i];
       if (std::find(kept.begin(), kept.end(), id) == kept.end())
-        q = nearest_turn(problem_, variant_, stops_.front().configuration, std::move(q));
+        q = nearest_turn(variant_, stops_.front().configuration, std::move(q));
       if (q != list.configurations[i]) turned_.push_back(id);
       Stop stop{id, q, pose_of(*variant_.model, q)};
       stop.pose.id = stop.id;

@@ -31,12 +31,13 @@ class SimulationRun {
  public:
   SimulationRun(const Problem& problem, const SimulateOptions& options, const Monitor& monitor)
       : problem_(with_places(problem, options.validation)),
+        true_problem_(with_truth_noise(problem_, options.truth_noise)),
         options_(options),
         monitor_(monitor),
         spec_(find_variant(problem_, options.variant)),
         truth_spec_(options.truth.empty() ? spec_ : find_variant(problem_, options.truth)),
         fitted_(variant(problem_, spec_)),
-        truth_(variant(with_truth_noise(problem_, options.truth_noise), truth_spec_)) {
+        truth_(variant(true_problem_, truth_spec_)) {
     experiment_.options = options.experiment;
     experiment_.model = fitted_.model.get();
     experiment_.columns = fitted_.columns;
@@ -150,9 +151,7 @@ class SimulationRun {
   }
 
   void check_places() {
-    const VariantColumns& drawn = experiment_.truth.drawn;
-    places_ = places_to_check(problem_, {&spec_, fitted_.model.get(), &fitted_.columns},
-                              {&truth_spec_, truth_.model.get(), &drawn}, options_.experiment.seed);
+    places_ = places_to_check(fitted_, truth_, experiment_.truth.drawn, options_.experiment.seed);
     if (places_ == nullptr) return;
     SimulatedAccuracy accuracy;
     std::vector<double> each;
@@ -164,7 +163,7 @@ class SimulationRun {
     experiment_.places = places_->places;
   }
 
-  Problem problem_;
+  Problem problem_, true_problem_;
   const SimulateOptions& options_;
   const Monitor& monitor_;
   const VariantSpec &spec_, &truth_spec_;

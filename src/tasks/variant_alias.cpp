@@ -11,15 +11,14 @@ namespace posewright {
 namespace {
 
 /// Error of the calibrated robot at the test poses.
-void add_test_poses(VariantAlias& alias, const Problem& problem, const Variant& fitted, const Effects& effects,
-                    const EffectFit& fit, const Evaluation& evaluation, const Settings& settings) {
+void add_test_poses(VariantAlias& alias, const Variant& fitted, const Effects& effects, const EffectFit& fit,
+                    const Evaluation& evaluation, std::uint64_t seed) {
   if (fitted.test_points.empty()) return;
   std::vector<double> each;
   alias.rho0 = predicted_error(fitted.test_points, evaluation.covariance, each);
   double shift = 0, spread = 0, total = 0;
   const Eigen::Index shifts = effects.by_nominal ? 1 : 0, spreads = effects.count() - shifts;
-  for (const TestPoint& point :
-       test_points_of(problem, *fitted.spec, *fitted.model, effects.columns, settings.planner.seed)) {
+  for (const TestPoint& point : test_points_of(fitted, effects.columns, seed)) {
     const Eigen::MatrixXd error = errors_at(point, effects, fit);
     shift += point.weight * error.leftCols(shifts).squaredNorm();
     spread += point.weight * error.rightCols(spreads).squaredNorm();
@@ -39,8 +38,8 @@ std::vector<int> extra_columns(const Variant& with, const Variant& without) {
   return extra;
 }
 
-VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const Variant& truth,
-                           const Configurations& poses, const Evaluation& evaluation, const Settings& settings) {
+VariantAlias variant_alias(const Setup& setup, const Variant& fitted, const Variant& truth, const Configurations& poses,
+                           const Evaluation& evaluation) {
   VariantAlias alias;
   alias.fitted = fitted.spec->name;
   alias.truth = truth.spec->name;
@@ -48,23 +47,23 @@ VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const 
     alias.why_not = "the variants use different kinds of parameters";
     return alias;
   }
-  const Effects effects = effects_of(fitted, *truth.model, truth.columns, settings.prior);
+  const Effects effects = effects_of(fitted, *truth.model, truth.columns, setup.prior);
   alias.sources = effects.sources;
-  const EffectFit fit = fit_effects(effects, fitted, poses, settings);
+  const EffectFit fit = fit_effects(effects, fitted, poses, setup);
   const VariantColumns& columns = fitted.columns;
   const Eigen::Index shifts = effects.by_nominal ? 1 : 0, spreads = effects.count() - shifts;
   const Eigen::VectorXd shift = fit.errors.leftCols(shifts).rowwise().sum();
   const Eigen::VectorXd spread = fit.errors.rightCols(spreads).rowwise().norm();
   std::optional<Eigen::VectorXd> whole;
-  if (effects.by_nominal) whole = fitted_bias(fitted, truth, poses, settings.prior);
+  if (effects.by_nominal) whole = fitted_bias(fitted, truth, poses, setup.prior);
   for (std::size_t j = 0; j < columns.parameters.size(); ++j) {
     const auto k = Eigen::Index(j);
     alias.parameters.push_back({columns.parameters[j], evaluation.sigma[k], shift[k], spread[k]});
     if (whole) alias.parameters.back().fitted = (*whole)[k];
   }
-  add_test_poses(alias, problem, fitted, effects, fit, evaluation, settings);
+  add_test_poses(alias, fitted, effects, fit, evaluation, setup.planner.seed);
   if (effects.count() > 0)
-    alias.test = discrimination_of(alias.truth, effects, fit.unfitted, fitted, poses, settings.prior);
+    alias.test = discrimination_of(alias.truth, effects, fit.unfitted, fitted, poses, setup.prior);
   return alias;
 }
 

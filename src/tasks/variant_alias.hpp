@@ -10,8 +10,8 @@ namespace posewright {
 /// not where the two do not share one catalogue of parameters.
 /// @param poses       all that are measured
 /// @param evaluation  of the same poses for `fitted`
-VariantAlias variant_alias(const Problem& problem, const Variant& fitted, const Variant& truth,
-                           const Configurations& poses, const Evaluation& evaluation, const Settings& settings);
+VariantAlias variant_alias(const Setup& setup, const Variant& fitted, const Variant& truth, const Configurations& poses,
+                           const Evaluation& evaluation);
 
 /// Parameters that `with` estimates and `without` does not, indices into the columns of `with`.
 std::vector<int> extra_columns(const Variant& with, const Variant& without);

@@ -76,23 +76,23 @@ std::vector<std::vector<double>> same_actuators(const IdentificationModel& from,
   return result;
 }
 
-std::unique_ptr<PlacesToCheck> places_to_check(const Problem& problem, const Side& fitted, const Side& truth,
+std::unique_ptr<PlacesToCheck> places_to_check(const Variant& fitted, const Variant& truth, const VariantColumns& drawn,
                                                std::uint64_t seed) {
+  const Problem& problem = *fitted.problem;
   if (!problem.design.test_poses || std::holds_alternative<CompensatorGeometrySpec>(problem.robot)) return nullptr;
-  const Problem seen = with_pose_seen(problem);
   auto result = std::make_unique<PlacesToCheck>();
-  result->fitted = make_pose_seen(problem, *fitted.spec, *fitted.model);
-  result->truth = make_pose_seen(problem, *truth.spec, *truth.model);
-  result->points = test_points_of(problem, *fitted.spec, *fitted.model, *fitted.columns, seed);
+  result->fitted = make_pose_seen(fitted);
+  result->truth = make_pose_seen(truth);
+  result->points = test_points_of(fitted, fitted.columns, seed);
   CheckPlaces& places = result->places;
   places.fitted = result->fitted.get();
   places.truth = result->truth.get();
-  TestConfigurations found = test_configurations(seen, *result->fitted, seed);
+  TestConfigurations found = test_configurations(fitted, *result->fitted, seed);
   places.fitted_q = std::move(found.configurations);
   places.truth_q = same_actuators(*places.fitted, *places.truth, places.fitted_q);
   places.weights = found.weights.empty() ? std::vector<double>(places.fitted_q.size(), 1.0) : std::move(found.weights);
-  places.fitted_from = robot_parameters(*places.fitted, *fitted.model, *fitted.columns);
-  places.truth_from = robot_parameters(*places.truth, *truth.model, *truth.columns);
+  places.fitted_from = robot_parameters(*places.fitted, *fitted.model, fitted.columns);
+  places.truth_from = robot_parameters(*places.truth, *truth.model, drawn);
   places.point = problem.design.test_poses->point;
   return result;
 }

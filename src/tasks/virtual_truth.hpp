@@ -8,6 +8,7 @@
 #include "posewright/criterion/criterion_data.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 
 namespace posewright {
@@ -27,14 +28,9 @@ struct PlacesToCheck {
   std::vector<TestPoint> points;  ///< the same places, linearised for the fitted variant's columns
 };
 
-/// One side of the experiment.
-struct Side {
-  const VariantSpec* spec;
-  const IdentificationModel* model;
-  const VariantColumns* columns;  ///< estimated, or drawn
-};
-/// The problem's test poses. Null if it has none, or where the robot has no tip.
-std::unique_ptr<PlacesToCheck> places_to_check(const Problem& problem, const Side& fitted, const Side& truth,
+/// The test poses of the fitted variant's problem. Null if it has none, or where the robot has no tip.
+/// @param drawn  columns of the truth
+std::unique_ptr<PlacesToCheck> places_to_check(const Variant& fitted, const Variant& truth, const VariantColumns& drawn,
                                                std::uint64_t seed);
 
 }  // namespace posewright

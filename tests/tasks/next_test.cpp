@@ -312,8 +312,8 @@ TEST_F(NextPosesOfAnArm, AnEffectCountsAsAPlanOfTheSamePosesCountsIt) {
   list.dimension = 2;
   for (const Vector2d& q : poses) list.values.insert(list.values.end(), q.begin(), q.end());
   variant.scale = Eigen::VectorXd::Ones(Eigen::Index(variant.columns.selected.size()));
-  variant.test_points = test_points_of(p, *variant.spec, *variant.model, variant.columns, 0, &variant.test_places);
-  allow_for_unmodelled(p, list, 1, variant);
+  variant.test_points = test_points_of(variant, variant.columns, 0, &variant.test_places);
+  allow_for_unmodelled(list, 1, variant);
   std::vector<double> each;
   const double planned = predicted_error(variant.test_points, worth_of(variant, list, Prior::none, 1).errors, each);
   const auto forecast = ForecastOfError(variant, {Prior::none}).after_each(rows_of(variant, list, 1));

@@ -118,8 +118,8 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
   const Made made = make(problem, poses, candidates, folder);
   const json& n = made.report["neighbours"];
   ASSERT_FALSE(n.is_null()) << made.report["why_no_neighbours"];
-  const Settings settings = settings_of(made.options.of(problem), made.options);
-  const Study study = make_study(problem, settings, Monitor{});
+  const Problem searched = made.options.of(problem);
+  const Study study = make_study(resolve(searched, made.options, Monitor{}), Monitor{});
   const auto m = Eigen::Index(made.report["columns"].size());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
   Eigen::VectorXd tolerance(m);
@@ -157,7 +157,7 @@ void expect_figures(const Problem& problem, int poses, int candidates, double to
     }
     if (pose["told"][place] == 0) continue;
     ++told;
-    const Judgement judgement = judge(study, list, settings);
+    const Judgement judgement = judge(study, list);
     const Eigen::MatrixXd B = block(pose, k, m), B0 = block(pose, std::vector<int>(k.size(), 0), m);
     const Eigen::MatrixXd changed = M + B.transpose() * B - B0.transpose() * B0;
     const auto log_det = [](const Eigen::MatrixXd& A) { return std::log(A.llt().matrixLLT().diagonal().prod()) * 2; };
@@ -193,7 +193,8 @@ TEST(ReportMoves, EvaluateAcceptsAMovedListExactlyWhereThePageSaysThatItIsFeasib
   Problem problem = read_problem(examples / "cell" / "problem.yaml");
   problem.workspace.motion.reachable = false;
   const Made made = make(problem, 14, 100, folder);
-  const Study study = make_study(problem, settings_of(made.options.of(problem), made.options), Monitor{});
+  const Problem searched = made.options.of(problem);
+  const Study study = make_study(resolve(searched, made.options, Monitor{}), Monitor{});
   const json& n = made.report["neighbours"];
   std::vector<std::pair<std::size_t, std::size_t>> looks;  // two of each verdict
   for (const bool wanted : {true, false})
@@ -229,7 +230,8 @@ TEST(ReportMoves, ARobotWithoutAChainIsDrawnAtWholeSteps) {
   const Problem problem = read_problem(examples / "delta" / "problem.yaml");
   const Made made = make(problem, 12, 60, folder);
   EXPECT_TRUE(made.report["chain"].is_null());
-  const Study study = make_study(problem, settings_of(made.options.of(problem), made.options), Monitor{});
+  const Problem searched = made.options.of(problem);
+  const Study study = make_study(resolve(searched, made.options, Monitor{}), Monitor{});
   const json& n = made.report["neighbours"];
   const int reach = n["reach"];
   for (std::size_t j = 0; j < n["coordinates"].size(); ++j) {

@@ -248,8 +248,8 @@ TEST(Report, PositionErrorsOverTheWorkspaceAreThoseOfTestPosesThere) {
   const Problem problem = read_problem(file);
   const json report = make_report(problem, quick_report(18, 60), folder, brief).report;
   // The same configurations, written into the problem as test poses.
-  const Settings settings = settings_of(quick_report(18, 60).of(problem), {});
-  const Study study = make_study(problem, settings, Monitor{});
+  const Problem searched = quick_report(18, 60).of(problem);
+  const Study study = make_study(resolve(searched, {}, Monitor{}), Monitor{});
   std::string at;
   for (std::size_t i = 0; i < study.configurations.count(); ++i) {
     at += at.empty() ? "[" : ", [";

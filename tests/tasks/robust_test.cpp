@@ -186,8 +186,8 @@ Eigen::Matrix<double, 2, 3> planar_block(const std::vector<double>& q, const Eig
 
 TEST_F(DrawnRobotsOfProblems, BlocksOfADrawnArmAreThoseOfItsOwnGeometry) {
   const Problem problem = arm();
-  const Study study = make_study(problem, settings_of(problem, {}), Monitor());
-  const DrawnRobots robots(problem, study, study.configurations, 7, 1, Monitor());
+  const Study study = make_study(resolve(problem, {.seed = 7, .threads = 1}, Monitor()), Monitor());
+  const DrawnRobots robots(study, study.configurations, Monitor());
   double squares = 0;
   for (int k = 0; k < 50; ++k) {
     const std::vector<double> correction = robots.correction(k);
@@ -214,8 +214,8 @@ TEST_F(DrawnRobotsOfProblems, FiguresOfAPlanAreThoseOfItsWrittenPosesByGeometry)
   ASSERT_EQ(robust.efficiency.size(), 12U);
   EXPECT_GE(robust.value, robust.nominal_value - 1e-12);
   EXPECT_LE(robust.value, robust.bound + 1e-9);
-  const Study study = make_study(problem, settings_of(problem, {}), Monitor());
-  const DrawnRobots robots(problem, study, study.configurations, 0, 1, Monitor());
+  const Study study = make_study(resolve(problem, {}, Monitor()), Monitor());
+  const DrawnRobots robots(study, study.configurations, Monitor());
   std::vector<double> logs;
   for (int k = 0; k < 12; ++k) {
     const std::vector<double> correction = robots.correction(k);
@@ -249,8 +249,10 @@ TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRo
   const Problem problem = example("telescope/problem.yaml");
   DesignEdits options;
   options.edit("candidates", 30);
-  const Study study = make_study(problem, settings_of(options.of(problem), options), Monitor());
-  const DrawnRobots robots(problem, study, study.configurations, 1, 1, Monitor());
+  options.seed = 1;
+  const Problem edited = options.of(problem);
+  const Study study = make_study(resolve(edited, options, Monitor()), Monitor());
+  const DrawnRobots robots(study, study.configurations, Monitor());
   const std::vector<double> correction = robots.correction(0);
   // A second robot whose nominal values are those of the drawn one; its platform is found from the actuators.
   Variant other = place_variant(problem, *study.first().spec, study.cell);

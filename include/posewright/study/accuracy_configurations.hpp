@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
-#include "posewright/problem/problem.hpp"
+#include "posewright/study/variant.hpp"
 
 namespace posewright {
 
@@ -15,7 +15,7 @@ struct TestConfigurations {
 };
 /// The problem's test poses: as written, from a file, evenly through the workspace, or reached for points of a box or a
 /// file.
-/// @param seen  the problem with an instrument that reads the tip's pose
-TestConfigurations test_configurations(const Problem& seen, const IdentificationModel& model, std::uint64_t seed);
+/// @param seen  the variant's model with an instrument that reads the tip's pose
+TestConfigurations test_configurations(const Variant& variant, const IdentificationModel& seen, std::uint64_t seed);
 
 }  // namespace posewright

@@ -9,12 +9,13 @@
 
 namespace posewright {
 
+struct Variant;
+
 /// Robot measured by the pose of its tip: no targets, so the tool counts.
 Problem with_pose_seen(Problem problem);
-/// Its model at the nominal values of `model`, which is the problem's own: values of the instrument's own parameters
-/// (targets, stations, a lens) are none of it.
-std::unique_ptr<IdentificationModel> make_pose_seen(const Problem& problem, const VariantSpec& variant,
-                                                    const IdentificationModel& model);
+/// Model of the variant with that measurement, at the nominal values of its own model: values of the instrument's own
+/// parameters (targets, stations, a lens) are none of it.
+std::unique_ptr<IdentificationModel> make_pose_seen(const Variant& variant);
 
 /// Motion of the point of interest at a test pose by the tip's displacement.
 struct TestPlace {
@@ -22,18 +23,16 @@ struct TestPlace {
   Eigen::Matrix<double, 6, 6> twists;  ///< position and turn of the point of interest along the tip's unit twists
 };
 
-/// Position Jacobians of the problem's test poses for a variant's columns (3 × m, raw, SI); nuisance columns and what
-/// does not move the robot are zero. Empty if the problem has none. Throws InputError for configurations that do not
-/// fit the robot, CannotDo for a robot without a tip.
-std::vector<TestPoint> test_points_of(const Problem& problem, const VariantSpec& variant,
-                                      const IdentificationModel& model, const VariantColumns& columns,
-                                      std::uint64_t seed, std::vector<TestPlace>* test_places = nullptr);
-
-/// Overload for configurations of the robot alone, all of one weight, for the origin of the tip.
-std::vector<TestPoint> test_points_at(const Problem& problem, const VariantSpec& variant,
-                                      const IdentificationModel& model, const VariantColumns& columns,
-                                      const std::vector<std::vector<double>>& configurations,
+/// Position Jacobians of the problem's test poses for these columns of a variant (3 × m, raw, SI); nuisance columns and
+/// what does not move the robot are zero. Empty if the problem has none. Throws InputError for configurations that do
+/// not fit the robot, CannotDo for a robot without a tip.
+std::vector<TestPoint> test_points_of(const Variant& variant, const VariantColumns& columns, std::uint64_t seed,
                                       std::vector<TestPlace>* test_places = nullptr);
+
+/// Overload for the variant's own columns and configurations of the robot alone, all of one weight, for the origin of
+/// the tip.
+std::vector<TestPoint> test_points_at(const Variant& variant, const std::vector<std::vector<double>>& configurations,
+                                      std::vector<TestPlace>& test_places);
 
 /// Covariance of the error at a test pose.
 struct PlaceError {

@@ -7,7 +7,6 @@
 #include "posewright/blocks/identifiability.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/problem/problem.hpp"
 #include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
@@ -28,8 +27,9 @@ struct ResolvedColumns {
 /// For `auto` variants the irreducible subset by rank-revealing QR; for explicit ones all columns, after a check that
 /// they are independent, unless a prior tells them apart. Throws CannotDo with the equations if they are not.
 /// @param configurations  to judge by
+/// @param all  that the variant names
 ResolvedColumns resolve_columns(const IdentificationModel& model, const Configurations& configurations,
-                                const Problem& problem, const VariantSpec& variant, bool prior, int threads);
+                                VariantColumns all, bool prior, int threads);
 
 /// Smallest number of configurations that determines all columns, by choosing each for its gain; empty if the
 /// candidates do not suffice.

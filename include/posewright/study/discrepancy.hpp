@@ -19,8 +19,7 @@ struct Discrepancy {
 
 /// Throws InputError with the line where the truth was named: unknown, the fitted variant itself, another catalogue of
 /// parameters, no effect that is not fitted. CannotDo if so few poses leave no reading to test by.
-std::shared_ptr<const Discrepancy> make_discrepancy(const Problem& problem, const Study& study,
-                                                    const Settings& settings);
+std::shared_ptr<const Discrepancy> make_discrepancy(const Study& study);
 
 /// Blocks, prior and effects for criteria that need a truth. Throws CannotDo if the fitted columns imitate it all.
 SearchPart part_with_effects(const Study& study, const Configurations& configurations, int threads);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "posewright/blocks/block_array.hpp"
-#include "posewright/problem/problem.hpp"
 #include "posewright/search/robust_search.hpp"
 #include "posewright/study/study.hpp"
 
@@ -17,8 +16,7 @@ class DrawnRobots {
  public:
   /// @param sought  configurations whose lines of sight are asked for often; they are looked at once, at nominal
   ///                parameters
-  DrawnRobots(const Problem& problem, const Study& study, const Configurations& sought, std::uint64_t seed, int threads,
-              const Monitor& monitor);
+  DrawnRobots(const Study& study, const Configurations& sought, const Monitor& monitor);
 
   /// Raw whitened blocks of robot k, its actuators standing as those of the nominal one do at these configurations;
   /// all zero where it cannot stand or be measured so. Safe from several threads.
@@ -35,7 +33,7 @@ class DrawnRobots {
 /// The request of a search over drawn robots; all that is named must outlive it.
 /// @param configurations  to choose from: the study's candidates, then others
 /// @param plan            the nominal plan, by index
-RobustRequest robust_request(const Study& study, const Settings& settings, const DrawnRobots& robots,
-                             const Configurations& configurations, std::vector<int> plan);
+RobustRequest robust_request(const Study& study, const DrawnRobots& robots, const Configurations& configurations,
+                             std::vector<int> plan);
 
 }  // namespace posewright

@@ -37,8 +37,7 @@ struct EffectFit {
   Eigen::VectorXd unfitted;  ///< squared length of each effect's residual, whitened
   Eigen::MatrixXd errors;    ///< fitted × effects: estimate less truth
 };
-EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Configurations& poses,
-                      const Settings& settings);
+EffectFit fit_effects(const Effects& effects, const Variant& fitted, const Configurations& poses, const Setup& setup);
 
 /// Error at a test pose by every effect: estimate less truth.
 /// @param point  of all columns of the effects

@@ -22,9 +22,8 @@ struct FittedResiduals {
 /// @param poses       all that are measured
 /// @param covariance  of the estimate from these, with the stated noise
 /// @return none where the readings tell of no single tip, or no estimated parameter moves it
-std::optional<ExpectedError> expected_error(const Problem& problem, const Configurations& candidates,
-                                            const Variant& variant, const Configurations& poses,
-                                            const Eigen::MatrixXd& covariance, int threads,
+std::optional<ExpectedError> expected_error(const Configurations& candidates, const Variant& variant,
+                                            const Configurations& poses, const Eigen::MatrixXd& covariance, int threads,
                                             const std::optional<FittedResiduals>& residuals = std::nullopt);
 
 }  // namespace posewright

@@ -25,12 +25,12 @@ struct Judgement {
 
 /// @param poses  come to those that are measured already
 /// Throws CannotDo if they do not identify all parameters.
-Judgement judge(const Study& study, const Configurations& poses, const Settings& settings);
+Judgement judge(const Study& study, const Configurations& poses);
 
 /// Φ of the poses under a criterion (theory.md), by the criterion's own function.
 /// @param poses  beside those that are measured already
 double phi_of(const DesignMeasure& measure, const std::string& criterion, const Study& study,
-              const Configurations& poses, const Settings& settings);
+              const Configurations& poses);
 
 /// ln of each variant's efficiency against its reference.
 std::vector<double> log_efficiencies(const Judgement& judgement, const Study& study,

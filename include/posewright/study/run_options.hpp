@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "posewright/cell/cell.hpp"
 #include "posewright/lists/pose_list.hpp"
@@ -18,6 +20,7 @@ struct RunOptions {
   std::optional<PoseList> fixed{};
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the problem.
   std::optional<PoseList> candidates_from{};
+  std::vector<std::string> variants{};  ///< to prepare, by name; empty: those of the criterion
   /// Nuisance parameters and an unmodelled effect count as those of interest do, with ds: poses whose readings are
   /// least certain.
   bool everything_counts = false;

@@ -20,9 +20,9 @@ Spacing spacing_of(const std::vector<Coordinate>& coordinates,
 /// Default spacing of poses without repeats: 5 deg or a fiftieth
 /// of a range, whichever is less, in at least one coordinate. Halved until four times the wanted poses fit among the
 /// candidates, away from measured poses, so that no plan fails by it; without units where so many are not to be had.
-/// @param poses  wanted; 0: not known yet
+/// @param poses  wanted; none: not known yet
 Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configurations& candidates,
-                      const Configurations& measured, int poses);
+                      const Configurations& measured, const std::optional<int>& poses);
 
 /// Distance that poses keep from each other.
 struct PoseDistance {
@@ -37,7 +37,8 @@ struct PoseDistance {
 /// @param listed  candidates are a list: its author chose how near they are to each other
 PoseDistance pose_distance(const std::vector<Coordinate>& coordinates,
                            const std::optional<DesignSpec::MinimumDistance>& stated, Repeats repeats,
-                           const Configurations& candidates, const Configurations& known, int poses, bool listed);
+                           const Configurations& candidates, const Configurations& known,
+                           const std::optional<int>& poses, bool listed);
 
 /// Overload for these candidates.
 Spacing with_points(Spacing spacing, const Configurations& candidates);

@@ -18,7 +18,7 @@ namespace posewright {
 /// parameter's share of that with the whole effect, or within 1.5 times what the most of them leave.
 /// Throws InputError if the effect is so smooth over the workspace that the estimated parameters take it up, CannotDo
 /// if the readings tell of no tip.
-void allow_for_unmodelled(const Problem& problem, const Configurations& candidates, int threads, Variant& variant);
+void allow_for_unmodelled(const Configurations& candidates, int threads, Variant& variant);
 
 /// Raw whitened blocks of a variant as a search sees them: the effect's features in front, if there is one.
 BlockArray search_blocks(const Variant& variant, const Configurations& configurations, int threads);
@@ -31,8 +31,8 @@ Eigen::MatrixXd left_beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd
 double noise_of_a_pose(const Eigen::Ref<const Eigen::MatrixXd>& A, std::size_t n);
 
 /// Default test poses: 200 of the configurations.
-std::vector<TestPoint> test_points_at_candidates(const Problem& problem, const Configurations& candidates,
-                                                 const Variant& variant, std::vector<TestPlace>& places);
+std::vector<TestPoint> test_points_at_candidates(const Configurations& candidates, const Variant& variant,
+                                                 std::vector<TestPlace>& places);
 
 // Beyond so many poses their own features no longer hold the whole effect: the rest counts as independent.
 inline constexpr int whole_features = 150;

@@ -21,7 +21,8 @@ namespace posewright {
 /// One variant of a problem with all that its names mean: the robot, where it may go, the parameters that are
 /// estimated. Every command works with it.
 struct Variant {
-  const VariantSpec* spec = nullptr;  ///< of the problem, which must outlive it
+  const Problem* problem = nullptr;   ///< that must outlive it
+  const VariantSpec* spec = nullptr;  ///< of the problem
   std::shared_ptr<const Cell> cell;
   std::unique_ptr<IdentificationModel> model;
   std::unique_ptr<Workspace> workspace;
@@ -47,6 +48,9 @@ struct Variant {
 /// targets only, if line of sight is asked for.
 Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
                       const Monitor& monitor = Monitor());
+
+/// Columns that the variant names, before any is found inseparable. Throws as select_columns().
+VariantColumns all_columns(const Variant& variant);
 
 /// Coordinates for reading lists of poses of a problem: names, units, limits and labels of a variant's coordinates
 /// (empty: the first). Throws as place_variant().

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "posewright/model/variant_columns.hpp"
+#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {

@@ -1,0 +1,168 @@
+#include "posewright/study/setup.hpp"
+
+#include "criterion_choice.hpp"
+#include "fixed_poses.hpp"
+#include "posewright/criterion/registry.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/support/error.hpp"
+
+namespace posewright {
+namespace {
+
+// Columns of an assumed effect make each candidate several times as costly, and more of them gain little.
+constexpr int candidates_with_effect = 3000, restarts_with_effect = 2;
+
+std::vector<DesignSpec::Weighted> variants_of(const Setup& setup, const RunOptions& run) {
+  const Problem& problem = *setup.problem;
+  const DesignSpec& design = problem.design;
+  std::vector<DesignSpec::Weighted> all;
+  for (const std::string& name : run.variants) all.push_back({{name, 0}, 1.0});
+  if (!all.empty()) return all;
+  if (!find_criterion(setup.criterion)->several_variants) return {{{find_variant(problem, "").name, 0}, 1.0}};
+  if (design.variant && design.variant->line < 0)
+    throw InputError(problem.at(design.variant->line), "names one variant",
+                     "the criterion is over several: design: variants");
+  if (!design.variants.empty()) return design.variants;
+  for (const VariantSpec& variant : problem.variants) all.push_back({{variant.name, variant.line}, 1.0});
+  return all;
+}
+
+void name_truth(Setup& setup) {
+  const Problem& problem = *setup.problem;
+  const DesignSpec& design = problem.design;
+  const Located<std::string> truth = design.truth.value_or(Located<std::string>{});
+  const CriterionEntry& entry = *find_criterion(setup.criterion);
+  // Without a truth, bias counts an effect that is assumed.
+  if (entry.needs_residual && truth.value.empty())
+    throw InputError(problem.at(design.criterion.line),
+                     "criterion '" + design.criterion.value + "' needs an alternative model to test",
+                     "set design: truth or --truth");
+  if (truth.value.empty()) return;
+  setup.truth = &find_variant(problem, truth.value);
+  setup.truth_line = truth.line;
+  if (entry.several_variants)
+    throw InputError(
+        problem.at(truth.line),
+        "--truth needs a single fitted variant; criterion '" + design.criterion.value + "' is over several",
+        "leave out the truth, or another criterion");
+}
+
+/// Throws InputError for what robots that are drawn do not go together with.
+void draw_robots(Setup& setup, const VariantSpec& first) {
+  const Problem& problem = *setup.problem;
+  const std::optional<RobustSpec>& robust = problem.design.robust;
+  if (!robust) return;
+  const auto refuse = [&](const std::string& why, const std::string& allowed) {
+    throw InputError(problem.at(robust->line), "a plan over drawn robots (robust) " + why, allowed);
+  };
+  if (find_criterion(setup.criterion)->several_variants)
+    refuse("is for one variant, not for the several of criterion '" + setup.criterion + "'",
+           "criterion: o1 or ds, and variant: one of them");
+  if (setup.criterion != "o1" && setup.criterion != "ds")
+    refuse("is for the determinant, not for criterion '" + setup.criterion + "'", "criterion: o1 or ds");
+  if (setup.reserve) refuse("cannot be combined with reserve", "leave one of them out");
+  if (first.unmodelled) refuse("does not support a variant with an unmodelled effect", "a variant without unmodelled");
+  setup.robust = robust;
+}
+
+void require_same_coordinates(const Variant& a, const Variant& b) {
+  const auto& x = a.workspace->coordinates();
+  const auto& y = b.workspace->coordinates();
+  const auto same = [](const Coordinate& c, const Coordinate& d) { return c.name == d.name && c.labels == d.labels; };
+  if (x.size() != y.size() || !std::equal(x.begin(), x.end(), y.begin(), y.end(), same))
+    throw CannotDo("variants '" + a.spec->name + "' and '" + b.spec->name +
+                   "' have different coordinates: no pose can serve both");
+}
+
+std::optional<PoseList> given_or_read(const std::optional<PoseList>& given, const std::filesystem::path& file,
+                                      const std::vector<Coordinate>& coordinates) {
+  if (given) require_fits(*given, coordinates);
+  if (given || file.empty()) return given;
+  return read_poses(file, coordinates);
+}
+
+}  // namespace
+
+void require_number_of_poses(const Problem& problem) {
+  const DesignSpec& design = problem.design;
+  if (!design.poses && !design.smallest)
+    throw InputError(problem.at(design.line), "has no number of poses", "set design: poses or --poses");
+  if (!design.smallest) return;
+  const bool of_poses = design.require.accuracy || design.require.of_axes();
+  if (!of_poses && design.require.sigma.empty())
+    throw InputError(problem.at(design.line), "poses: auto needs a requirement",
+                     "set design: require: accuracy, position, rotation or sigma");
+  if (of_poses && !design.test_poses)
+    throw InputError(problem.at(design.require.line), "an accuracy is required but there are no test poses",
+                     "set design: test_poses");
+  if (design.robust)
+    throw InputError(problem.at(design.robust->line), "a plan over drawn robots (robust) needs a number of poses",
+                     "set poses to a number, not auto");
+}
+
+Setup resolve(const Problem& problem, const RunOptions& run, const Monitor& monitor, Purpose purpose) {
+  if (purpose == Purpose::plan) require_number_of_poses(problem);
+  const DesignSpec& design = problem.design;
+  Setup s;
+  s.problem = &problem;
+  s.criterion_automatic = design.criterion.value == automatic_criterion;
+  s.criterion = s.criterion_automatic ? "o1" : design.criterion.value;
+  s.method = design.method.value;
+  require_known(s.criterion, s.method, problem.at(design.criterion.line), problem.at(design.method.line),
+                automatic_criterion);
+  const std::optional<int> stated = design.poses ? std::optional(design.poses->value) : std::nullopt;
+  if (purpose != Purpose::list) s.poses = stated;
+  s.candidates = design.candidates.value;
+  s.prior = design.prior;
+  s.reserve = design.reserve;
+  s.repeats = design.repeats;
+  s.scaling = design.scaling;
+  const std::vector<DesignSpec::Weighted> names = variants_of(s, run);
+  const VariantSpec& first = find_variant(problem, names.front().name.value);
+  name_truth(s);
+  const std::filesystem::path listed =
+      !run.candidates_from && design.candidates_from ? design.candidates_from->value : "";
+  // Candidates of a user's list are places that count, and so are those of a variant that lacks an effect.
+  const bool places = design.test_poses || run.candidates_from || !listed.empty() || first.unmodelled;
+  if (find_criterion(s.criterion)->needs_test_poses && !places)
+    throw CannotDo("the criterion needs places where accuracy matters: set design: test_poses");
+  s.planner.restarts = design.restarts.value;
+  s.planner.restarts_stated = design.restarts.line != 0;
+  s.planner.seed = run.seed;
+  s.planner.threads = run.threads;
+  // Of several numbers each search has its share of the time.
+  s.planner.use_all_time = purpose != Purpose::plan || s.poses.has_value();
+  s.candidates_alone = run.candidates_alone;
+  s.proof = run.proof;
+  const bool with_effect = assumes_effect(s);
+  if (with_effect) limit_search_with_effect(s);
+  const bool may_be = with_effect || (s.criterion_automatic && why_not_bias(s, first, stated).empty());
+  if (may_be && design.candidates.line == 0) s.candidates = candidates_with_effect;
+  if (purpose != Purpose::search) draw_robots(s, first);
+
+  s.cell = make_cell(problem, run.same_robot.get());
+  for (const DesignSpec::Weighted& wanted : names) {
+    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), s.cell, monitor);
+    variant.weight = wanted.weight;
+    variant.everything_counts = run.everything_counts;
+    s.variants.push_back(std::move(variant));
+    require_same_coordinates(s.first(), s.variants.back());
+  }
+  const std::vector<Coordinate>& coordinates = s.first().workspace->coordinates();
+  s.measured.dimension = s.fixed.dimension = int(coordinates.size());
+  if (const auto list = given_or_read(run.measured, design.measured.value_or(""), without_limits(coordinates)))
+    for (const auto& q : list->configurations) append(s.measured, q);
+  if (purpose == Purpose::plan)
+    if (const auto list = given_or_read(run.fixed, design.fixed.value_or(""), coordinates)) fix_poses(s, *list);
+  s.candidates_from = given_or_read(run.candidates_from, listed, without_limits(coordinates));
+  return s;
+}
+
+void limit_search_with_effect(Setup& setup) {
+  if (!setup.planner.restarts_stated) setup.planner.restarts = restarts_with_effect;
+  if (setup.problem->design.method.line == 0) setup.method = "exchange";
+  setup.planner.kicks = 0;
+}
+
+}  // namespace posewright

@@ -24,7 +24,7 @@ Problem example(const char* name) {
 void whitened_blocks(benchmark::State& state, const char* name) {
   const Problem problem = example(name);
   const auto model = make_model(problem);
-  const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+  const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
   const int stride = (int(columns.selected.size()) + 7) / 8 * 8;
   std::vector<double> out(std::size_t(model->block_rows(columns.selected) * stride)), q(model->coordinates().size());
   Linearisation scratch;
@@ -46,7 +46,7 @@ void automatic_differentiation(benchmark::State& state) {
   const ChainDescription chain = read_urdf_chain(arm, {});
   const ChainLayout layout(chain);
   const auto model = make_model(problem);
-  const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+  const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
   const auto& targets = std::get<PointsMeasurement>(problem.measurement.instrument).targets;
   std::vector<double> q(6);
   Random random(1, 0);

@@ -18,7 +18,7 @@ Variant site() {
   const char* given = std::getenv("POSEWRIGHT_CELL");
   static const Problem problem =
       read_problem(given != nullptr ? given : POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml");
-  return place_variant(problem, problem.variants.front(), make_cell(problem));
+  return place_variant({problem, problem.variants.front()}, make_cell(problem));
 }
 
 std::vector<std::vector<double>> configurations(const Workspace& workspace, bool feasible, std::size_t count) {

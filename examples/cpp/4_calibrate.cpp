@@ -33,7 +33,7 @@ int main(int count, char** words) {
     posewright::write_file_atomically("calibration.json",
                                       posewright::json_text(posewright::calibration_json(problem, options, found)));
     const posewright::VariantSpec& variant = posewright::find_variant(problem, found.variant);
-    posewright::write_file_atomically("parameters.yaml", posewright::parameters_yaml(problem, variant, found.values));
+    posewright::write_file_atomically("parameters.yaml", posewright::parameters_yaml({problem, variant}, found.values));
     return found.fit.converged ? 0 : 1;
   } catch (const std::runtime_error& error) {
     std::cerr << error.what() << "\n";

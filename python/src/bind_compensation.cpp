@@ -24,7 +24,7 @@ static std::optional<DhTable> table_of(const MadeCompensation& m) {
   if (arm == nullptr) throw InputError({}, "dh is for serial arms", "robot: urdf");
   const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
   return dh_table(*arm, problem.at(arm->line), variant.convention,
-                  calibrated_values(problem, variant, *make_model(problem, variant), {}), *m.options.dh);
+                  calibrated_values({problem, variant}, *make_model({problem, variant}), {}), *m.options.dh);
 }
 static std::string text_of(const MadeCompensation& m) {
   const std::optional<DhTable> table = table_of(m);

@@ -69,7 +69,7 @@ bool is_useful(const Calibration& c) { return c.verdict != Verdict::do_not_use; 
 
 std::string parameters_text(const MadeCalibration& made) {
   const Problem& problem = made.problem->problem;
-  return parameters_yaml(problem, find_variant(problem, made.value.variant), made.value.values,
+  return parameters_yaml({problem, find_variant(problem, made.value.variant)}, made.value.values,
                          shown_effect(made.value));
 }
 

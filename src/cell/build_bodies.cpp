@@ -15,12 +15,12 @@ namespace {
 /// Solids of shapes; a mesh file is read once.
 class Solids {
  public:
-  Solids(const Problem& problem, bool hulls) : problem_(problem), hulls_(hulls) {}
+  Solids(const NamedFiles& files, bool hulls) : files_(files), hulls_(hulls) {}
 
   std::shared_ptr<const Solid> of(const ShapeSpec& shape, const SourcePlace& place) {
     const auto* file = std::get_if<MeshShape>(&shape);
     if (file == nullptr) return solid_of(shape, "the shape", place);
-    const std::filesystem::path found = find_mesh(file->file, problem_, place);
+    const std::filesystem::path found = find_mesh(file->file, files_, place);
     const Key key{found.string(), {file->scale.x(), file->scale.y(), file->scale.z()}};
     if (const auto known = solids_.find(key); known != solids_.end()) return known->second;
     return solids_[key] = solid_of(shape, "mesh '" + found.string() + "'", place);
@@ -28,7 +28,7 @@ class Solids {
 
  private:
   std::shared_ptr<const Solid> solid_of(const ShapeSpec& shape, const std::string& what, const SourcePlace& place) {
-    std::optional<TriangleMesh> mesh = mesh_of(shape, problem_, place);
+    std::optional<TriangleMesh> mesh = mesh_of(shape, files_, place);
     try {
       if (mesh && hulls_) mesh = convex_hull(*mesh);
       return make_solid(shape, mesh ? &*mesh : nullptr);
@@ -37,7 +37,7 @@ class Solids {
     }
   }
 
-  const Problem& problem_;
+  NamedFiles files_;
   bool hulls_;
   using Key = std::pair<std::string, std::array<double, 3>>;
   std::map<Key, std::shared_ptr<const Solid>> solids_;
@@ -52,12 +52,12 @@ void refuse_moving_branch(const BodyShape& shape) {
                      "remove its <collision>, or choose a tip whose chain has the joint");
 }
 
-void add_obstacles(const ObstacleFileSpec& spec, const Problem& problem, std::vector<BodyShape>& shapes) {
+void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, std::vector<BodyShape>& shapes) {
   std::set<std::string> taken;
   for (const BodyShape& shape : shapes) taken.insert(shape.name);
-  for (PlacedShape& placed : read_obstacle_file(spec, problem)) {
+  for (PlacedShape& placed : read_obstacle_file(spec, files)) {
     if (taken.count(placed.name) > 0)
-      throw InputError(problem.at(spec.line),
+      throw InputError(files.problem.at(spec.line),
                        "'" + spec.file.string() + "' has a body named '" + placed.name + "', as another one is",
                        "except: [" + placed.name + "], or another name");
     shapes.push_back({placed.name, "", "", BodyShape::Kind::obstacle, 0, isometry(spec.placement) * placed.X,

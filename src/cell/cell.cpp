@@ -13,7 +13,7 @@ namespace {
 /// An instrument does not stand in a wall. The ways out of its own body are not judged.
 void check_stations(const Problem& problem, const Cell& cell) {
   if (cell.collision == nullptr || cell.sight == nullptr || !cell.sight_is_asked) return;
-  const std::vector<double> home = home_configuration(problem, cell.model->coordinates());
+  const std::vector<double> home = home_configuration(problem.workspace.motion, problem, cell.model->coordinates());
   for (std::size_t s = 0; s < cell.sight->stations().size(); ++s) {
     const std::string& name = cell.sight->stations()[s];
     const std::string in = cell.collision->inside(home, cell.sight->X_MeasureStation(home, int(s)).translation(), name);
@@ -23,8 +23,7 @@ void check_stations(const Problem& problem, const Cell& cell) {
   }
 }
 
-void check_body_stations(const Problem& problem, const Cell& cell) {
-  if (!problem.workspace.collision) return;
+void check_body_stations(const CollisionSpec& spec, const ProblemFile& file, const Cell& cell) {
   const auto check = [&](const BodySpec& body) {
     if (body.station.empty()) return;
     std::string names;
@@ -33,62 +32,65 @@ void check_body_stations(const Problem& problem, const Cell& cell) {
         if (name == body.station) return;
         names += (names.empty() ? "allowed: " : ", ") + name;
       }
-    throw InputError(problem.at(body.line), "'" + body.station + "' is not a station",
+    throw InputError(file.at(body.line), "'" + body.station + "' is not a station",
                      names.empty() ? "there is none" : names);
   };
-  for (const BodySpec& body : problem.workspace.collision->obstacles) check(body);
-  for (const BodySpec& body : problem.workspace.collision->tool) check(body);
+  for (const BodySpec& body : spec.obstacles) check(body);
+  for (const BodySpec& body : spec.tool) check(body);
 }
 
-std::map<std::string, double> joint_margins(const Problem& problem, const IdentificationModel& model) {
+std::map<std::string, double> joint_margins(const ProblemVariant& variant, const IdentificationModel& model) {
   std::map<std::string, double> margins;
-  if (!(problem.workspace.uncalibrated > 0)) return margins;
-  const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
+  const double sigmas = variant.problem.workspace.uncalibrated;
+  if (!(sigmas > 0)) return margins;
+  const VariantColumns columns = select_columns(model, variant);
   for (std::size_t c = 0; c < columns.selected.size(); ++c)
     for (const Coordinate& coordinate : model.coordinates())
       if (model.parameters()[std::size_t(columns.selected[c])].name == first_name(coordinate.name) + ".offset")
-        margins[coordinate.name] = problem.workspace.uncalibrated * columns.parameters[c].tolerance;
+        margins[coordinate.name] = sigmas * columns.parameters[c].tolerance;
   return margins;
 }
 
 }  // namespace
 
-std::vector<double> home_configuration(const Problem& problem, const std::vector<Coordinate>& coordinates) {
+std::vector<double> home_configuration(const MotionSpec& motion, const ProblemFile& file,
+                                       const std::vector<Coordinate>& coordinates) {
   std::vector<double> home;
   home.reserve(coordinates.size());
   for (const Coordinate& c : coordinates)
     home.push_back(c.discrete() ? c.values.front() : std::clamp(0.0, c.lower, c.upper));
-  for (const auto& [name, given] : problem.workspace.motion.home) {
+  for (const auto& [name, given] : motion.home) {
     const double value = given.value;
     bool found = false;
     for (std::size_t i = 0; i < home.size(); ++i) {
       const Coordinate& c = coordinates[i];
       if (c.choice() || first_name(c.name) != name.value) continue;
       if (!fits_unit(given.quantity, c.unit))
-        throw InputError(problem.at(name.line), "workspace.motion.home: '" + name.value + "' has the wrong unit",
+        throw InputError(file.at(name.line), "workspace.motion.home: '" + name.value + "' has the wrong unit",
                          "a value in " + c.unit + " is expected");
       if (value < c.lower - 1e-9 || value > c.upper + 1e-9)
-        throw InputError(problem.at(name.line),
+        throw InputError(file.at(name.line),
                          "workspace.motion.home: '" + name.value + "' is beyond the limits in force",
                          "allowed: " + std::to_string(c.lower) + " to " + std::to_string(c.upper) + " " + c.unit);
       home[i] = std::clamp(value, c.lower, c.upper);
       found = true;
     }
-    if (!found) throw_unknown_coordinate(problem.at(name.line), name.value, coordinates);
+    if (!found) throw_unknown_coordinate(file.at(name.line), name.value, coordinates);
   }
   return home;
 }
 
 std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_robot) {
   auto cell = std::make_shared<Cell>();
-  cell->model = make_model(problem, find_variant(problem, ""));
+  const ProblemVariant variant{problem, find_variant(problem, "")};
+  cell->model = make_model(variant);
   if (problem.workspace.collision)
     cell->collision = std::make_unique<Collision>(problem, *cell->model,
                                                   same_robot == nullptr ? nullptr : same_robot->collision.get());
   cell->sight = LineOfSight::make(problem, *cell->model, cell->collision.get());
-  cell->joint_margin = joint_margins(problem, *cell->model);
+  cell->joint_margin = joint_margins(variant, *cell->model);
   cell->sight_is_asked = problem.workspace.line_of_sight.has_value();
-  check_body_stations(problem, *cell);
+  if (problem.workspace.collision) check_body_stations(*problem.workspace.collision, problem, *cell);
   check_stations(problem, *cell);
   return cell;
 }

@@ -95,11 +95,11 @@ Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model),
     add_chain(chain);
     arm_ = make_body_frames(problem, *model_);
   } else {
-    tip_ = make_tip(problem, find_variant(problem, ""));
+    tip_ = make_tip({problem, find_variant(problem, "")});
     if (tip_ != nullptr) frame_names_.emplace_back("platform");
   }
   add_bodies(problem);
-  add_instrument(problem, cell);
+  add_instrument(problem.measurement, cell);
 }
 
 Drawing::~Drawing() = default;
@@ -145,13 +145,13 @@ void Drawing::add_chain(const ChainDescription& chain) {
   if (model_->tips() < 2) chain_ = std::move(drawn);
 }
 
-void Drawing::add_instrument(const Problem& problem, const Cell& cell) {
-  for (const TargetSpec& target : view_of(problem.measurement).targets) {
+void Drawing::add_instrument(const MeasurementSpec& measurement, const Cell& cell) {
+  for (const TargetSpec& target : view_of(measurement).targets) {
     target_names_.push_back(target.name);
     targets_.push_back(target.position);
   }
   if (chain_) chain_->targets = targets_;
-  if (const InstrumentView view = view_of(problem.measurement); view.image && !view.places.empty()) {
+  if (const InstrumentView view = view_of(measurement); view.image && !view.places.empty()) {
     const auto placed = [&](const std::string& name, const Placement& placement) {
       return nominal_placement(model_->parameters(), name, isometry(placement));
     };

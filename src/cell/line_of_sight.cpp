@@ -115,7 +115,7 @@ void LineOfSight::add_points(const InstrumentView& view) {
   }
 }
 
-void LineOfSight::add_normals(const Problem& problem) {
+void LineOfSight::add_normals(const ProblemFile& file) {
   for (const auto& [name, normal] : spec_.normals) {
     bool found = false;
     for (Target& target : targets_)
@@ -127,7 +127,7 @@ void LineOfSight::add_normals(const Problem& problem) {
       std::string names;
       std::vector<std::string> words;
       for (const Target& target : targets_) names += ", " + target.name, words.push_back(target.name);
-      throw InputError(problem.at(name.line), "'" + name.value + "' is not a target" + meant_instead(name.value, words),
+      throw InputError(file.at(name.line), "'" + name.value + "' is not a target" + meant_instead(name.value, words),
                        "allowed: *" + names);
     }
   }

@@ -14,11 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_mesh = 300'000'000;  // bytes
 constexpr double farthest = 1e3;                      // m
-/// Packages are looked for around it.
-fs::path arm_file(const Problem& problem) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  return arm == nullptr ? fs::path() : arm->urdf;
-}
 
 std::string ending_of(const fs::path& file) {
   std::string ending = file.extension().string();
@@ -39,16 +34,20 @@ TriangleMesh triangles_of(const fs::path& file) {
 
 }  // namespace
 
-fs::path find_mesh(const fs::path& name, const Problem& problem, const SourcePlace& place) {
-  const fs::path file = file_of_uri(name, problem.packages, arm_file(problem), place);
+NamedFiles::NamedFiles(const Problem& all) : problem(all) {
+  if (const auto* arm = std::get_if<SerialArmSpec>(&all.robot)) around = arm->urdf;
+}
+
+fs::path find_mesh(const fs::path& name, const NamedFiles& files, const SourcePlace& place) {
+  const fs::path file = file_of_uri(name, files.problem.packages, files.around, place);
   std::error_code code;
   if (!fs::is_regular_file(file, code))
     throw InputError(place, "mesh '" + file.string() + "' is not there", "a mesh file is needed");
   return file;
 }
 
-fs::path find_model(const std::string& uri, const Problem& problem) {
-  return find_model(uri, problem.packages, arm_file(problem));
+fs::path find_model(const std::string& uri, const NamedFiles& files) {
+  return find_model(uri, files.problem.packages, files.around);
 }
 
 TriangleMesh read_mesh(const fs::path& file, const Eigen::Vector3d& scale, const SourcePlace& place) {
@@ -68,11 +67,11 @@ TriangleMesh read_mesh(const fs::path& file, const Eigen::Vector3d& scale, const
   return mesh;
 }
 
-std::optional<TriangleMesh> mesh_of(const ShapeSpec& shape, const Problem& problem, const SourcePlace& place) {
+std::optional<TriangleMesh> mesh_of(const ShapeSpec& shape, const NamedFiles& files, const SourcePlace& place) {
   if (const auto* held = std::get_if<std::shared_ptr<const TrianglesShape>>(&shape))
     return TriangleMesh{(*held)->vertices, (*held)->triangles};
   if (const auto* file = std::get_if<MeshShape>(&shape))
-    return read_mesh(find_mesh(file->file, problem, place), file->scale, place);
+    return read_mesh(find_mesh(file->file, files, place), file->scale, place);
   return std::nullopt;
 }
 

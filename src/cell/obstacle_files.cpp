@@ -11,7 +11,7 @@
 namespace posewright {
 namespace {
 
-std::vector<PlacedShape> read_urdf_shapes(const ObstacleFileSpec& spec, const Problem&) {
+std::vector<PlacedShape> read_urdf_shapes(const ObstacleFileSpec& spec, const NamedFiles&) {
   std::vector<PlacedShape> shapes;
   for (LinkGeometry& link : read_urdf_still(spec.file))
     for (LinkShape& shape : link.shapes)
@@ -24,13 +24,13 @@ constexpr std::uintmax_t largest_world = 200'000'000;  // bytes
 /// Readers by ending; a new kind of file is one row.
 struct ObstacleReader {
   std::string_view ending;
-  std::vector<PlacedShape> (*read)(const ObstacleFileSpec& spec, const Problem& problem);
+  std::vector<PlacedShape> (*read)(const ObstacleFileSpec& spec, const NamedFiles& files);
 };
 constexpr std::array<ObstacleReader, 4> readers{{
     {".sdf", read_sdf_shapes},
     {".world", read_sdf_shapes},
     {".urdf", read_urdf_shapes},
-    {".scene", [](const ObstacleFileSpec& spec, const Problem&) { return read_moveit_shapes(spec); }},
+    {".scene", [](const ObstacleFileSpec& spec, const NamedFiles&) { return read_moveit_shapes(spec); }},
 }};
 
 /// True if `except` names the body, the model it is part of, or one that this is in.
@@ -45,8 +45,8 @@ bool names_model(const std::filesystem::path& world, const std::string& name) {
 
 }  // namespace
 
-std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const Problem& problem) {
-  const SourcePlace place = problem.at(spec.line);
+std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const NamedFiles& files) {
+  const SourcePlace place = files.problem.at(spec.line);
   const std::string ending = spec.file.extension().string();
   const auto reader = std::find_if(readers.begin(), readers.end(), [&](const auto& r) { return r.ending == ending; });
   if (reader == readers.end())
@@ -54,14 +54,15 @@ std::vector<PlacedShape> read_obstacle_file(const ObstacleFileSpec& spec, const 
   std::error_code code;
   if (!std::filesystem::is_regular_file(spec.file, code))
     throw InputError(place, "'" + spec.file.string() + "' is not there", "a file of obstacles is needed");
-  std::vector<PlacedShape> shapes = reader->read(spec, problem);
+  std::vector<PlacedShape> shapes = reader->read(spec, files);
   const bool is_world = ending == ".sdf" || ending == ".world";
   for (const Located<std::string>& except : spec.except)
     if (std::erase_if(shapes, [&](const PlacedShape& s) { return is_within(s.name, except.value); }) == 0 &&
         !(is_world && names_model(spec.file, except.value))) {
       std::string names;
       for (const PlacedShape& s : shapes) names += (names.empty() ? "" : ", ") + s.name;
-      throw InputError(problem.at(except.line), "'" + except.value + "' is not in " + spec.file.filename().string(),
+      throw InputError(files.problem.at(except.line),
+                       "'" + except.value + "' is not in " + spec.file.filename().string(),
                        names.empty() ? "no obstacle is left" : "allowed: " + names);
     }
   return shapes;

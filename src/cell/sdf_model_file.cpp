@@ -43,8 +43,8 @@ std::string package_of_uri(const std::string& uri) {
   return uri.substr(begin, uri.find('/', begin) - begin);
 }
 
-fs::path sdf_model_file(const SdfElement& include, const std::string& uri, const Problem& problem) {
-  fs::path path = find_model(uri, problem);
+fs::path sdf_model_file(const SdfElement& include, const std::string& uri, const NamedFiles& files) {
+  fs::path path = find_model(uri, files);
   if (path.empty() && !names_package(uri)) {
     path = file_of_uri(uri, {}, {}, {});
     if (path.is_relative()) path = include.file().parent_path() / path;

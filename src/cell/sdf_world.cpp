@@ -23,7 +23,7 @@ struct SdfModel {
 
 class SdfReader {
  public:
-  SdfReader(const ObstacleFileSpec& spec, const Problem& problem) : spec_(spec), problem_(problem) {}
+  SdfReader(const ObstacleFileSpec& spec, const NamedFiles& named) : spec_(spec), named_(named) {}
 
   std::vector<PlacedShape> read() {
     const SdfElement root = SdfElement::open(spec_.file);
@@ -114,7 +114,7 @@ class SdfReader {
     if (uri.empty()) include.fail("<include> has no <uri>", "model://NAME or a file is needed");
     if (is_left_out(scope, name) || is_left_out(scope, package_of_uri(uri))) return;
     if (depth_ == deepest_include) include.fail("models include each other too deep", "30 levels");
-    const SdfElement& root = opened(sdf_model_file(include, uri, problem_));
+    const SdfElement& root = opened(sdf_model_file(include, uri, named_));
     const auto element = root.child("model");
     if (!element && (root.child("light") || root.child("actor"))) return;
     if (!element) include.fail("'" + root.file().string() + "' has no <model>", "a file with one model is needed");
@@ -137,7 +137,7 @@ class SdfReader {
   }
 
   const ObstacleFileSpec& spec_;
-  const Problem& problem_;
+  const NamedFiles& named_;
   SdfFrames frames_;
   std::vector<Found> found_;
   std::map<std::string, Parts> parts_;  // of models by their full names
@@ -148,8 +148,8 @@ class SdfReader {
 
 }  // namespace
 
-std::vector<PlacedShape> read_sdf_shapes(const ObstacleFileSpec& spec, const Problem& problem) {
-  return SdfReader(spec, problem).read();
+std::vector<PlacedShape> read_sdf_shapes(const ObstacleFileSpec& spec, const NamedFiles& files) {
+  return SdfReader(spec, files).read();
 }
 
 }  // namespace posewright

@@ -29,14 +29,14 @@ std::unique_ptr<IdentificationModel> bare_robot(Problem problem) {
   problem.measurement.loaded_minus_unloaded = false;
   VariantSpec variant = find_variant(problem, "");
   variant.nominal.clear();  // may name the instrument's parameters
-  return make_model(problem, variant);
+  return make_model({problem, variant});
 }
 
 }  // namespace
 
 UncalibratedError::UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames)
     : frames_(frames) {
-  const VariantColumns columns = select_columns(model, problem, find_variant(problem, ""));
+  const VariantColumns columns = select_columns(model, {problem, find_variant(problem, "")});
   const std::unique_ptr<IdentificationModel> arm = bare_robot(problem);
   Random random(tolerance_seed, 0);
   Linearisation scratch;

@@ -53,7 +53,7 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
     files.push_back({wanted.urdf, urdf.text});
   }
   if (!wanted.parameters.empty())
-    files.push_back({wanted.parameters, parameters_yaml(problem, variant, result.values, shown_effect(result))});
+    files.push_back({wanted.parameters, parameters_yaml({problem, variant}, result.values, shown_effect(result))});
   return files;
 }
 
@@ -97,7 +97,7 @@ int run_models(const CommonOptions& common, const Problem& problem, CalibrateOpt
 
 /// The data are compliances that somebody found: the compensator's constants follow from them.
 int run_compliances(const CommonOptions& common, const Problem& problem, const CalibrateOptions& calibrate) {
-  const CompensatorConstants found = compensator_of_list(problem, calibrate.data);
+  const CompensatorConstants found = compensator_of_list(problem.robot, calibrate.data);
   if (common.json) {
     fmt::print("{}", json_text(compensator_json(problem, calibrate, found)));
   } else {

@@ -92,7 +92,8 @@ struct RobotFiles {
       throw InputError({}, "--urdf, --xacro, --ur-kinematics and --dh are for serial arms", "robot: urdf");
     const SourcePlace place = problem.at(arm->line);
     const VariantSpec& variant = find_variant(problem, problem.parameters->variant.value);
-    const std::vector<CalibratedValue> values = calibrated_values(problem, variant, *make_model(problem, variant), {});
+    const std::vector<CalibratedValue> values =
+        calibrated_values({problem, variant}, *make_model({problem, variant}), {});
     if (!urdf.empty()) {
       const CorrectedUrdf corrected = corrected_urdf(*arm, place, variant.convention, values);
       add(urdf, corrected.text, "URDF", corrected.left_out);

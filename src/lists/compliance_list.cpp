@@ -111,8 +111,8 @@ ListedCompliances read_compliances(const std::string& bytes, const std::string& 
   return listed;
 }
 
-CompensatorConstants compensator_of_list(const Problem& problem, const std::filesystem::path& file) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+CompensatorConstants compensator_of_list(const RobotSpec& robot, const std::filesystem::path& file) {
+  const auto* arm = std::get_if<SerialArmSpec>(&robot);
   if (arm == nullptr || !arm->elastostatic || !arm->elastostatic->derived_compensator)
     throw InputError({file.string(), 0}, "lists compliances, but the problem has no compensator that follows from them",
                      "elastostatic: compensator_from: compliances");

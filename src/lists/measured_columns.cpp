@@ -26,13 +26,13 @@ constexpr double largest_deformation = 0.05;
 
 }  // namespace
 
-MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,
+MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const MeasurementSpec& measurement,
                                  const IdentificationModel& model)
     : file_(file),
       model_(model),
       table_(read_csv_table(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
   index_columns();
-  if (InstrumentView view = view_of(problem.measurement); view.fits_pose) markers_ = std::move(view.targets);
+  if (InstrumentView view = view_of(measurement); view.fits_pose) markers_ = std::move(view.targets);
   find_readings();
   read_configurations(bytes);
 }

@@ -17,7 +17,7 @@ namespace posewright {
 class MeasuredColumns {
  public:
   /// Throws InputError if a coordinate or all readings are missing, a name stands twice, a cell is not a value.
-  MeasuredColumns(const std::string& bytes, const std::string& file, const Problem& problem,
+  MeasuredColumns(const std::string& bytes, const std::string& file, const MeasurementSpec& measurement,
                   const IdentificationModel& model);
 
   int rows() const { return int(table_.rows.size()); }

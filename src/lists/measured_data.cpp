@@ -198,14 +198,14 @@ MeasuredData read_measured_data(const std::filesystem::path& file, const Problem
 
 MeasuredData parse_measured_data(const std::string& text, const std::filesystem::path& file, const Problem& problem,
                                  const IdentificationModel& model) {
-  const MeasuredColumns columns(text, file.string(), problem, model);
+  const MeasuredColumns columns(text, file.string(), problem.measurement, model);
   MeasuredData data;
   data.notes = columns.notes();
   data.rows = columns.rows();
   data.orientation = columns.orientation();
   ReadingAverages averaging(model, problem.measurement.repeats, data);
   SuspiciousRows suspicious(model);
-  const std::optional<PlatformPoints> platform = platform_points(problem, model);
+  const std::optional<PlatformPoints> platform = platform_points(problem.robot, problem.measurement, model);
   for (int i = 0; i < columns.rows(); ++i) {
     Row row;
     row.line = columns.line(i);

@@ -63,8 +63,7 @@ ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   return stated;
 }
 
-std::string parameters_note(const std::string& name, const ParametersFile& made_at, const Problem& problem) {
-  const ParametersFile now = parameters_of(problem);
+std::string parameters_note(const std::string& name, const ParametersFile& made_at, const ParametersFile& now) {
   if (made_at.sha256 == now.sha256) return "";
   if (now.file.empty())
     return fmt::format("{} was made at the parameters of {}; this run uses nominal ones (--parameters {})", name,
@@ -75,20 +74,19 @@ std::string parameters_note(const std::string& name, const ParametersFile& made_
                      made_at.file, made_at.sha256, now.file, now.sha256);
 }
 
-void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes) {
+void note_parameters(const PoseList& list, const ParametersFile& now, std::vector<std::string>& notes) {
   if (list.problem_sha256.empty()) return;
-  if (std::string note = parameters_note(list.name, list.parameters_file, problem); !note.empty())
+  if (std::string note = parameters_note(list.name, list.parameters_file, now); !note.empty())
     notes.push_back(std::move(note));
 }
 
-std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
-                            const std::vector<EstimatedValue>& values,
+std::string parameters_yaml(const ProblemVariant& variant, const std::vector<EstimatedValue>& values,
                             const std::optional<CalibratedEffect>& unmodelled) {
   std::string text = fmt::format(
       "posewright_parameters: 1\nvariant: {}\nconvention: {}\nproblem: {{file: {}, sha256: {}}}\n"
       "# Values in SI.\n",
-      yaml_text(variant.name), convention_name(variant.convention), yaml_text(problem.file.string()),
-      yaml_text(problem.sha256));
+      yaml_text(variant.spec.name), convention_name(variant.spec.convention), yaml_text(variant.problem.file.string()),
+      yaml_text(variant.problem.sha256));
   if (unmodelled) text += fmt::format("unmodelled: {{size: {}, length: {}}}\n", unmodelled->size, unmodelled->length);
   text += "parameters:";
   bool any = false;

@@ -4,9 +4,10 @@
 
 namespace posewright {
 
-std::optional<PlatformPoints> platform_points(const Problem& problem, const IdentificationModel& model) {
-  if (std::get_if<SixLegsSpec>(&problem.robot) == nullptr) return std::nullopt;
-  const InstrumentView view = view_of(problem.measurement);
+std::optional<PlatformPoints> platform_points(const RobotSpec& robot, const MeasurementSpec& measurement,
+                                              const IdentificationModel& model) {
+  if (std::get_if<SixLegsSpec>(&robot) == nullptr) return std::nullopt;
+  const InstrumentView view = view_of(measurement);
   if (!view.point_noise) return std::nullopt;  // another at every distance: no single shape's
   PlatformPoints points{view.targets, *view.point_noise, {}};
   if (points.body.size() < 3) return std::nullopt;

@@ -14,10 +14,9 @@
 namespace posewright {
 namespace {
 
-const VariantSpec* named(const Problem& problem, const std::string& name) {
-  const auto at = std::find_if(problem.variants.begin(), problem.variants.end(),
-                               [&](const VariantSpec& variant) { return variant.name == name; });
-  return at == problem.variants.end() ? nullptr : &*at;
+const VariantSpec* named(const std::vector<VariantSpec>& variants, const std::string& name) {
+  const auto at = std::ranges::find(variants, name, &VariantSpec::name);
+  return at == variants.end() ? nullptr : &*at;
 }
 
 /// The variant that stands for the calibrated one.
@@ -26,7 +25,7 @@ const VariantSpec& target_of(const Problem& problem, const CalibratedParameters&
   const std::string& calibrated = parameters.variant.value;
   if (!asked.empty() && std::find(asked.begin(), asked.end(), calibrated) == asked.end())
     return find_variant(problem, asked.front());
-  if (const VariantSpec* variant = named(problem, calibrated)) return *variant;
+  if (const VariantSpec* variant = named(problem.variants, calibrated)) return *variant;
   std::string names;
   for (const VariantSpec& variant : problem.variants) names += (names.empty() ? "" : ", ") + variant.name;
   throw InputError(parameters.at(parameters.variant.line),
@@ -34,16 +33,16 @@ const VariantSpec& target_of(const Problem& problem, const CalibratedParameters&
                    "variants: " + names + "; --variant names one that takes the values");
 }
 
-void require_names(const Problem& problem, const VariantSpec& variant, const CalibratedParameters& parameters) {
-  const auto model = make_model(problem, variant);
-  const ParameterNames names(*model, problem);
+void require_names(const ProblemVariant& variant, const CalibratedParameters& parameters) {
+  const auto model = make_model(variant);
+  const ParameterNames names(*model, variant);
   const std::vector<CalibratedValue> own =
-      calibrated_values(problem, variant, *model, std::vector<double>(model->parameters().size(), 0.0));
+      calibrated_values(variant, *model, std::vector<double>(model->parameters().size(), 0.0));
   for (const ParameterEntry& entry : parameters.values) {
     const int i = names.index_of(entry.name.value);
     if (i < 0)
       throw InputError(parameters.at(entry.name.line),
-                       "'" + entry.name.value + "' is not a parameter of variant '" + variant.name + "'" +
+                       "'" + entry.name.value + "' is not a parameter of variant '" + variant.spec.name + "'" +
                            meant_instead(entry.name.value, names.all()),
                        names.allowed(entry.name.value));
     const std::string& unit = model->parameters()[std::size_t(i)].unit;
@@ -71,7 +70,7 @@ std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters
                                           const std::vector<std::string>& asked) {
   problem.parameters.reset();
   const VariantSpec& target = target_of(problem, parameters, asked);
-  const VariantSpec* calibrated = named(problem, parameters.variant.value);
+  const VariantSpec* calibrated = named(problem.variants, parameters.variant.value);
   const std::string own = convention_name(target.convention);
   if (parameters.convention.empty()) parameters.convention = calibrated ? convention_name(calibrated->convention) : own;
   if (parameters.convention != own)
@@ -79,7 +78,7 @@ std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters
         parameters.at(parameters.variant.line),
         "has parameters of the kind '" + parameters.convention + "', variant '" + target.name + "' is '" + own + "'",
         "a variant with parameters of the same kind");
-  require_names(problem, target, parameters);
+  require_names({problem, target}, parameters);
   std::vector<std::string> notes;
   for (const VariantSpec& variant : problem.variants)
     if (convention_name(variant.convention) != own)
@@ -90,9 +89,10 @@ std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters
   return notes;
 }
 
-std::vector<ParameterEntry> calibrated_entries(const Problem& problem, const VariantSpec& variant) {
-  if (!problem.parameters || problem.parameters->convention != convention_name(variant.convention)) return {};
-  return problem.parameters->values;
+std::vector<ParameterEntry> calibrated_entries(const ProblemVariant& variant) {
+  const auto& parameters = variant.problem.parameters;
+  if (!parameters || parameters->convention != convention_name(variant.spec.convention)) return {};
+  return parameters->values;
 }
 
 }  // namespace posewright

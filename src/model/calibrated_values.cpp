@@ -134,13 +134,13 @@ ChainCorrection of_dh(const ChainDescription& chain, DhConvention convention,
 
 }  // namespace
 
-std::vector<CalibratedValue> calibrated_values(const Problem& problem, const VariantSpec& variant,
-                                               const IdentificationModel& model, std::span<const double> correction) {
-  VariantSpec plain = variant;
+std::vector<CalibratedValue> calibrated_values(const ProblemVariant& variant, const IdentificationModel& model,
+                                               std::span<const double> correction) {
+  VariantSpec plain = variant.spec;
   plain.nominal.clear();
-  Problem before = problem;
+  Problem before = variant.problem;
   before.parameters.reset();
-  const auto robot = make_model(before, plain);
+  const auto robot = make_model({before, plain});
   std::vector<CalibratedValue> values;
   for (std::size_t i = 0; i < model.parameters().size(); ++i) {
     const Parameter& p = model.parameters()[i];

@@ -90,8 +90,8 @@ bool is_numbered_place(std::string_view name) {
          name.find_first_not_of("0123456789*?", at + numbered.size()) == std::string_view::npos;
 }
 
-std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+std::string compensator_warning(const RobotSpec& robot, const std::vector<Coordinate>& coordinates) {
+  const auto* arm = std::get_if<SerialArmSpec>(&robot);
   if (arm == nullptr || !arm->elastostatic || !arm->elastostatic->compensator) return "";
   const CompensatorSpec& spring = *arm->elastostatic->compensator;
   if (!spring.torque) return "";

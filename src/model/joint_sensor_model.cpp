@@ -9,8 +9,10 @@
 
 namespace posewright {
 
-JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem& problem) : tip_(std::move(tip)) {
-  const auto& spec = std::get<JointsMeasurement>(problem.measurement.instrument);
+JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& measurement,
+                                   const ProblemFile& file)
+    : tip_(std::move(tip)) {
+  const auto& spec = std::get<JointsMeasurement>(measurement.instrument);
   const std::vector<Coordinate>& all = tip_->sensors();
   if (all.empty()) throw CannotDo("measurement: this robot has no redundant joint sensors; a five_bar has");
   std::string names;
@@ -18,7 +20,7 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
   for (const Located<std::string>& name : spec.sensors) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name.value; });
     if (found == all.end())
-      throw InputError(problem.at(name.line), "'" + name.value + "' is not a redundant sensor of this robot", names);
+      throw InputError(file.at(name.line), "'" + name.value + "' is not a redundant sensor of this robot", names);
     sensors_.push_back(int(found - all.begin()));
   }
   if (sensors_.empty())
@@ -26,12 +28,12 @@ JointSensorModel::JointSensorModel(std::unique_ptr<TipModel> tip, const Problem&
   for (const int i : sensors_) {
     const Quantity own = all[std::size_t(i)].unit == "m" ? Quantity::length : Quantity::angle;
     if (spec.quantity != Quantity::number && spec.quantity != own)
-      throw InputError(problem.at(problem.measurement.line),
+      throw InputError(file.at(measurement.line),
                        "the noise of the joint sensors has the wrong unit for '" + all[std::size_t(i)].name + "'",
                        "allowed: " + allowed_units({own}));
   }
   for (const int i : sensors_) readings_.push_back({all[std::size_t(i)].name, all[std::size_t(i)].unit});
-  variance_ = spec.sigma * spec.sigma / problem.measurement.repeats;
+  variance_ = spec.sigma * spec.sigma / measurement.repeats;
   parameters_ = tip_->parameters();
   coordinates_ = tip_->coordinates();
   actuators_ = tip_->actuators();

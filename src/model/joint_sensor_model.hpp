@@ -13,7 +13,7 @@ namespace posewright {
 class JointSensorModel : public IdentificationModel {
  public:
   /// Throws CannotDo for a robot without redundant sensors, InputError for a sensor that it has not.
-  JointSensorModel(std::unique_ptr<TipModel> tip, const Problem& problem);
+  JointSensorModel(std::unique_ptr<TipModel> tip, const MeasurementSpec& measurement, const ProblemFile& file);
 
  private:
   void do_take_loads_at(std::span<const double> correction) override;

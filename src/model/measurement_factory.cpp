@@ -38,14 +38,16 @@ InstrumentView view_of(const Instrument&) {
 /// Models without a view of one tip, made from the robot itself.
 using Model = std::unique_ptr<IdentificationModel>;
 template <class Instrument>
-Model model_without_view(const Instrument&, std::unique_ptr<TipModel>, const Problem&) {
+Model model_without_view(const Instrument&, std::unique_ptr<TipModel>, const MeasurementSpec&, const ProblemFile&) {
   return nullptr;
 }
-Model model_without_view(const DistanceMeasurement&, std::unique_ptr<TipModel> robot, const Problem& problem) {
-  return std::make_unique<DistancePairModel>(std::move(robot), problem.measurement);
+Model model_without_view(const DistanceMeasurement&, std::unique_ptr<TipModel> robot, const MeasurementSpec& spec,
+                         const ProblemFile&) {
+  return std::make_unique<DistancePairModel>(std::move(robot), spec);
 }
-Model model_without_view(const JointsMeasurement&, std::unique_ptr<TipModel> robot, const Problem& problem) {
-  return std::make_unique<JointSensorModel>(std::move(robot), problem);
+Model model_without_view(const JointsMeasurement&, std::unique_ptr<TipModel> robot, const MeasurementSpec& spec,
+                         const ProblemFile& file) {
+  return std::make_unique<JointSensorModel>(std::move(robot), spec, file);
 }
 
 Measurement looking(const MeasurementSpec& spec) {
@@ -60,12 +62,13 @@ std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec) 
   return measurement;
 }
 
-std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const Problem& problem) {
-  const MeasurementSpec& spec = problem.measurement;
+std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const MeasurementSpec& spec,
+                                             const ProblemFile& file) {
   if (Measurement measurement = looking(spec))
     return std::make_unique<ExplicitModel>(std::move(robot), std::move(measurement), spec.repeatability);
-  return std::visit([&](const auto& instrument) { return model_without_view(instrument, std::move(robot), problem); },
-                    spec.instrument);
+  return std::visit(
+      [&](const auto& instrument) { return model_without_view(instrument, std::move(robot), spec, file); },
+      spec.instrument);
 }
 
 InstrumentView view_of(const MeasurementSpec& measurement) {

@@ -49,10 +49,11 @@ struct MakeTip {
   std::unique_ptr<TipModel> operator()(const CompensatorGeometrySpec&) const { return nullptr; }
 };
 
-std::unique_ptr<IdentificationModel> observed(const Problem& problem, const VariantSpec& variant) {
+std::unique_ptr<IdentificationModel> observed(const ProblemVariant& variant) {
+  const Problem& problem = variant.problem;
   if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
     return std::make_unique<CompensatorGeometry>(*compensator, problem.measurement);
-  return observe(make_tip(problem, variant), problem);
+  return observe(make_tip(variant), problem.measurement, problem);
 }
 
 }  // namespace
@@ -66,35 +67,37 @@ Problem without_pose_errors(Problem problem) {
 namespace {
 
 /// Lists of measured poses have a column for each: one name cannot be both.
-void require_names_of_their_own(const IdentificationModel& model, const Problem& problem) {
+void require_names_of_their_own(const IdentificationModel& model, const SourcePlace& robot) {
   for (const Coordinate& c : model.coordinates())
     for (const Reading& reading : model.readings())
       if (c.name == reading.name)
-        throw InputError(problem.at(problem.robot_line),
-                         "joint '" + c.name + "' has the name of a reading of the instrument",
+        throw InputError(robot, "joint '" + c.name + "' has the name of a reading of the instrument",
                          "rename the joint or the target");
 }
 
 }  // namespace
 
-std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant) {
-  if (variant.convention != VariantSpec::Convention::frames && !std::holds_alternative<SerialArmSpec>(problem.robot))
-    throw CannotDo("variant '" + variant.name + "': parameters dh and mdh are those of a serial arm");
+std::unique_ptr<IdentificationModel> make_model(const ProblemVariant& variant) {
+  const Problem& problem = variant.problem;
+  if (variant.spec.convention != VariantSpec::Convention::frames &&
+      !std::holds_alternative<SerialArmSpec>(problem.robot))
+    throw CannotDo("variant '" + variant.spec.name + "': parameters dh and mdh are those of a serial arm");
   const bool difference = problem.measurement.loaded_minus_unloaded;
-  std::unique_ptr<IdentificationModel> model = observed(difference ? without_pose_errors(problem) : problem, variant);
+  std::unique_ptr<IdentificationModel> model =
+      observed({difference ? without_pose_errors(problem) : problem, variant.spec});
   // Before anything is put around it: what the arm is linearised at, its tool poses follow, too.
-  apply_nominal(*model, problem, variant);
+  apply_nominal(*model, variant);
   if (difference) model = std::make_unique<LoadDifference>(std::move(model));
-  require_names_of_their_own(*model, problem);
+  require_names_of_their_own(*model, problem.at(problem.robot_line));
   return model;
 }
 
-std::unique_ptr<TipModel> make_tip(const Problem& problem, const VariantSpec& variant) {
-  return std::visit(MakeTip{problem, variant}, problem.robot);
+std::unique_ptr<TipModel> make_tip(const ProblemVariant& variant) {
+  return std::visit(MakeTip{variant.problem, variant.spec}, variant.problem.robot);
 }
 
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem) {
-  return make_model(problem, problem.variants.front());
+  return make_model({problem, problem.variants.front()});
 }
 
 }  // namespace posewright

@@ -27,10 +27,10 @@ bool matches(std::string_view pattern, std::string_view name) {
   return p == pattern.size();
 }
 
-ParameterNames::ParameterNames(const IdentificationModel& model, const Problem& problem)
-    : model_(model), problem_(problem) {
+ParameterNames::ParameterNames(const IdentificationModel& model, const ProblemVariant& variant)
+    : model_(model), file_(variant.problem) {
   for (const Parameter& p : model.parameters()) shown_.push_back(p.name);
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  const auto* arm = std::get_if<SerialArmSpec>(&variant.problem.robot);
   if (arm == nullptr) return;
   // Names given to joint frames' parameters say nothing if a variant has another convention.
   if (std::none_of(shown_.begin(), shown_.end(), [](const std::string& n) { return n.ends_with(".gear"); })) return;
@@ -39,7 +39,7 @@ ParameterNames::ParameterNames(const IdentificationModel& model, const Problem& 
     const auto at = std::find_if(all.begin(), all.end(), [&, &t = theirs](const auto& p) { return p.name == t.value; });
     if (at == all.end())
       throw InputError(
-          problem.at(theirs.line),
+          file_.at(theirs.line),
           "'" + theirs.value + "' matches no parameter of this robot" + meant_instead(theirs.value, shown_), allowed());
     shown_[std::size_t(at - all.begin())] = mine;
   }
@@ -52,7 +52,7 @@ std::vector<int> ParameterNames::find(const Located<std::string>& pattern) const
       found.push_back(i);
   if (found.empty())
     throw InputError(
-        problem_.at(pattern.line),
+        file_.at(pattern.line),
         "'" + pattern.value + "' matches no parameter of this robot" + meant_instead(pattern.value, shown_),
         allowed(pattern.value));
   return found;

@@ -11,7 +11,7 @@ namespace posewright {
 /// All parameters of a model under the model's names and the user's. Keeps references to both.
 class ParameterNames {
  public:
-  ParameterNames(const IdentificationModel& model, const Problem& problem);
+  ParameterNames(const IdentificationModel& model, const ProblemVariant& variant);
 
   /// The user's name if there is one.
   const std::string& shown(int index) const { return shown_[std::size_t(index)]; }
@@ -25,7 +25,7 @@ class ParameterNames {
 
  private:
   const IdentificationModel& model_;
-  const Problem& problem_;
+  const ProblemFile& file_;
   std::vector<std::string> shown_;
 };
 

@@ -14,17 +14,17 @@ namespace {
 constexpr const char* placement_key = "robot: placement";
 
 /// Base and tool of a serial arm. Denavit–Hartenberg parameters displace them about frames of their own.
-std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const Problem& problem, const VariantSpec& variant,
+std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const ProblemVariant& variant,
                                    const std::vector<CalibratedValue>& values, const std::vector<Parameter>&) {
-  const ChainDescription chain = read_urdf_chain(arm, problem.at(arm.line));
-  const ChainCorrection correction = chain_correction(chain, variant.convention, values);
+  const ChainDescription chain = read_urdf_chain(arm, variant.problem.at(arm.line));
+  const ChainCorrection correction = chain_correction(chain, variant.spec.convention, values);
   return {{"base", placement_key, false, chain.X_MeasureBase * correction.base.X},
           {"tool", "", true, correction.tip.X}};
 }
 /// Nothing of a robot without a placement is stated in a measurement frame.
 template <class Robot>
-std::vector<PlacedFrame> frames_of(const Robot& robot, const Problem&, const VariantSpec&,
-                                   const std::vector<CalibratedValue>&, const std::vector<Parameter>& at) {
+std::vector<PlacedFrame> frames_of(const Robot& robot, const ProblemVariant&, const std::vector<CalibratedValue>&,
+                                   const std::vector<Parameter>& at) {
   std::vector<PlacedFrame> frames;
   if constexpr (requires { robot.placement; })
     frames.push_back({"base", placement_key, false, nominal_placement(at, "base", isometry(robot.placement))});
@@ -44,15 +44,14 @@ std::string key_of(const std::string& prefix) {
 
 }  // namespace
 
-std::vector<PlacedFrame> placed_frames(const Problem& problem, const VariantSpec& variant,
-                                       const std::vector<CalibratedValue>& values) {
+std::vector<PlacedFrame> placed_frames(const ProblemVariant& variant, const std::vector<CalibratedValue>& values) {
   std::vector<Parameter> at;
   at.reserve(values.size());
   for (const CalibratedValue& v : values) at.push_back({v.name, v.unit, v.value, 0.0, Role::interest});
   std::vector<PlacedFrame> frames =
-      std::visit([&](const auto& robot) { return frames_of(robot, problem, variant, values, at); }, problem.robot);
+      std::visit([&](const auto& robot) { return frames_of(robot, variant, values, at); }, variant.problem.robot);
   if (!has_tool(at)) std::erase_if(frames, [](const PlacedFrame& frame) { return frame.name == "tool"; });
-  const InstrumentView view = view_of(problem.measurement);
+  const InstrumentView view = view_of(variant.problem.measurement);
   if (view.has_places)
     for (const InstrumentView::Place& place : view.places)
       frames.push_back({place.parameters, key_of(place.parameters), view.places_on_tip,

@@ -29,7 +29,7 @@ bool fits(Quantity quantity, const std::string& unit) {
 
 /// Calls use(index, value) for every parameter that a written value is meant for; later entries come later.
 template <class Use>
-void for_each_value(const ParameterNames& names, const Problem& problem, const std::vector<PatternValue>& values,
+void for_each_value(const ParameterNames& names, const ProblemFile& file, const std::vector<PatternValue>& values,
                     const std::vector<Parameter>& parameters, const char* what, const Use& use) {
   for (const PatternValue& value : values) {
     bool used = false;
@@ -40,7 +40,7 @@ void for_each_value(const ParameterNames& names, const Problem& problem, const s
     }
     if (!used)
       throw InputError(
-          problem.at(value.pattern.line),
+          file.at(value.pattern.line),
           std::string(what) + " of '" + value.pattern.value + "' is in a unit that none of these parameters has",
           "allowed: " +
               allowed_units(
@@ -73,27 +73,29 @@ std::vector<int> interest_candidates(const IdentificationModel& model, const Par
 
 }  // namespace
 
-void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
-  const std::vector<ParameterEntry> calibrated = calibrated_entries(problem, variant);
-  if (variant.nominal.empty() && calibrated.empty()) return;
-  const ParameterNames names(model, problem);
+void apply_nominal(IdentificationModel& model, const ProblemVariant& variant) {
+  const std::vector<ParameterEntry> calibrated = calibrated_entries(variant);
+  if (variant.spec.nominal.empty() && calibrated.empty()) return;
+  const ParameterNames names(model, variant);
   // The instrument of a part of the problem may have fewer parameters; apply_parameters has judged the names.
   const auto take_calibrated = [&] {
     for (const ParameterEntry& entry : calibrated)
       if (const int i = names.index_of(entry.name.value); i >= 0) model.set_nominal(i, entry.value);
   };
   // What a variant says of itself stands, unless it is the one that was calibrated.
-  const bool own = problem.parameters && problem.parameters->variant.value == variant.name;
+  const auto& parameters = variant.problem.parameters;
+  const bool own = parameters && parameters->variant.value == variant.spec.name;
   if (!own) take_calibrated();
-  for_each_value(names, problem, variant.nominal, model.parameters(), "the nominal value",
+  for_each_value(names, variant.problem, variant.spec.nominal, model.parameters(), "the nominal value",
                  [&](int i, double value) { model.set_nominal(i, value); });
   if (own) take_calibrated();
 }
 
-VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant) {
-  const ParameterNames names(model, problem);
+VariantColumns select_columns(const IdentificationModel& model, const ProblemVariant& of) {
+  const VariantSpec& variant = of.spec;
+  const ParameterNames names(model, of);
   std::vector<Parameter> all = model.parameters();
-  for_each_value(names, problem, variant.tolerance, all, "the tolerance", [&](int i, double value) {
+  for_each_value(names, of.problem, variant.tolerance, all, "the tolerance", [&](int i, double value) {
     all[std::size_t(i)].tolerance = value;
     all[std::size_t(i)].tolerance_stated = true;
   });
@@ -126,22 +128,21 @@ VariantColumns select_columns(const IdentificationModel& model, const Problem& p
   for (const int i : interest)
     if (!is_nuisance[std::size_t(i)] && !is_fixed[std::size_t(i)]) add(i, Role::interest);
   if (int(columns.selected.size()) == columns.nuisance)
-    throw InputError(problem.at(variant.line), "variant '" + variant.name + "' leaves no parameter of interest free",
+    throw InputError(of.problem.at(variant.line), "variant '" + variant.name + "' leaves no parameter of interest free",
                      "name some under parameters that are neither nuisance nor fixed");
   return columns;
 }
 
-std::vector<int> fixed_parameters(const IdentificationModel& model, const Problem& problem,
-                                  const VariantSpec& variant) {
-  const ParameterNames names(model, problem);
+std::vector<int> fixed_parameters(const IdentificationModel& model, const ProblemVariant& variant) {
+  const ParameterNames names(model, variant);
   std::vector<int> fixed;
-  for (const auto& pattern : variant.fixed)
+  for (const auto& pattern : variant.spec.fixed)
     for (const int i : names.find(pattern)) fixed.push_back(i);
   return fixed;
 }
 
 std::vector<std::optional<double>> values_by_pattern(const VariantColumns& columns,
-                                                     const std::vector<PatternValue>& values, const Problem& problem,
+                                                     const std::vector<PatternValue>& values, const ProblemFile& file,
                                                      const char* what) {
   std::vector<std::optional<double>> result(columns.parameters.size());
   for (const PatternValue& value : values) {
@@ -150,7 +151,7 @@ std::vector<std::optional<double>> values_by_pattern(const VariantColumns& colum
       const Parameter& p = columns.parameters[j];
       if (!matches(value.pattern.value, p.name) || !fits(value.quantity, p.unit)) continue;
       if (value.quantity == Quantity::number && (p.unit == "m" || p.unit == "rad"))
-        throw InputError(problem.at(value.pattern.line),
+        throw InputError(file.at(value.pattern.line),
                          std::string(what) + " of '" + value.pattern.value + "' has no unit",
                          p.unit == "m" ? "m, mm, um, nm" : "rad, mrad, urad, deg");
       result[j] = value.value;
@@ -160,7 +161,7 @@ std::vector<std::optional<double>> values_by_pattern(const VariantColumns& colum
     std::string names;
     for (const Parameter& p : columns.parameters) names += (names.empty() ? "parameters: " : ", ") + p.name;
     throw InputError(
-        problem.at(value.pattern.line),
+        file.at(value.pattern.line),
         std::string(what) + " of '" + value.pattern.value + "' fits no identified parameter, or not its unit", names);
   }
   return result;

@@ -23,7 +23,7 @@ std::unique_ptr<IdentificationModel> make_pose_seen(const Variant& variant) {
   if (auto* arm = std::get_if<SerialArmSpec>(&seen.robot)) arm->parameter_names.clear();
   VariantSpec plain = *variant.spec;
   plain.nominal.clear();
-  std::unique_ptr<IdentificationModel> result = make_model(seen, plain);
+  std::unique_ptr<IdentificationModel> result = make_model({seen, plain});
   for (int i = 0; i < int(result->parameters().size()); ++i) {
     const Parameter& own = result->parameters()[std::size_t(i)];
     for (const Parameter& p : variant.model->parameters())

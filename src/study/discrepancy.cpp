@@ -23,14 +23,14 @@ Effects checked_effects(const Study& study) {
   const SourcePlace place = study.problem->at(study.truth_line);
   if (truth.name == fitted.spec->name)
     throw InputError(place, "the truth '" + truth.name + "' is the variant that is fitted", "another variant");
-  const Variant other = place_variant(*study.problem, truth, study.cell);
+  const Variant other = place_variant({*study.problem, truth}, study.cell);
   if (!one_catalogue(*fitted.model, *other.model))
     throw InputError(place,
                      "variants '" + fitted.spec->name + "' and '" + truth.name + "' use different kinds of parameters",
                      "a truth in the same convention");
   // Where the truth's own columns depend on one another matters to whoever fits it; nobody does here.
   const VariantColumns columns =
-      resolve_columns(*fitted.model, study.configurations, select_columns(*fitted.model, *study.problem, truth), true,
+      resolve_columns(*fitted.model, study.configurations, select_columns(*fitted.model, {*study.problem, truth}), true,
                       study.planner.threads)
           .columns;
   Effects effects = effects_of(fitted, *other.model, columns, study.prior);

@@ -61,7 +61,7 @@ Configurations some_of(const Configurations& all, const std::vector<int>& which)
 
 DrawnRobots::DrawnRobots(const Study& study, const Configurations& sought, const Monitor& monitor)
     : columns_(study.first().columns),
-      model_(place_variant(*study.problem, *study.first().spec, study.cell, monitor).model),
+      model_(place_variant({*study.problem, *study.first().spec}, study.cell, monitor).model),
       seed_(study.planner.seed) {
   if (study.cell->sight_is_asked && study.cell->sight != nullptr)
     model_->set_visibility(std::make_shared<RememberedSight>(

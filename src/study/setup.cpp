@@ -143,7 +143,7 @@ Setup resolve(const Problem& problem, const RunOptions& run, const Monitor& moni
 
   s.cell = make_cell(problem, run.same_robot.get());
   for (const DesignSpec::Weighted& wanted : names) {
-    Variant variant = place_variant(problem, find_variant(problem, wanted.name.value), s.cell, monitor);
+    Variant variant = place_variant({problem, find_variant(problem, wanted.name.value)}, s.cell, monitor);
     variant.weight = wanted.weight;
     variant.everything_counts = run.everything_counts;
     s.variants.push_back(std::move(variant));

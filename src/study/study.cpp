@@ -105,7 +105,7 @@ Study with_candidates(Study study, Unidentifiable unidentifiable) {
   }
   const Problem& problem = *study.problem;
   const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
-  if (std::string warning = compensator_warning(problem, coordinates); !warning.empty())
+  if (std::string warning = compensator_warning(problem.robot, coordinates); !warning.empty())
     study.notes.push_back(std::move(warning));
   study.notes.insert(study.notes.end(), study.fixed_notes.begin(), study.fixed_notes.end());
   study.distance = pose_distance(coordinates, problem.design.minimum_distance, study.repeats, study.configurations,

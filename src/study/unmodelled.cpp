@@ -33,7 +33,7 @@ constexpr double told_apart = 0.01;
 /// estimates: other variants of the file estimate them, or it states their tolerance. A catalogue holds more.
 std::vector<Parameter> not_estimated(const Variant& variant, std::vector<int>& indices) {
   const Problem& problem = *variant.problem;
-  std::vector<int> known = fixed_parameters(*variant.model, problem, *variant.spec);
+  std::vector<int> known = fixed_parameters(*variant.model, {problem, *variant.spec});
   known.insert(known.end(), variant.columns.selected.begin(), variant.columns.selected.end());
   std::set<std::string> dropped;
   for (const Parameter& p : variant.dropped) dropped.insert(p.name);
@@ -48,7 +48,7 @@ std::vector<Parameter> not_estimated(const Variant& variant, std::vector<int>& i
   };
   for (const VariantSpec& other : problem.variants) {
     if (other.convention != variant.spec->convention) continue;
-    const VariantColumns columns = select_columns(*variant.model, problem, other);
+    const VariantColumns columns = select_columns(*variant.model, {problem, other});
     for (std::size_t j = 0; j < columns.selected.size(); ++j) take(columns.selected[j], columns.parameters[j]);
   }
   return rest;

@@ -44,30 +44,29 @@ std::vector<std::vector<double>> robots_to_read(const Variant& variant) {
 
 }  // namespace
 
-Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
-                      const Monitor& monitor) {
-  Variant variant{&problem, &spec, cell, make_model(problem, spec), nullptr};
+Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell>& cell, const Monitor& monitor) {
+  Variant variant{&of.problem, &of.spec, cell, make_model(of), nullptr};
   if (cell != nullptr && cell->sight_is_asked) {
     if (variant.model->rows_per_target() > 0 &&
         variant.model->rows() != cell->sight->targets() * variant.model->rows_per_target())
       throw std::logic_error("targets of the instrument and of the line of sight differ");
     variant.model->set_visibility({cell, cell->sight.get()});
   }
-  variant.repeatability = problem.measurement.repeatability;
-  variant.workspace = std::make_unique<Workspace>(*variant.model, problem, cell, monitor, robots_to_read(variant));
+  variant.repeatability = of.problem.measurement.repeatability;
+  variant.workspace = std::make_unique<Workspace>(*variant.model, of.problem, cell, monitor, robots_to_read(variant));
   return variant;
 }
 
 VariantColumns all_columns(const Variant& variant) {
-  return select_columns(*variant.model, *variant.problem, *variant.spec);
+  return select_columns(*variant.model, {*variant.problem, *variant.spec});
 }
 
 std::vector<Coordinate> pose_coordinates(const Problem& problem, const std::string& variant) {
-  return place_variant(problem, find_variant(problem, variant), nullptr).workspace->coordinates();
+  return place_variant({problem, find_variant(problem, variant)}, nullptr).workspace->coordinates();
 }
 
 Variant make_variant(const Problem& problem, const VariantOptions& options, const Monitor& monitor) {
-  Variant variant = place_variant(problem, find_variant(problem, options.variant), make_cell(problem), monitor);
+  Variant variant = place_variant({problem, find_variant(problem, options.variant)}, make_cell(problem), monitor);
   variant.columns = all_columns(variant);
   if (!options.parameters.empty()) {
     variant.columns = named_columns(variant.columns, options.parameters);

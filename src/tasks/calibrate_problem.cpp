@@ -53,7 +53,7 @@ class CalibrationRun {
     result_.weighting = options.weighting;
     result_.prior = options.prior;
     read();
-    if (std::string warning = compensator_warning(problem_, model_->coordinates()); !warning.empty())
+    if (std::string warning = compensator_warning(problem_.robot, model_->coordinates()); !warning.empty())
       result_.notes.push_back(std::move(warning));
   }
 
@@ -62,7 +62,7 @@ class CalibrationRun {
     FitOptions fit_options;
     fit_options.weighting = options_.weighting;
     fit_options.prior = result_.prior;
-    VariantColumns all = select_columns(*model_, problem_, spec_);
+    VariantColumns all = select_columns(*model_, {problem_, spec_});
     if (!campaigns_.empty()) all = with_campaign_columns(*model_, all);
     fit_options.components = result_.prior != Prior::none;
     fit_options.limits = frame_limits(*model_, all, result_.prior);
@@ -104,7 +104,7 @@ class CalibrationRun {
     // Nothing else depends on a workspace that cannot be drawn from.
     if (!campaigns_.empty()) return;
     try {
-      result_.expected = calibrated_error(problem_, spec_, columns_, fitted_, result_, monitor_);
+      result_.expected = calibrated_error({problem_, spec_}, columns_, fitted_, result_, monitor_);
     } catch (const std::runtime_error& error) {
       result_.notes.push_back(std::string("no error is predicted: ") + error.what());
     }
@@ -143,7 +143,7 @@ class CalibrationRun {
   void test_estimate() {
     result_.tests = test_residuals(result_.fit);
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
-    result_.effects = effects_left_out(problem_, spec_, *model_, columns_, fitted_, result_.fit,
+    result_.effects = effects_left_out({problem_, spec_}, *model_, columns_, fitted_, result_.fit,
                                        [this](const Problem& wider) { return model_of(wider); });
   }
 
@@ -208,7 +208,7 @@ class CalibrationRun {
   std::vector<EffectToTest> frames_that_may_move() const {
     std::vector<EffectToTest> frames;
     for (const auto& [name, moved] : {std::pair{"base", Moved::base}, std::pair{"tool", Moved::tool}}) {
-      EffectToTest frame{name, frame_parameters(*model_, moved_frames(problem_, moved))};
+      EffectToTest frame{name, frame_parameters(*model_, moved_frames(problem_.measurement, moved))};
       if (!frame.parameters.empty()) frames.push_back(std::move(frame));
     }
     return frames;
@@ -247,7 +247,7 @@ class CalibrationRun {
   double stretch() const { return interval_factor(interval_probability, result_.fit.scale_known, result_.fit.freedom); }
 
   void read() {
-    CalibrationData data = read_calibration_data(problem_, options_, *make_model(problem_, spec_), result_);
+    CalibrationData data = read_calibration_data(problem_, options_, *make_model({problem_, spec_}), result_);
     fitted_ = std::move(data.fitted);
     held_back_ = std::move(data.held_back);
     validation_ = std::move(data.validation);
@@ -258,9 +258,10 @@ class CalibrationRun {
 
   /// With frames of its own for every campaign if there are several.
   std::unique_ptr<IdentificationModel> model_of(const Problem& problem) const {
-    auto model = make_model(problem, spec_);
-    return campaigns_.empty() ? std::move(model)
-                              : with_campaigns(std::move(model), campaigns_, moved_frames(problem_, options_.moved));
+    auto model = make_model({problem, spec_});
+    return campaigns_.empty()
+               ? std::move(model)
+               : with_campaigns(std::move(model), campaigns_, moved_frames(problem_.measurement, options_.moved));
   }
 
   /// First fit of base and tool alone. Loads then bend the robot as it stands there; how little
@@ -280,7 +281,7 @@ class CalibrationRun {
   }
 
   void judge_platform(const std::vector<PlatformImage>& images) {
-    const PlatformPoints points = *platform_points(problem_, *model_);
+    const PlatformPoints points = *platform_points(problem_.robot, problem_.measurement, *model_);
     std::vector<Eigen::Vector3d> places;
     for (const TargetSpec& target : points.body) places.push_back(target.position);
     try {
@@ -417,11 +418,11 @@ class CalibrationRun {
       result_.notes.push_back("the readings contradict the stated tolerance of " +
                               columns_.parameters[std::size_t(j)].name + ": the stated value is kept");
     // Bases of other campaigns are the instrument's, and none of the robot's values.
-    const auto robot = make_model(problem_, spec_);
+    const auto robot = make_model({problem_, spec_});
     const std::vector<double> own(result_.correction.begin(),
                                   result_.correction.begin() + std::ptrdiff_t(robot->parameters().size()));
-    std::vector<CalibratedValue> values = calibrated_values(problem_, spec_, *robot, own);
-    result_.frames = placed_frames(problem_, spec_, values);
+    std::vector<CalibratedValue> values = calibrated_values({problem_, spec_}, *robot, own);
+    result_.frames = placed_frames({problem_, spec_}, values);
     add_campaign_frames(*robot);
     // One that is nominal is half of what another one's place means: readings are in the axes of a station.
     if (std::ranges::none_of(result_.frames, [this](const PlacedFrame& frame) { return is_estimated(frame); }))
@@ -438,11 +439,11 @@ class CalibrationRun {
 
   /// What moved, where it stands in each further campaign.
   void add_campaign_frames(const IdentificationModel& robot) {
-    const std::vector<std::string> moved = moved_frames(problem_, options_.moved);
+    const std::vector<std::string> moved = moved_frames(problem_.measurement, options_.moved);
     for (std::size_t c = 1; c < campaigns_.size(); ++c) {
       std::vector<double> there = correction_in(*model_, campaigns_[c], result_.correction);
       there.resize(robot.parameters().size());
-      for (PlacedFrame& frame : placed_frames(problem_, spec_, calibrated_values(problem_, spec_, robot, there))) {
+      for (PlacedFrame& frame : placed_frames({problem_, spec_}, calibrated_values({problem_, spec_}, robot, there))) {
         if (std::ranges::count(moved, frame.name) == 0) continue;
         frame.name = name_in(campaigns_[c], frame.name);
         result_.frames.push_back(std::move(frame));

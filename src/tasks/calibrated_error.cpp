@@ -36,13 +36,13 @@ Problem at_estimate(Problem problem, const std::string& variant, const std::vect
   return problem;
 }
 
-std::optional<ExpectedError> calibrated_error(const Problem& problem, const VariantSpec& spec,
-                                              const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
-                                              const Calibration& found, const Monitor& monitor) {
+std::optional<ExpectedError> calibrated_error(const ProblemVariant& fitted, const VariantColumns& columns,
+                                              const std::vector<MeasuredPose>& poses, const Calibration& found,
+                                              const Monitor& monitor) {
   const Fit& fit = found.fit;
   if (found.weighting != Weighting::weighted || !fit.converged || !(fit.left > 0)) return std::nullopt;
-  const Problem there = at_estimate(problem, spec.name, found.values, {});
-  Variant variant = place_variant(there, find_variant(there, spec.name), make_cell(there), monitor);
+  const Problem there = at_estimate(fitted.problem, fitted.spec.name, found.values, {});
+  Variant variant = place_variant({there, find_variant(there, fitted.spec.name)}, make_cell(there), monitor);
   if (variant.model->tips() == 0) return std::nullopt;
   variant.columns = columns;
   variant.test_points = test_points_of(variant, columns, 0, &variant.test_places);
@@ -56,7 +56,7 @@ std::optional<ExpectedError> calibrated_error(const Problem& problem, const Vari
   for (const MeasuredPose& pose : poses) append(measured, pose.q);
   if (found.counted)
     variant.effect = std::make_shared<UnmodelledEffect>(
-        *variant.model, UnmodelledSize{found.counted->size, spec.unmodelled->rotation, found.counted->length});
+        *variant.model, UnmodelledSize{found.counted->size, fitted.spec.unmodelled->rotation, found.counted->length});
   return expected_error(candidates, variant, measured, fit.covariance / (fit.noise_factor * fit.noise_factor), 0,
                         fitted_residuals(fit));
 }

@@ -14,8 +14,8 @@ Problem at_estimate(Problem problem, const std::string& variant, const std::vect
 /// residuals show, or as the fit counts. None for fits that are not weighted by the noise or leave no residual.
 /// @param columns  that were estimated
 /// @param poses    that were fitted
-std::optional<ExpectedError> calibrated_error(const Problem& problem, const VariantSpec& spec,
-                                              const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
-                                              const Calibration& found, const Monitor& monitor);
+std::optional<ExpectedError> calibrated_error(const ProblemVariant& fitted, const VariantColumns& columns,
+                                              const std::vector<MeasuredPose>& poses, const Calibration& found,
+                                              const Monitor& monitor);
 
 }  // namespace posewright

@@ -66,12 +66,12 @@ Moved moved_between(const std::string& text) {
   throw InputError({}, "moved is '" + text + "'", "allowed: auto, base, tool, both, nothing");
 }
 
-std::vector<std::string> moved_frames(const Problem& problem, Moved moved) {
+std::vector<std::string> moved_frames(const MeasurementSpec& measurement, Moved moved) {
   std::vector<std::string> frames;
   if (moved == Moved::base || moved == Moved::both) frames.push_back("base");
   if (moved != Moved::tool && moved != Moved::both) return frames;
   frames.push_back("tool");
-  const InstrumentView view = view_of(problem.measurement);
+  const InstrumentView view = view_of(measurement);
   if (view.places_on_tip)
     for (const InstrumentView::Place& place : view.places) frames.push_back(place.parameters);
   if (!view.points_on_tip) return frames;

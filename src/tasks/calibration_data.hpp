@@ -24,7 +24,7 @@ std::vector<std::string> campaigns_of(const CalibrateOptions& options);
 
 /// Frames that stand elsewhere in each further campaign, as their parameters begin: "base", "tool", "target.P1".
 /// @param moved  not automatic
-std::vector<std::string> moved_frames(const Problem& problem, Moved moved);
+std::vector<std::string> moved_frames(const MeasurementSpec& measurement, Moved moved);
 
 /// Reads the files and says in `result` how many rows and poses there are and what the user must know of them.
 /// @param model  of one campaign

@@ -27,9 +27,9 @@ class SequenceCheck {
   SequenceCheck(const Problem& problem, PoseSequence& sequence)
       : problem_(problem),
         sequence_(sequence),
-        model_(make_model(problem, find_variant(problem, ""))),
+        model_(make_model({problem, find_variant(problem, "")})),
         limits_(limits_in_force(*model_, problem)),
-        coupled_(coupled_limits(*model_, problem)) {
+        coupled_(coupled_limits(*model_, problem.workspace)) {
     for (const Coordinate& c : limits_)
       if (!c.choice()) moving_.push_back(c);
   }

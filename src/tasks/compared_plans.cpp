@@ -105,7 +105,7 @@ PlansToCompare given_plans(const Study& study, const std::vector<CompareOptions:
     }
     if (poses.count() == 0) throw InputError({read.name, 0}, "has no poses to measure", "at least one is needed");
     result.notes.insert(result.notes.end(), read.notes.begin(), read.notes.end());
-    note_parameters(read, *study.problem, result.notes);
+    note_parameters(read, parameters_of(*study.problem), result.notes);
     result.plans.push_back({list.name, "", int(poses.count())});
     result.poses.push_back(std::move(poses));
   }

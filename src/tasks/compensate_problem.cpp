@@ -24,14 +24,16 @@ namespace {
 // Poses that one thread takes at a time: Ctrl-C is heard between them.
 constexpr std::size_t chunk = 512;
 
-const VariantSpec& calibrated_variant(const Problem& problem) {
+ProblemVariant calibrated_variant(const Problem& problem) {
   if (!problem.parameters)
     throw InputError({problem.file.string(), 0}, "no calibrated parameters", "a parameters file");
-  return find_variant(problem, problem.parameters->variant.value);
+  return {problem, find_variant(problem, problem.parameters->variant.value)};
 }
 
 /// The robot as its controller knows it: nominal parameters, joints that stand where they read and do not bend.
-std::unique_ptr<TipModel> nominal_tip(Problem problem, VariantSpec variant, bool elastic) {
+std::unique_ptr<TipModel> nominal_tip(const ProblemVariant& calibrated, bool elastic) {
+  Problem problem = calibrated.problem;
+  VariantSpec variant = calibrated.spec;
   problem.parameters.reset();
   variant.nominal.clear();
   variant.convention = VariantSpec::Convention::frames;
@@ -40,20 +42,19 @@ std::unique_ptr<TipModel> nominal_tip(Problem problem, VariantSpec variant, bool
     arm->joint_effects.clear();
     arm->temperature.reset();
   }
-  return make_tip(problem, variant);
+  return make_tip({problem, variant});
 }
 
-std::unique_ptr<TipModel> calibrated_tip(const Problem& problem) {
-  auto tip = make_tip(problem, calibrated_variant(problem));
+std::unique_ptr<TipModel> calibrated_tip(const ProblemVariant& calibrated) {
+  auto tip = make_tip(calibrated);
   if (tip == nullptr) throw CannotDo("this robot has no tip to bring to a pose");
   return tip;
 }
 
 /// Calibrated less nominal of the robot's own parameters; what belongs to the instrument is left out.
-std::vector<double> corrections(const Problem& problem, const TipModel& tip) {
-  const VariantSpec& variant = calibrated_variant(problem);
-  const auto model = make_model(problem, variant);
-  const std::vector<CalibratedValue> values = calibrated_values(problem, variant, *model, {});
+std::vector<double> corrections(const ProblemVariant& calibrated, const TipModel& tip) {
+  const auto model = make_model(calibrated);
+  const std::vector<CalibratedValue> values = calibrated_values(calibrated, *model, {});
   std::vector<double> result(tip.parameters().size(), 0.0);
   for (std::size_t i = 0; i < result.size(); ++i)
     // A target may be called as a joint is: the robot's parameters come first.
@@ -84,10 +85,13 @@ std::string in_own_unit(double value, const std::string& unit) {
 class Compensator {
  public:
   Compensator(const Problem& problem, const CompensateOptions& options)
-      : problem_(problem), options_(options), tip_(calibrated_tip(problem)), correction_(corrections(problem, *tip_)) {
-    solver_ = std::make_unique<CommandSolver>(nominal_tip(problem, calibrated_variant(problem), options.elastic_target),
-                                              calibrated_tip(problem), correction_, compensation_coordinates(problem),
-                                              options.solver);
+      : problem_(problem),
+        options_(options),
+        tip_(calibrated_tip(calibrated_variant(problem))),
+        correction_(corrections(calibrated_variant(problem), *tip_)) {
+    solver_ = std::make_unique<CommandSolver>(nominal_tip(calibrated_variant(problem), options.elastic_target),
+                                              calibrated_tip(calibrated_variant(problem)), correction_,
+                                              compensation_coordinates(problem), options.solver);
     result_.variant = problem.parameters->variant.value;
     result_.position_only = options.solver.position_only;
     result_.parallel = solver_->is_parallel();
@@ -215,7 +219,7 @@ class Compensator {
   void add_notes() {
     if (std::ranges::all_of(correction_, [](double c) { return c == 0; }))
       result_.notes.push_back("no parameter of the robot was estimated in variant '" +
-                              calibrated_variant(problem_).name + "': no compensation, poses stay as listed");
+                              calibrated_variant(problem_).spec.name + "': no compensation, poses stay as listed");
     const std::string base = shown_displacement(*tip_, correction_, "base."),
                       tool = shown_displacement(*tip_, correction_, "tool.");
     if (!base.empty() && !options_.solver.with_base)
@@ -277,7 +281,7 @@ void Compensation::settle_motions() {
 }
 
 ArmInverse nominal_inverse(const Problem& problem) {
-  const auto tip = nominal_tip(problem, calibrated_variant(problem), false);
+  const auto tip = nominal_tip(calibrated_variant(problem), false);
   const auto* chain = dynamic_cast<const SerialChain*>(tip.get());
   if (chain == nullptr) throw CannotDo("this robot has no inverse in closed form: it is no arm of six joints");
   return ArmInverse(chain->description());
@@ -405,8 +409,8 @@ std::size_t Compensation::open_lines() const {
 }
 
 std::vector<Coordinate> compensation_coordinates(const Problem& problem) {
-  const auto tip = calibrated_tip(problem);
-  const auto model = make_model(problem, calibrated_variant(problem));
+  const auto tip = calibrated_tip(calibrated_variant(problem));
+  const auto model = make_model(calibrated_variant(problem));
   // Limits of the workspace are of poses to measure; a program goes wherever robot and controller can.
   Problem anywhere = problem;
   anywhere.workspace.limits.clear();

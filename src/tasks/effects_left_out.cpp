@@ -38,12 +38,11 @@ int index_of(const IdentificationModel& model, const std::string& name) {
 
 }  // namespace
 
-std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,
-                                        const IdentificationModel& fitted_model, const VariantColumns& fitted,
-                                        const std::vector<MeasuredPose>& poses, const Fit& fit,
-                                        const ModelMaker& model_of) {
+std::vector<ScoreTest> effects_left_out(const ProblemVariant& variant, const IdentificationModel& fitted_model,
+                                        const VariantColumns& fitted, const std::vector<MeasuredPose>& poses,
+                                        const Fit& fit, const ModelMaker& model_of) {
   if (!fit.scale_known || !fit.converged) return {};
-  const Problem wider = with_eccentricity(problem, fitted_model.coordinates());
+  const Problem wider = with_eccentricity(variant.problem, fitted_model.coordinates());
   const auto model = model_of(wider);
   std::vector<double> correction(model->parameters().size(), 0.0);
   for (std::size_t i = 0; i < fit.correction.size(); ++i)
@@ -66,10 +65,11 @@ std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpe
   }
   for (const VariantSpec& other : wider.variants) {
     // Two automatic ones come down to the same parameters; what they leave out nearly depends on them.
-    if (other.name == variant.name || other.convention != variant.convention || (other.automatic && variant.automatic))
+    if (other.name == variant.spec.name || other.convention != variant.spec.convention ||
+        (other.automatic && variant.spec.automatic))
       continue;
     EffectToTest effect{"variant " + other.name, {}};
-    for (const int i : select_columns(*model, wider, other).selected)
+    for (const int i : select_columns(*model, {wider, other}).selected)
       if (!is_own(i)) effect.parameters.push_back(i);
     if (effect.parameters.size() > 1) effects.push_back(std::move(effect));
   }

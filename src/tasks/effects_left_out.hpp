@@ -15,9 +15,8 @@ using ModelMaker = std::function<std::unique_ptr<IdentificationModel>(const Prob
 /// Score tests of unfitted effects: every other parameter of the robot's catalogue,
 /// eccentricity of every joint of a serial arm, and what other variants of the file estimate beyond this one. Empty for
 /// fits that do not weigh readings by their covariance.
-std::vector<ScoreTest> effects_left_out(const Problem& problem, const VariantSpec& variant,
-                                        const IdentificationModel& fitted_model, const VariantColumns& fitted,
-                                        const std::vector<MeasuredPose>& poses, const Fit& fit,
-                                        const ModelMaker& model_of);
+std::vector<ScoreTest> effects_left_out(const ProblemVariant& variant, const IdentificationModel& fitted_model,
+                                        const VariantColumns& fitted, const std::vector<MeasuredPose>& poses,
+                                        const Fit& fit, const ModelMaker& model_of);
 
 }  // namespace posewright

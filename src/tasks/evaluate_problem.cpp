@@ -36,7 +36,7 @@ class ListEvaluation {
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
     notes_ = study_.notes;
     notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
-    note_parameters(list, problem, notes_);
+    note_parameters(list, parameters_of(problem), notes_);
     poses_.dimension = int(coordinates.size());
     std::vector<int> near;  // ids
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {

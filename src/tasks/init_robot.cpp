@@ -102,10 +102,9 @@ double size_of(const DrawnBody& body) { return box_around(body, Eigen::Isometry3
 
 /// Refuses links of another unit than the arm.
 /// @param largest  of the bodies that move; null: there is none
-void require_size(const DrawnBody* largest, const InitRobot& robot, const Problem& problem) {
+void require_size(const DrawnBody* largest, const InitRobot& robot, const SerialArmSpec& arm) {
   const double size = largest == nullptr ? robot.reach : size_of(*largest);
   if (size > links_smallest * robot.reach && size < links_largest * robot.reach) return;
-  const auto& arm = std::get<SerialArmSpec>(problem.robot);
   int line = 0;
   for (const std::vector<LinkGeometry>& links : {read_urdf_links(arm, {}), read_urdf_visuals(arm, {})})
     for (const LinkGeometry& link : links)
@@ -186,7 +185,7 @@ void add_bodies(InitRobot& robot, const Problem& problem) {
     else if (X_TipFrame.isApprox(b.tip.inverse() * Xb, 1e-9))
       face = std::max(face, extent_at(body, X_TipFrame * body.X_FrameBody, robot.outward));
   }
-  require_size(largest, robot, problem);
+  require_size(largest, robot, std::get<SerialArmSpec>(problem.robot));
   robot.face = face;
   robot.lowest = foot_of(std::move(still), robot.chain.joints.front().X_ParentJoint.translation());
 }

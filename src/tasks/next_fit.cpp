@@ -66,7 +66,7 @@ class FitSoFar {
 
  private:
   void read() {
-    const auto model = make_model(problem_, spec_);
+    const auto model = make_model({problem_, spec_});
     MeasuredData data = parse_measured_data(*options_.text, options_.data, problem_, *model);
     result_.notes = data.notes;
     for (std::size_t k = 0; k < data.poses.size(); ++k) {
@@ -132,7 +132,7 @@ class FitSoFar {
                                  [](const CalibratedParameter& p) { return p.estimated; });
     if (!all && !found.automatic) return;
     const Problem at = at_estimate(problem_, spec_.name, found.values, options_.data);
-    const auto model = make_model(at, spec_);
+    const auto model = make_model({at, spec_});
     Linearisation out;
     Eigen::VectorXd y, off;
     const MeasuredPose& pose = result_.poses[k];
@@ -160,7 +160,7 @@ class FitSoFar {
   }
 
   std::vector<int> columns_of(const IdentificationModel& model, const Calibration& found) const {
-    const VariantColumns all = select_columns(model, problem_, spec_);
+    const VariantColumns all = select_columns(model, {problem_, spec_});
     std::vector<int> columns;
     for (const std::string& name : found.columns)
       for (std::size_t j = 0; j < all.selected.size(); ++j)

@@ -75,13 +75,13 @@ class Draws {
 
   /// The variant, and where it is looked at.
   std::pair<Variant, const Configurations*> of(const VariantSpec& spec) {
-    const std::shared_ptr<const IdentificationModel> model = make_model(problem_, spec);
+    const std::shared_ptr<const IdentificationModel> model = make_model({problem_, spec});
     for (const Drawn& known : drawn_)
       // What a variant estimates says how far its robots may be off that must be readable.
       if (problem_.workspace.readable_for == 0 && known.spec->convention == spec.convention &&
           stand_alike(*known.model, *model))
-        return {place_variant(without_roadmap_, spec, cell_, monitor_), &known.configurations};
-    Variant variant = place_variant(problem_, spec, cell_, monitor_);
+        return {place_variant({without_roadmap_, spec}, cell_, monitor_), &known.configurations};
+    Variant variant = place_variant({problem_, spec}, cell_, monitor_);
     Configurations configurations = sample_configurations(*variant.workspace, sampling_, monitor_);
     drawn_.push_back({&spec, model, std::move(configurations)});
     return {std::move(variant), &drawn_.back().configurations};

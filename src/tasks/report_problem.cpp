@@ -160,7 +160,8 @@ class ReportBuilder {
       report_.notes.push_back(
           "The problem file has changed since the plan was made: figures of the plan are for the old file, recomputed "
           "ones for the new file.");
-    else if (std::string note = parameters_note("The plan", plan_.parameters_file, problem_); !note.empty())
+    else if (std::string note = parameters_note("The plan", plan_.parameters_file, parameters_of(problem_));
+             !note.empty())
       report_.notes.push_back(note + ".");
     else if (!report_.notes.empty())
       report_.notes.push_back("Figures of the plan are for its own poses, recomputed ones for those of the route.");

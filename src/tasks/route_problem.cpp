@@ -62,7 +62,7 @@ class Router {
         monitor_(monitor),
         cell_(make_cell(problem)),
         without_roadmap_(without_roadmap(problem)),
-        variant_(place_variant(without_roadmap_, find_variant(problem, ""), cell_)),
+        variant_(place_variant({without_roadmap_, find_variant(problem, "")}, cell_)),
         space_(problem, cell_) {
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
@@ -102,7 +102,7 @@ class Router {
     route_.plan_file = list.name;
     route_.problem_changed = !list.problem_sha256.empty() && list.problem_sha256 != problem_.sha256;
     route_.notes = list.notes;
-    note_parameters(list, problem_, route_.notes);
+    note_parameters(list, parameters_of(problem_), route_.notes);
     stops_.push_back({0, space_.whole(space_.home()), {}});
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
       if (!list.measured.empty() && list.measured[i]) continue;

@@ -97,7 +97,7 @@ void add_limits_check(const CheckContext& context, Checks& checks) {
 }
 
 void add_coupled_checks(const CheckContext& context, Checks& checks) {
-  for (const CoupledLimits& coupled : coupled_limits(context.model, context.problem)) {
+  for (const CoupledLimits& coupled : coupled_limits(context.model, context.problem.workspace)) {
     std::string reason = "coupled limits of";
     for (const auto& [name, factor] : coupled.factors) reason += " " + name.value;
     for (const char* suffix : {"", second_suffix})

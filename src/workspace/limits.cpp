@@ -62,15 +62,15 @@ void keep_off_own_limits(Coordinate& c, const Coordinate& own) {
   c.upper = upper;
 }
 
-void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits, const Problem& problem) {
+void narrow(std::vector<Coordinate>& coordinates, const CoordinateLimits& limits, const SourcePlace& place) {
   bool found = false;
   for (Coordinate& c : coordinates) {
     // A pair of configurations has every coordinate twice; one line narrows both.
     if (c.choice() || (c.name != limits.name.value && c.name != limits.name.value + second_suffix)) continue;
     found = true;
-    narrow(c, limits, problem.at(limits.name.line));
+    narrow(c, limits, place);
   }
-  if (!found) throw_unknown_coordinate(problem.at(limits.name.line), limits.name.value, coordinates);
+  if (!found) throw_unknown_coordinate(place, limits.name.value, coordinates);
 }
 
 /// A controller's ranges in the robot's own terms: value = sign · (q, less f · q of the second axis) + zero.
@@ -132,10 +132,10 @@ void keep_controller_ranges(std::vector<Coordinate>& coordinates, const Controll
 
 }  // namespace
 
-std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const Problem& problem) {
-  std::vector<CoupledLimits> all = problem.workspace.coupled;
-  if (!problem.workspace.controller) return all;
-  const ControllerRanges ranges(*problem.workspace.controller, model.coordinates());
+std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const WorkspaceSpec& spec) {
+  std::vector<CoupledLimits> all = spec.coupled;
+  if (!spec.controller) return all;
+  const ControllerRanges ranges(*spec.controller, model.coordinates());
   for (std::size_t i = 0; i < ranges.count(); ++i) {
     if (!ranges.is_coupled(i)) continue;
     const auto [lower, upper] = ranges.range(i);
@@ -150,7 +150,8 @@ std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, cons
 
 std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const Problem& problem, const Cell* cell) {
   std::vector<Coordinate> coordinates = model.coordinates();
-  for (const CoordinateLimits& limits : problem.workspace.limits) narrow(coordinates, limits, problem);
+  for (const CoordinateLimits& limits : problem.workspace.limits)
+    narrow(coordinates, limits, problem.at(limits.name.line));
   if (problem.workspace.controller) keep_controller_ranges(coordinates, *problem.workspace.controller);
   for (Coordinate& c : coordinates) {
     if (c.periodic || c.choice()) continue;

@@ -31,7 +31,7 @@ double seconds_of(double way, const Mover& mover) {
 }
 
 void replace(const std::vector<std::pair<Located<std::string>, Measured>>& given, std::vector<Mover>& movers,
-             double Mover::*value, const Problem& problem) {
+             double Mover::*value, const ProblemFile& file) {
   for (const auto& [name, number] : given) {
     std::string names;
     bool found = false;
@@ -39,24 +39,23 @@ void replace(const std::vector<std::pair<Located<std::string>, Measured>>& given
       names += (names.empty() ? "allowed: " : ", ") + mover.name;
       if (mover.name != name.value) continue;
       if (!fits_unit(number.quantity, mover.unit))
-        throw InputError(problem.at(name.line), "the motion of '" + mover.name + "' has the wrong unit",
+        throw InputError(file.at(name.line), "the motion of '" + mover.name + "' has the wrong unit",
                          "a value in " + mover.unit + "/s or " + mover.unit + "/s2 is expected");
       mover.*value = number.value;
       found = true;
     }
-    if (!found) throw InputError(problem.at(name.line), "'" + name.value + "' does not move by itself", names);
+    if (!found) throw InputError(file.at(name.line), "'" + name.value + "' does not move by itself", names);
   }
 }
 
-std::vector<Mover> movers_of(const std::vector<Coordinate>& things, const Problem& problem) {
-  const MotionSpec& spec = problem.workspace.motion;
+std::vector<Mover> movers_of(const std::vector<Coordinate>& things, const MotionSpec& spec, const ProblemFile& file) {
   std::vector<Mover> movers;
   for (const Coordinate& c : things) movers.push_back({c.name, c.unit, c.speed, 0.0});
-  replace(spec.velocity, movers, &Mover::speed, problem);
-  replace(spec.acceleration, movers, &Mover::acceleration, problem);
+  replace(spec.velocity, movers, &Mover::speed, file);
+  replace(spec.acceleration, movers, &Mover::acceleration, file);
   for (Mover& mover : movers) {
     if (!(mover.speed > 0))
-      throw InputError(problem.at(spec.line), "the velocity of '" + mover.name + "' is not known",
+      throw InputError(file.at(spec.line), "the velocity of '" + mover.name + "' is not known",
                        "set workspace: motion: velocity: {" + mover.name + ": …}");
     mover.speed *= spec.speed;
     if (!(mover.acceleration > 0)) mover.acceleration = mover.speed / seconds_to_full_speed;
@@ -70,7 +69,7 @@ class MotionSpace::Implementation {
  public:
   Implementation(const Problem& problem, std::shared_ptr<const Cell> cell_in)
       : cell(std::move(cell_in)),
-        own_model(cell == nullptr ? make_model(problem, find_variant(problem, "")) : nullptr),
+        own_model(cell == nullptr ? make_model({problem, find_variant(problem, "")}) : nullptr),
         model(cell == nullptr ? *own_model : *cell->model),
         all(limits_in_force(model, problem, cell.get())) {
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -84,8 +83,8 @@ class MotionSpace::Implementation {
     const std::vector<Coordinate> inner = proposed_limits(model, problem, all);
     for (const std::size_t i : moving) proposed.push_back(inner[i]);
     checks = motion_checks({model, problem, all, cell.get()});
-    movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem);
-    home = home_configuration(problem, all);
+    movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem.workspace.motion, problem);
+    home = home_configuration(problem.workspace.motion, problem, all);
   }
 
   std::string violation(std::span<const double> configuration) const {

@@ -152,16 +152,16 @@ class Workspace::Implementation {
     reasons = checker->reasons();
     if (cell != nullptr && cell->sight != nullptr && cell->sight->can_propose())
       views = std::make_unique<ViewSampler>(model, *cell->sight, proposed);
-    choose_samplers(problem);
+    choose_samplers(problem.workspace, problem);
   }
 
-  void choose_samplers(const Problem& problem) {
+  void choose_samplers(const WorkspaceSpec& spec, const ProblemFile& file) {
     using Kind = SamplerKind;
-    sampler_shares = problem.workspace.samplers;
+    sampler_shares = spec.samplers;
     samplers_are_given = !sampler_shares.empty();
     const auto asks_for_views = [](const auto& share) { return share.first == Kind::look_at; };
     if (views == nullptr && std::any_of(sampler_shares.begin(), sampler_shares.end(), asks_for_views))
-      throw InputError(problem.at(problem.workspace.samplers_line), "look_at: this instrument has no viewing direction",
+      throw InputError(file.at(spec.samplers_line), "look_at: this instrument has no viewing direction",
                        "cameras have one, and targets with normals and acceptance in line_of_sight");
     if (samplers_are_given) return;
     if (cut_by_cell())

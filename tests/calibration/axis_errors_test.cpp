@@ -87,7 +87,7 @@ TEST_F(ThreeTargets, OfWhichOneIsNotReadSayNothingOfTheTurn) {
 void expect_predicted_as_observed(const std::string& file, int poses) {
   const Problem problem = example(file);
   const auto model = make_model(problem);
-  VariantColumns columns = select_columns(*model, problem, find_variant(problem, ""));
+  VariantColumns columns = select_columns(*model, {problem, find_variant(problem, "")});
   Random random(11, 2);
   std::vector<MeasuredPose> fitted = random_poses(*model, poses, random), others = random_poses(*model, 20, random);
   read_poses_of(*model, std::vector<double>(model->parameters().size()), 0.0, random, fitted);

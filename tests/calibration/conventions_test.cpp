@@ -100,7 +100,7 @@ struct Cart {
   Cart() {
     folder.write("cart.urdf", cart);
     problem = read_problem(folder.write("problem.yaml", cart_problem));
-    model = make_model(problem, problem.variants.front());
+    model = make_model({problem, problem.variants.front()});
     Random random(7, 0);
     poses = random_poses(*model, 15, random);
     std::vector<double> truth(model->parameters().size(), 0.0);

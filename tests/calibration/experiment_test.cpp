@@ -30,7 +30,7 @@ struct ExperimentCase {
   ExperimentCase(const std::string& file, const std::string& variant, int count, int draws) {
     const Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file);
     const VariantSpec& spec = find_variant(problem, variant);
-    model = make_model(problem, spec);
+    model = make_model({problem, spec});
     experiment.model = experiment.truth.model = model.get();
     Random random(3, 1);
     experiment.poses = random_poses(*model, count, random);
@@ -38,7 +38,7 @@ struct ExperimentCase {
       pose.y = Eigen::VectorXd::Zero(Eigen::Index(model->readings().size()));
       experiment.truth.configurations.push_back(pose.q);
     }
-    const VariantColumns all = select_columns(*model, problem, spec);
+    const VariantColumns all = select_columns(*model, {problem, spec});
     IdentifiabilityOptions options;
     options.tiers = all.tiers;
     experiment.columns =

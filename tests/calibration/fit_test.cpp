@@ -32,9 +32,9 @@ struct Case {
   Case(const std::string& file, const std::string& variant, int count) {
     const Problem problem = example(file);
     const VariantSpec& spec = find_variant(problem, variant);
-    model = make_model(problem, spec);
+    model = make_model({problem, spec});
     poses = random_poses(*model, count, random);
-    columns = select_columns(*model, problem, spec);
+    columns = select_columns(*model, {problem, spec});
     for (MeasuredPose& pose : poses) pose.y = Eigen::VectorXd::Zero(Eigen::Index(model->readings().size()));
     IdentifiabilityOptions options;
     options.tiers = columns.tiers;

@@ -16,8 +16,8 @@ namespace {
 TEST(Steps, GoneThroughUntilTheySettleEndAtTheJointEstimate) {
   const Problem problem = example("kr270/compensator.yaml");
   const VariantSpec& spec = find_variant(problem, "stiffness");
-  const auto model = make_model(problem, spec);
-  const VariantColumns columns = select_columns(*model, problem, spec);
+  const auto model = make_model({problem, spec});
+  const VariantColumns columns = select_columns(*model, {problem, spec});
   Random random(4, 9);
   std::vector<MeasuredPose> poses = random_poses(*model, 60, random);
   read_poses_of(*model, random_truth(*model, columns, 0.1, random), 1.0, random, poses);

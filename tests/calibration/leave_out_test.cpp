@@ -59,7 +59,7 @@ class PoseArm {
             "rotation: 0.1 mrad}}\nvariants: {all: {parameters: auto, nuisance: [\"base.*\", \"tool.*\"]}}\n"
             "design: {poses: 20}\n"));
     model_ = make_model(problem_);
-    const VariantColumns all = select_columns(*model_, problem_, problem_.variants.front());
+    const VariantColumns all = select_columns(*model_, {problem_, problem_.variants.front()});
     std::vector<MeasuredPose> many = random_poses(*model_, 300, random_);
     for (MeasuredPose& pose : many) pose.y = Eigen::VectorXd::Zero(6);
     columns_ = determined(*model_, all, many, {}, Prior::none);

@@ -45,8 +45,8 @@ class AgainstCeres : public testing::TestWithParam<Named> {};
 TEST_P(AgainstCeres, SameMinimumSameCovariance) {
   const Problem problem = example(GetParam().file);
   const VariantSpec& spec = find_variant(problem, GetParam().variant);
-  const auto model = make_model(problem, spec);
-  const VariantColumns columns = select_columns(*model, problem, spec);
+  const auto model = make_model({problem, spec});
+  const VariantColumns columns = select_columns(*model, {problem, spec});
   Random random(11, 1);
   std::vector<MeasuredPose> poses = random_poses(*model, GetParam().poses, random);
   read_poses_of(*model, random_truth(*model, columns, 0.2, random), 1.0, random, poses);

@@ -256,10 +256,10 @@ struct Robot {
   Robot(const std::string& file, int count, double off, std::uint64_t seed) {
     const Problem problem = example(file);
     const VariantSpec& spec = find_variant(problem, "");
-    model = make_model(problem, spec);
+    model = make_model({problem, spec});
     Random random(seed, 1);
     poses = random_poses(*model, count, random);
-    columns = select_columns(*model, problem, spec);
+    columns = select_columns(*model, {problem, spec});
     truth = random_truth(*model, columns, off, random);
     read_poses_of(*model, truth, 1.0, random, poses);
   }

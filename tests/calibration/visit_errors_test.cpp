@@ -42,7 +42,7 @@ design: {poses: 20, candidates: 500}
   /// Readings of a robot that is off by tolerances, times `noise` of the model's.
   void read(const IdentificationModel& model, const Problem& told, double noise, std::uint64_t seed) {
     Random random(seed, 0);
-    const VariantColumns columns = select_columns(model, told, told.variants.front());
+    const VariantColumns columns = select_columns(model, {told, told.variants.front()});
     truth_ = random_truth(model, columns, 0.5, random);
     poses_ = random_poses(model, 20, random);
     read_poses_of(model, truth_, noise, random, poses_);
@@ -71,7 +71,7 @@ design: {poses: 20, candidates: 500}
 
 TEST_F(Visits, WhatOfThemIsStatedHardlyChangesTheEstimate) {
   const Problem told = problem("  repeatability: {position: \"0.3 mm\", rotation: \"0.4 mrad\"}");
-  const auto model = make_model(told, told.variants.front());
+  const auto model = make_model({told, told.variants.front()});
   double best = 0;
   std::array<double, 3> found{};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -92,9 +92,9 @@ TEST_F(Visits, WhatOfThemIsStatedHardlyChangesTheEstimate) {
 
 TEST_F(Visits, AreAsLargeAsTheyWereDrawn) {
   const Problem told = problem("  repeatability: {position: \"0.3 mm\", rotation: \"0.4 mrad\"}"), silent = problem("");
-  const auto drawn = make_model(told, told.variants.front()), model = make_model(silent, silent.variants.front());
+  const auto drawn = make_model({told, told.variants.front()}), model = make_model({silent, silent.variants.front()});
   read(*drawn, told, 1.0, 7);
-  const VariantColumns columns = select_columns(*model, silent, silent.variants.front());
+  const VariantColumns columns = select_columns(*model, {silent, silent.variants.front()});
   VariantColumns offsets;
   for (std::size_t j = 0; j < columns.selected.size(); ++j)
     if (columns.parameters[j].role == Role::nuisance || columns.parameters[j].name.ends_with(".offset")) {
@@ -114,7 +114,7 @@ TEST_F(Visits, AreAsLargeAsTheyWereDrawn) {
 
 TEST_F(Visits, AreNotSeenInNoiseThatIsLargerThanStated) {
   const Problem silent = problem("");
-  const auto model = make_model(silent, silent.variants.front());
+  const auto model = make_model({silent, silent.variants.front()});
   int shown = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     read(*model, silent, 3.0, seed);
@@ -128,7 +128,7 @@ TEST_F(Visits, AreNotSeenInNoiseThatIsLargerThanStated) {
 
 TEST_F(Visits, ThatAreStatedTooSmallAreNamedAndKept) {
   const Problem told = problem("  repeatability: {position: \"0.3 mm\", rotation: \"0.4 mrad\"}");
-  read(*make_model(told, told.variants.front()), told, 1.0, 3);
+  read(*make_model({told, told.variants.front()}), told, 1.0, 3);
   const Calibration c = calibrate_problem(problem("  repeatability: {position: \"0.03 mm\", rotation: \"0.4 mrad\"}"),
                                           options_, Monitor{});
   EXPECT_FALSE(c.visits);
@@ -142,9 +142,9 @@ TEST_F(Visits, ThatAreStatedTooSmallAreNamedAndKept) {
 TEST_F(Visits, AreNotToldFromNoiseByOneTarget) {
   targets_ = "A: [0.06, 0.01, 0.03]";
   const Problem told = problem("  repeatability: {position: \"0.3 mm\", rotation: \"0.4 mrad\"}"), silent = problem("");
-  read(*make_model(told, told.variants.front()), told, 1.0, 3);
-  const auto model = make_model(silent, silent.variants.front());
-  const VariantColumns columns = select_columns(*model, silent, silent.variants.front());
+  read(*make_model({told, told.variants.front()}), told, 1.0, 3);
+  const auto model = make_model({silent, silent.variants.front()});
+  const VariantColumns columns = select_columns(*model, {silent, silent.variants.front()});
   VariantColumns place;
   for (std::size_t j = 0; j < columns.selected.size(); ++j)
     if (columns.parameters[j].name.starts_with("base.")) {

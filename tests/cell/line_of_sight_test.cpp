@@ -46,7 +46,7 @@ struct Scenery {
             "}}}\nvariants: {all: {parameters: [\"x.offset\", \"target.*\"], nuisance: []}}\nworkspace:\n" +
             workspace));
     cell = make_cell(problem);
-    site = place_variant(problem, problem.variants.front(), cell);
+    site = place_variant({problem, problem.variants.front()}, cell);
   }
   const LineOfSight& sight() const { return *cell->sight; }
   std::string reason(const std::vector<double>& q) const {

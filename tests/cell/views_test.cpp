@@ -32,7 +32,7 @@ struct Site {
                               "variants: {{all: {{parameters: auto}}}}\nworkspace:\n  {}\n",
                               POSEWRIGHT_SOURCE_DIR, measurement, workspace)));
     cell = make_cell(problem);
-    variant = place_variant(problem, problem.variants.front(), cell);
+    variant = place_variant({problem, problem.variants.front()}, cell);
   }
   std::vector<double> anywhere(Random& random) const {
     std::vector<double> q;

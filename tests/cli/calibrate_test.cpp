@@ -26,7 +26,7 @@ class CalibrateCommand : public testing::Test {
     const auto model = make_model(problem);
     Random random(2, 1);
     std::vector<MeasuredPose> poses = random_poses(*model, 40, random);
-    const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+    const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
     read_poses_of(*model, random_truth(*model, columns, 0.3, random), 1.0, random, poses);
     for (const std::size_t k : {4, 11}) poses[k].y[1] += 10e-3;
     folder_.write("data.csv", measured_data_csv(*model, poses));

@@ -58,7 +58,7 @@ struct Measurement {
                         ", tip: tip}\nmeasurement: {type: points, targets: {P1: [0.1, 0, 0], P2: [0, 0.1, 0]}, "
                         "device: {type: isotropic, noise: 0.1 mm}}\nvariants: {all: {parameters: auto}}\n",
                     "/proc/self/p.yaml");
-  std::unique_ptr<IdentificationModel> model = make_model(problem, problem.variants.front());
+  std::unique_ptr<IdentificationModel> model = make_model({problem, problem.variants.front()});
 };
 
 const Measurement& measurement() {

@@ -19,7 +19,7 @@ inline const double pi = std::acos(-1.0);
 class DrawnPositioner : public testing::Test {
  protected:
   DrawnPositioner() : problem_(example("real_data/rosi_positioner/problem.yaml")), model_(make_model(problem_)) {
-    VariantColumns all = select_columns(*model_, problem_, find_variant(problem_, "everything"));
+    VariantColumns all = select_columns(*model_, {problem_, find_variant(problem_, "everything")});
     std::vector<int> kept;
     for (int j = 0; j < int(all.parameters.size()); ++j)
       if (const std::string& name = all.parameters[std::size_t(j)].name;

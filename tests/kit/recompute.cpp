@@ -13,8 +13,8 @@ namespace posewright {
 double recomputed_log_det(const Problem& problem, const std::string& variant,
                           const std::vector<std::vector<double>>& poses) {
   const VariantSpec& spec = find_variant(problem, variant);
-  const auto model = make_model(problem, spec);
-  const VariantColumns columns = select_columns(*model, problem, spec);
+  const auto model = make_model({problem, spec});
+  const VariantColumns columns = select_columns(*model, {problem, spec});
   const auto m = Eigen::Index(columns.selected.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(m, m);
   Linearisation scratch;
@@ -32,7 +32,7 @@ double recomputed_log_det(const Problem& problem, const std::string& variant,
 }
 
 std::vector<std::vector<double>> configurations_of(const Problem& problem, const Plan& plan) {
-  const auto model = make_model(problem, find_variant(problem, plan.variant));
+  const auto model = make_model({problem, find_variant(problem, plan.variant)});
   std::vector<std::vector<double>> poses;
   for (const PlannedPose& pose : plan.poses) {
     std::vector<double> q;

@@ -24,8 +24,8 @@ struct VirtualFile {
 
   VirtualFile(const std::string& file, int count, double noise = 1.0) : problem(example(file)) {
     const VariantSpec& spec = find_variant(problem, "");
-    model = make_model(problem, spec);
-    columns = select_columns(*model, problem, spec);
+    model = make_model({problem, spec});
+    columns = select_columns(*model, {problem, spec});
     poses = random_poses(*model, count, random);
     truth = random_truth(*model, columns, 0.3, random);
     read_poses_of(*model, truth, noise, random, poses);

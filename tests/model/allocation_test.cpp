@@ -31,8 +31,8 @@ namespace {
 long allocations_of_blocks(const std::string& example) {
   const Problem problem = read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples" / example);
   const VariantSpec& variant = problem.variants.front();
-  const auto model = make_model(problem, variant);
-  const VariantColumns columns = select_columns(*model, problem, variant);
+  const auto model = make_model({problem, variant});
+  const VariantColumns columns = select_columns(*model, {problem, variant});
   const int stride = (int(columns.selected.size()) + 7) / 8 * 8;
   std::vector<double> out(std::size_t(model->block_rows(columns.selected) * stride)), q;
   for (const Coordinate& c : model->coordinates())
@@ -48,11 +48,11 @@ long allocations_of_blocks(const std::string& example) {
 long allocations_of_commands() {
   const Problem problem = read_problem(std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples/kr270/problem.yaml");
   const VariantSpec& variant = problem.variants.front();
-  auto arm = make_tip(problem, variant);
+  auto arm = make_tip({problem, variant});
   std::vector<double> correction(arm->parameters().size(), 1e-4), q, command(6), change(6);
   const std::vector<Coordinate> limits = arm->coordinates();
   for (const Coordinate& c : limits) q.push_back(0.45 * c.lower + 0.55 * c.upper);
-  const CommandSolver solver(make_tip(problem, variant), std::move(arm), correction, limits, {});
+  const CommandSolver solver(make_tip({problem, variant}), std::move(arm), correction, limits, {});
   const auto reached = [&] { return solver.solve(q, command, change).outcome == CommandSolver::Outcome::reached; };
   for (int i = 0; i < 2; ++i) EXPECT_TRUE(reached());
   EXPECT_NE(command, q);

@@ -43,7 +43,7 @@ class ApplyParameters : public testing::Test {
   double nominal(const std::string& variant, const std::string& name) const {
     for (const VariantSpec& v : problem.variants) {
       if (v.name != variant) continue;
-      const auto model = make_model(problem, v);
+      const auto model = make_model({problem, v});
       for (const Parameter& p : model->parameters())
         if (p.name == name) return p.nominal;
     }
@@ -90,10 +90,10 @@ TEST_F(ApplyParameters, TheVariantAskedForTakesThemAsItsOwn) {
 TEST_F(ApplyParameters, CorrectionsAreThoseFromTheRobotsOwnValues) {
   apply_parameters(problem, parameters("j1.offset: {value: 0.5}"), {});
   const VariantSpec& few = problem.variants.front();
-  const auto model = make_model(problem, few);
+  const auto model = make_model({problem, few});
   std::vector<double> correction(model->parameters().size(), 0.0);
   correction[0] = 0.125;
-  for (const CalibratedValue& v : calibrated_values(problem, few, *model, correction)) {
+  for (const CalibratedValue& v : calibrated_values({problem, few}, *model, correction)) {
     const double expected = v.name == "base.x" ? 0.125 : v.name == "j1.offset" ? 0.5 : v.name == "j1.x" ? 0.001 : 0.0;
     EXPECT_NEAR(v.correction(), expected, 1e-16) << v.name;
   }

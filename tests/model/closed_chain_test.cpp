@@ -334,7 +334,7 @@ TEST(SixLegs, DeformedPlatformNeedsOtherActuatorsAndStillClosesItsLoops) {
   Problem problem = telescope();
   VariantSpec variant = problem.variants.front();
   variant.nominal = {{{"K_11", 0}, 0.016, Quantity::number}, {{"K_12", 0}, -0.5, Quantity::number}};
-  const auto rigid = make_model(problem), deforming = make_model(problem, variant);
+  const auto rigid = make_model(problem), deforming = make_model({problem, variant});
   const std::vector<double> q = {1e-3, -5e-4, 1e-4, 2e-3, -1e-3, 3e-3};
   std::vector<double> a(6), b(6);
   ASSERT_TRUE(rigid->actuator_values(q, a));

@@ -235,10 +235,10 @@ TEST(Compensator, UnloadedArmStandsStraightUnlessTheTorqueIsAskedFor) {
 TEST(Compensator, WarningNamesTheDeflectionThatTheTorqueAloneCauses) {
   Problem problem = example("kr270/compensator.yaml");
   const std::vector<Coordinate> coordinates = make_model(problem)->coordinates();
-  EXPECT_EQ(compensator_warning(problem, coordinates), "");
+  EXPECT_EQ(compensator_warning(problem.robot, coordinates), "");
   std::get<SerialArmSpec>(problem.robot).elastostatic->compensator->torque = true;
   // 5.85 degrees: the spring's torque over the joint's equivalent stiffness, by hand over −140° … 0°.
-  EXPECT_THAT(compensator_warning(problem, coordinates), testing::HasSubstr("joint_a2 by up to 5.8"));
+  EXPECT_THAT(compensator_warning(problem.robot, coordinates), testing::HasSubstr("joint_a2 by up to 5.8"));
 }
 
 TEST(LoadDifference, RowsAreThoseOfLoadedLessUnloadedWithTwiceTheReadingNoise) {

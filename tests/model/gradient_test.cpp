@@ -126,7 +126,7 @@ class GradientOf : public testing::TestWithParam<const char*> {};
 TEST_P(GradientOf, ProblemIsThatOfItsWhitenedBlocks) {
   const Problem problem = example(GetParam());
   for (const VariantSpec& variant : problem.variants) {
-    const auto model = make_model(problem, variant);
+    const auto model = make_model({problem, variant});
     EXPECT_LT(worst_difference(*model, 5), tolerance) << variant.name;
   }
 }

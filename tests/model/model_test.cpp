@@ -65,7 +65,7 @@ TEST(Whitening, EncoderNoiseEntersThroughTheJointTwists) {
 TEST(Variant, GlobsNamesRolesAndTolerancesAreResolved) {
   const Problem problem = example("kr270/problem.yaml");
   const auto model = make_model(problem);
-  const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+  const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
   EXPECT_EQ(columns.nuisance, 15);
   ASSERT_EQ(columns.parameters.size(), 33U);
   EXPECT_EQ(columns.parameters[0].role, Role::nuisance);
@@ -77,7 +77,7 @@ TEST(Variant, GlobsNamesRolesAndTolerancesAreResolved) {
 std::string complaint(Problem problem, const std::function<void(VariantSpec&)>& change) {
   change(problem.variants.front());
   try {
-    select_columns(*make_model(problem), problem, problem.variants.front());
+    select_columns(*make_model(problem), {problem, problem.variants.front()});
     return "accepted";
   } catch (const InputError& error) {
     return error.what();

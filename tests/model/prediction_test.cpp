@@ -63,7 +63,7 @@ class Predictions : public testing::TestWithParam<std::string> {};
 TEST_P(Predictions, ChangeAsTheLinearisationSays) {
   const Problem problem = example(GetParam());
   for (const VariantSpec& variant : problem.variants) {
-    const auto model = make_model(problem, variant);
+    const auto model = make_model({problem, variant});
     ASSERT_EQ(int(model->readings().size()), model->rows());
     Random random(7, 1);
     int seen = 0;
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Predictions, testing::ValuesIn(example_files()),
 
 TEST(Prediction, AParallelRobotSettlesWhereItsActuatorsHoldIt) {
   const Problem problem = example("telescope/problem.yaml");
-  const auto model = make_model(problem, problem.variants.front());
+  const auto model = make_model({problem, problem.variants.front()});
   // A longer first leg pushes the platform away; the readings say so although the actuators are where they were.
   std::vector<double> correction(model->parameters().size(), 0.0);
   const auto at = std::find_if(model->parameters().begin(), model->parameters().end(),
@@ -103,7 +103,7 @@ TEST(Prediction, AParallelRobotSettlesWhereItsActuatorsHoldIt) {
 
 TEST(Prediction, OrientationsDifferByTheRotationBetweenThem) {
   const Problem problem = example("instruments/photogrammetry.yaml");
-  const auto model = make_model(problem, problem.variants.front());
+  const auto model = make_model({problem, problem.variants.front()});
   const Eigen::AngleAxisd a(3.0, Eigen::Vector3d::UnitX()), b(0.3, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd sum(b * a);  // 3.3 rad about x: the other way round it is 2π − 3.3
   Eigen::VectorXd measured(6), predicted(6), out;

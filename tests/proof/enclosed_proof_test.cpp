@@ -68,7 +68,7 @@ struct RandomPlatform {
                         "[{2} deg, {3} deg], rz: [{2} deg, {3} deg]}}}}\n",
                         -length, length, -angle, angle)));
     model = make_model(problem);
-    const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+    const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
     selected = columns.selected;
     workspace = std::make_unique<Workspace>(*model, problem, nullptr);
     const auto m = Eigen::Index(selected.size());

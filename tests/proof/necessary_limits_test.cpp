@@ -45,7 +45,7 @@ struct Site {
         "0.02], C: [0.1, 0, 0.2]}, device: {type: laser_tracker, stations: {S: [2, 0.4, 0.6]}}}\nvariants: {all: "
         "{parameters: [q2.offset]}}\nworkspace:\n  joints: {margin: 0" +
             workspace));
-    variant = place_variant(problem, problem.variants.front(), make_cell(problem));
+    variant = place_variant({problem, problem.variants.front()}, make_cell(problem));
   }
 
   /// Each limit at q, by its definition.

@@ -219,7 +219,7 @@ struct RandomArm {
       if (problem.workspace.line_of_sight) cell = make_cell(problem);
     }
     workspace = std::make_unique<Workspace>(*model, problem, cell);
-    selected = select_columns(*model, problem, problem.variants.front()).selected;
+    selected = select_columns(*model, {problem, problem.variants.front()}).selected;
     const auto m = Eigen::Index(selected.size());
     // Columns of very different size, as units and tolerances make them: rounding has its chance.
     Eigen::VectorXd size(m);
@@ -423,7 +423,7 @@ TEST_F(WorkspaceProofs, TakesWhatRefutesItIntoTheWeights) {
   const Problem problem = arm();
   const auto model = make_model(problem);
   const Workspace workspace(*model, problem);
-  const std::vector<int> selected = select_columns(*model, problem, problem.variants.front()).selected;
+  const std::vector<int> selected = select_columns(*model, {problem, problem.variants.front()}).selected;
   const int m = int(selected.size()), rows = model->block_rows(selected);
   Configurations candidates;
   candidates.dimension = 2;

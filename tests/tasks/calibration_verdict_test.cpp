@@ -156,7 +156,7 @@ design: {poses: 20, candidates: 500}
     model = make_model(problem);
   }
   Calibration calibrated(Random& random, Prior prior) {
-    const VariantColumns columns = select_columns(*model, problem, problem.variants.front());
+    const VariantColumns columns = select_columns(*model, {problem, problem.variants.front()});
     std::vector<MeasuredPose> poses = random_poses(*model, 20, random);
     std::vector<double> truth = random_truth(*model, columns, 0.3, random);
     for (std::size_t i = 0; i < truth.size(); ++i)
@@ -216,7 +216,7 @@ void expect_given(const Calibration& c, const std::vector<std::string>& names, c
 TEST(Verdict, AWideToleranceThatWasStatedDoesNotExcuseALostTarget) {
   if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
   const Problem problem = read_problem(cases / "coupling/told.yaml");  // states 1 for the coupling
-  const auto model = make_model(problem, problem.variants.front());
+  const auto model = make_model({problem, problem.variants.front()});
   std::vector<MeasuredPose> poses = read_measured_data(cases / "coupling/controller.csv", problem, *model).poses;
   poses[4].y.setZero();
   const TemporaryFolder folder;
@@ -251,7 +251,7 @@ measurement: {type: pose, device: {type: isotropic, noise: {position: "1 mm", ro
 variants: {hand_eye: {parameters: ["base.*"], nuisance: ["tool.*"]}}
 design: {poses: 20, candidates: 500}
 )"));
-  const auto model = make_model(problem, problem.variants.front());
+  const auto model = make_model({problem, problem.variants.front()});
   Random random(11, 0);
   for (int draw = 0; draw < 10; ++draw) {
     std::vector<MeasuredPose> poses = random_poses(*model, 20, random);

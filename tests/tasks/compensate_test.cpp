@@ -33,20 +33,21 @@ constexpr double micro = 1e-6;  // m or rad: what a commanded pose may miss
 std::vector<EstimatedValue> random_values(const Problem& problem, const std::string& free, double share,
                                           std::uint64_t seed) {
   const VariantSpec& variant = problem.variants.front();
-  const auto model = make_model(problem, variant);
+  const auto model = make_model({problem, variant});
   Random random(seed, 0);
   std::vector<double> correction;
   for (const Parameter& p : model->parameters())
     correction.push_back(std::regex_match(p.name, std::regex(free)) ? share * random.uniform(-1, 1) * p.tolerance
                                                                     : 0.0);
   std::vector<EstimatedValue> values;
-  for (const CalibratedValue& v : calibrated_values(problem, variant, *model, correction)) values.push_back({v, {}});
+  for (const CalibratedValue& v : calibrated_values({problem, variant}, *model, correction)) values.push_back({v, {}});
   return values;
 }
 
 Problem calibrated(Problem problem, const std::vector<EstimatedValue>& values) {
   apply_parameters(
-      problem, parse_calibrated_parameters(parameters_yaml(problem, problem.variants.front(), values), "cal.yaml"), {});
+      problem, parse_calibrated_parameters(parameters_yaml({problem, problem.variants.front()}, values), "cal.yaml"),
+      {});
   return problem;
 }
 

@@ -65,9 +65,9 @@ int index_of(const IdentificationModel& model, const std::string& name) {
 TEST(JointEffects, ReadingsAreThoseOfThePlainArmWithTheJointTurnedByHand) {
   for (const char* variant : {"geometric", "denavit_hartenberg"}) {
     const Problem plain = example("kr270/problem.yaml");
-    const auto without = make_model(plain, find_variant(plain, variant));
+    const auto without = make_model({plain, find_variant(plain, variant)});
     const Problem effects = with_effects(plain, {all_effects("joint_a2", "joint_a1")});
-    const auto with = make_model(effects, find_variant(effects, variant));
+    const auto with = make_model({effects, find_variant(effects, variant)});
     ASSERT_EQ(with->parameters().size(), without->parameters().size() + names.size());
     const std::vector<double> c = {2e-3, -1e-3, 5e-4, 7e-4, 3e-4, -2e-4, 1e-3, 4e-4, 2e-5};
     std::vector<double> correction(with->parameters().size(), 0.0);

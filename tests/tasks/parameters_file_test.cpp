@@ -44,17 +44,17 @@ TEST(ParametersFile, ReadBackGivesTheVerySameModel) {
   for (const char* name : {"kr270/problem.yaml", "kr270/elastostatic.yaml", "telescope/problem.yaml"}) {
     Problem problem = read_problem(examples / name);
     const VariantSpec variant = problem.variants.front();
-    const auto model = make_model(problem, variant);
+    const auto model = make_model({problem, variant});
     Random random(1, 0);
     std::vector<double> correction;
     for (const Parameter& p : model->parameters()) correction.push_back(random.uniform(-1, 1) * p.tolerance);
     std::vector<EstimatedValue> values;
-    for (const CalibratedValue& v : calibrated_values(problem, variant, *model, correction))
+    for (const CalibratedValue& v : calibrated_values({problem, variant}, *model, correction))
       values.push_back({v, 1e-5});
-    const std::string text = parameters_yaml(problem, variant, values);
-    EXPECT_EQ(text, parameters_yaml(problem, variant, values));
+    const std::string text = parameters_yaml({problem, variant}, values);
+    EXPECT_EQ(text, parameters_yaml({problem, variant}, values));
     apply_parameters(problem, read_calibrated_parameters(folder.write("cal.yaml", text)), {});
-    const auto again = make_model(problem, variant);
+    const auto again = make_model({problem, variant});
     for (std::size_t i = 0; i < correction.size(); ++i)
       ASSERT_EQ(again->parameters()[i].nominal, values[i].value.value) << values[i].value.name;
   }
@@ -63,10 +63,9 @@ TEST(ParametersFile, ReadBackGivesTheVerySameModel) {
 TEST(ParametersFile, HasWhatWasEstimatedOrIsNotNominalAndQuotesWhatYamlWouldMisread) {
   const Problem problem = read_problem(examples / "kr270/problem.yaml");
   const VariantSpec& variant = problem.variants.front();
-  const std::string text = parameters_yaml(problem, variant,
-                                           {{{"joint_a1.offset", "rad", 0, 0.000123}, 1.2e-5},
-                                            {{"b & \"c\".x", "m", 0.25, 0.5}, {}},
-                                            {{"a.x", "m", 1, 1}, {}}});
+  const std::string text = parameters_yaml({problem, variant}, {{{"joint_a1.offset", "rad", 0, 0.000123}, 1.2e-5},
+                                                                {{"b & \"c\".x", "m", 0.25, 0.5}, {}},
+                                                                {{"a.x", "m", 1, 1}, {}}});
   EXPECT_THAT(text, HasSubstr("posewright_parameters: 1\nvariant: "));
   EXPECT_THAT(text, testing::EndsWith(
                         "parameters:\n  joint_a1.offset: {value: 0.000123, unit: rad, nominal: 0, sigma: 1.2e-05}\n"
@@ -74,7 +73,7 @@ TEST(ParametersFile, HasWhatWasEstimatedOrIsNotNominalAndQuotesWhatYamlWouldMisr
   const CalibratedParameters read = parse_calibrated_parameters(text, "cal.yaml");
   EXPECT_EQ(read.variant.value, variant.name);
   EXPECT_EQ(read.values[1].name.value, "b & \"c\".x");
-  EXPECT_TRUE(parse_calibrated_parameters(parameters_yaml(problem, variant, {}), "cal.yaml").values.empty());
+  EXPECT_TRUE(parse_calibrated_parameters(parameters_yaml({problem, variant}, {}), "cal.yaml").values.empty());
 }
 
 const char* const velocities = "workspace: {motion: {velocity: {leg_1.rho: 90 deg/s, leg_2.rho: 90 deg/s}}}\n";
@@ -87,11 +86,11 @@ class PlannedAtParameters : public testing::Test {
         calibrated(nominal) {
     const VariantSpec& variant = nominal.variants.front();
     std::vector<EstimatedValue> values;
-    for (CalibratedValue v : calibrated_values(nominal, variant, *make_model(nominal), {})) {
+    for (CalibratedValue v : calibrated_values({nominal, variant}, *make_model(nominal), {})) {
       if (v.name.ends_with(".distal")) v.value -= 1e-4;
       values.push_back({v, {}});
     }
-    file = folder.write("cal.yaml", parameters_yaml(nominal, variant, values));
+    file = folder.write("cal.yaml", parameters_yaml({nominal, variant}, values));
     apply_parameters(calibrated, read_calibrated_parameters(file), {});
   }
   TemporaryFolder folder;

@@ -255,7 +255,7 @@ TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRo
   const DrawnRobots robots(study, study.configurations, Monitor());
   const std::vector<double> correction = robots.correction(0);
   // A second robot whose nominal values are those of the drawn one; its platform is found from the actuators.
-  Variant other = place_variant(problem, *study.first().spec, study.cell);
+  Variant other = place_variant({problem, *study.first().spec}, study.cell);
   for (std::size_t i = 0; i < correction.size(); ++i)
     if (correction[i] != 0) other.model->set_nominal(int(i), other.model->parameters()[i].nominal + correction[i]);
   const BlockArray drawn = robots.blocks(0, study.configurations);

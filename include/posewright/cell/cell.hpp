@@ -34,6 +34,7 @@ std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_r
 /// Home of the robot: motion.home; where it says nothing, zero or the limit nearest to it; first of every choice.
 /// @param coordinates  with the limits in force
 /// Throws InputError for names that are not coordinates and values beyond the limits.
-std::vector<double> home_configuration(const Problem& problem, const std::vector<Coordinate>& coordinates);
+std::vector<double> home_configuration(const MotionSpec& motion, const ProblemFile& file,
+                                       const std::vector<Coordinate>& coordinates);
 
 }  // namespace posewright

@@ -92,7 +92,7 @@ class Drawing {
   void add_bodies(const Problem& problem);
   void keep_to_budget();
   void add_chain(const ChainDescription& chain);
-  void add_instrument(const Problem& problem, const Cell& cell);
+  void add_instrument(const MeasurementSpec& measurement, const Cell& cell);
 
   std::shared_ptr<const IdentificationModel> model_;
   std::unique_ptr<BodyFrames> arm_;  // of a serial arm

@@ -93,7 +93,7 @@ class LineOfSight : public Visibility {
   LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision);
   void add_station(const InstrumentView::Place& place);
   void add_points(const InstrumentView& view);
-  void add_normals(const Problem& problem);
+  void add_normals(const ProblemFile& file);
   bool seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
                  bool past_bodies) const;
   /// Cache of this thread for q: a block and the checks use the same q one after the other.

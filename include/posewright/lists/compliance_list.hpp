@@ -19,6 +19,6 @@ ListedCompliances read_compliances(const std::string& bytes, const std::string& 
 
 /// The constants of the problem's compensator (key `compensator_from`) from such a file. Throws InputError if the
 /// problem has none, CannotDo as compensator_from_compliances().
-CompensatorConstants compensator_of_list(const Problem& problem, const std::filesystem::path& file);
+CompensatorConstants compensator_of_list(const RobotSpec& robot, const std::filesystem::path& file);
 
 }  // namespace posewright

@@ -23,9 +23,9 @@ ParametersFile parameters_of(const Problem& problem);
 ParametersFile parameters_of_plan(const std::filesystem::path& plan);
 
 /// Note for the user if the plan `name` was made at other parameters than the problem's; else empty.
-std::string parameters_note(const std::string& name, const ParametersFile& made_at, const Problem& problem);
+std::string parameters_note(const std::string& name, const ParametersFile& made_at, const ParametersFile& now);
 /// Variant for a list, added to `notes`; a list without a problem gives no note.
-void note_parameters(const PoseList& list, const Problem& problem, std::vector<std::string>& notes);
+void note_parameters(const PoseList& list, const ParametersFile& now, std::vector<std::string>& notes);
 
 /// A calibrated parameter and its 1σ, SI, where it was estimated.
 struct EstimatedValue {
@@ -35,8 +35,7 @@ struct EstimatedValue {
 
 /// Text of a parameters file (docs/parameters-file.md): all that were estimated or are not nominal, values to the last
 /// digit. Equal input gives equal bytes.
-std::string parameters_yaml(const Problem& problem, const VariantSpec& variant,
-                            const std::vector<EstimatedValue>& values,
+std::string parameters_yaml(const ProblemVariant& variant, const std::vector<EstimatedValue>& values,
                             const std::optional<CalibratedEffect>& unmodelled = std::nullopt);
 
 }  // namespace posewright

@@ -18,7 +18,8 @@ struct PlatformPoints {
 };
 
 /// Empty for robots without six legs and instruments without points of the platform.
-std::optional<PlatformPoints> platform_points(const Problem& problem, const IdentificationModel& model);
+std::optional<PlatformPoints> platform_points(const RobotSpec& robot, const MeasurementSpec& measurement,
+                                              const IdentificationModel& model);
 
 /// Actuator positions less those of the nominal robot at the reference. Empty if q is out of reach.
 Eigen::VectorXd actuator_moves(const IdentificationModel& model, const std::vector<double>& q);

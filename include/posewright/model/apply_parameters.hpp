@@ -18,7 +18,7 @@ std::vector<std::string> apply_parameters(Problem& problem, CalibratedParameters
                                           const std::vector<std::string>& asked);
 
 /// The values that a variant takes; empty: none.
-std::vector<ParameterEntry> calibrated_entries(const Problem& problem, const VariantSpec& variant);
+std::vector<ParameterEntry> calibrated_entries(const ProblemVariant& variant);
 
 /// "frames", "dh" or "mdh".
 std::string convention_name(VariantSpec::Convention convention);

@@ -23,8 +23,8 @@ struct CalibratedValue {
 /// Every parameter of a variant's model at its nominal values in force plus `correction`.
 /// @param model       of this problem and variant
 /// @param correction  ξ − nominal for every parameter, or empty for all zero
-std::vector<CalibratedValue> calibrated_values(const Problem& problem, const VariantSpec& variant,
-                                               const IdentificationModel& model, std::span<const double> correction);
+std::vector<CalibratedValue> calibrated_values(const ProblemVariant& variant, const IdentificationModel& model,
+                                               std::span<const double> correction);
 
 /// Displacement behind a frame of a chain by corrections, with their parameters.
 struct FrameCorrection {

@@ -15,7 +15,7 @@ bool is_numbered_place(std::string_view name);
 
 /// Deflection of the unloaded joint by the torque of its compensator (`effect: torque`), if that is not a small
 /// angle in which springs are linear: one line for the user. Empty if nothing is to be said.
-std::string compensator_warning(const Problem& problem, const std::vector<Coordinate>& coordinates);
+std::string compensator_warning(const RobotSpec& robot, const std::vector<Coordinate>& coordinates);
 
 /// Serial arm whose joints give way (virtual joint springs, theory.md eq. (11)): each joint stands deflected by δ =
 /// k·τ, with the torque τ = J_qᵀ w of the load case and, where asked, of the links' weight. τ is that of the

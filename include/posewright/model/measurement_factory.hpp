@@ -12,6 +12,7 @@ namespace posewright {
 std::unique_ptr<MeasurementModel> make_measurement(const MeasurementSpec& spec);
 
 /// The robot as the problem's instrument sees it. Throws CannotDo if the robot lacks the measured quantity.
-std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const Problem& problem);
+std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, const MeasurementSpec& measurement,
+                                             const ProblemFile& file);
 
 }  // namespace posewright

@@ -10,7 +10,7 @@ namespace posewright {
 
 /// Robot and instrument of a problem file as one variant sees them: its convention of parameters, its nominal values.
 /// Throws InputError (URDF, limits, names) or CannotDo (instrument, robot and variant do not fit).
-std::unique_ptr<IdentificationModel> make_model(const Problem& problem, const VariantSpec& variant);
+std::unique_ptr<IdentificationModel> make_model(const ProblemVariant& variant);
 
 /// Overload for the problem's first variant.
 std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
@@ -19,6 +19,6 @@ std::unique_ptr<IdentificationModel> make_model(const Problem& problem);
 Problem without_pose_errors(Problem problem);
 
 /// The robot alone; null for one that carries no single tip. Throws as make_model.
-std::unique_ptr<TipModel> make_tip(const Problem& problem, const VariantSpec& variant);
+std::unique_ptr<TipModel> make_tip(const ProblemVariant& variant);
 
 }  // namespace posewright

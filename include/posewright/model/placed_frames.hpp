@@ -21,7 +21,6 @@ struct PlacedFrame {
 /// parameters put them.
 /// @param values  of the variant's whole model (calibrated_values())
 /// Throws InputError where the robot's URDF can no longer be read.
-std::vector<PlacedFrame> placed_frames(const Problem& problem, const VariantSpec& variant,
-                                       const std::vector<CalibratedValue>& values);
+std::vector<PlacedFrame> placed_frames(const ProblemVariant& variant, const std::vector<CalibratedValue>& values);
 
 }  // namespace posewright

@@ -26,18 +26,18 @@ struct VariantColumns {
 
 /// Resolves names, globs, roles and tolerances of a variant. Throws InputError for a pattern that matches nothing
 /// (naming some that exist) and for a tolerance in a unit that none of the matched parameters has.
-VariantColumns select_columns(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+VariantColumns select_columns(const IdentificationModel& model, const ProblemVariant& variant);
 
 /// Parameters under `fixed` of the variant, as indices of the catalogue.
-std::vector<int> fixed_parameters(const IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+std::vector<int> fixed_parameters(const IdentificationModel& model, const ProblemVariant& variant);
 
 /// Sets the nominal values that the variant names. Throws InputError as select_columns() does.
-void apply_nominal(IdentificationModel& model, const Problem& problem, const VariantSpec& variant);
+void apply_nominal(IdentificationModel& model, const ProblemVariant& variant);
 
 /// For every column the value of the last pattern that matches its name, if any. Throws InputError as
 /// select_columns() does.
 std::vector<std::optional<double>> values_by_pattern(const VariantColumns& columns,
-                                                     const std::vector<PatternValue>& values, const Problem& problem,
+                                                     const std::vector<PatternValue>& values, const ProblemFile& file,
                                                      const char* what);
 
 /// Columns whose name this shell-style pattern with * and ? matches, ascending.

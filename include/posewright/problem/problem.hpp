@@ -72,8 +72,23 @@ struct WorkspaceSpec {
   double uncalibrated = 0.0;  ///< margins grow by this number of σ of the tolerances' effect; 0: they don't
 };
 
+/// Source of a problem: its file, places of values in it, folders of packages.
+struct ProblemFile {
+  std::filesystem::path file;
+  std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
+  /// Folders of package://NAME/… for URDF and meshes, besides those of find_package().
+  Packages packages;
+  /// Names of the options that changed the problem, as set() (problem/design_keys.hpp) has them.
+  std::vector<std::string> edits;
+
+  /// Place of a value by its line; -1, -2, …: of the first, second, … edit.
+  SourcePlace at(int line) const {
+    return line < 0 ? SourcePlace{edits[std::size_t(-line) - 1]} : SourcePlace{file.string(), line};
+  }
+};
+
 /// A whole problem file.
-struct Problem {
+struct Problem : ProblemFile {
   // Out of line: copying a problem is much code, and many sources hold one.
   Problem();
   Problem(const Problem&);
@@ -82,26 +97,20 @@ struct Problem {
   Problem& operator=(Problem&&) noexcept;
   ~Problem();
 
-  std::filesystem::path file;
-  std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
   RobotSpec robot;
   int robot_line = 0;
   MeasurementSpec measurement;
   std::vector<VariantSpec> variants;  ///< at least one
   WorkspaceSpec workspace;
   DesignSpec design;
-  /// Folders of package://NAME/… for URDF and meshes, besides those of find_package().
-  Packages packages;
   /// Calibrated parameters; put here by apply_parameters (model/apply_parameters.hpp).
   std::optional<CalibratedParameters> parameters;
+};
 
-  /// Names of the options that changed the problem, as set() (problem/design_keys.hpp) has them.
-  std::vector<std::string> edits;
-
-  /// Place of a value by its line; -1, -2, …: of the first, second, … edit.
-  SourcePlace at(int line) const {
-    return line < 0 ? SourcePlace{edits[std::size_t(-line) - 1]} : SourcePlace{file.string(), line};
-  }
+/// One variant of a problem: what a model is made of. Both must outlive it.
+struct ProblemVariant {
+  const Problem& problem;
+  const VariantSpec& spec;
 };
 
 }  // namespace posewright

@@ -46,7 +46,7 @@ struct Variant {
 
 /// Robot and workspace of one variant, as the cell lets it be; no columns yet. Blocks of the model count visible
 /// targets only, if line of sight is asked for.
-Variant place_variant(const Problem& problem, const VariantSpec& spec, const std::shared_ptr<const Cell>& cell,
+Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell>& cell,
                       const Monitor& monitor = Monitor());
 
 /// Columns that the variant names, before any is found inseparable. Throws as select_columns().

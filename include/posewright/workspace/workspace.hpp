@@ -83,6 +83,6 @@ std::vector<Coordinate> limits_in_force(const IdentificationModel& model, const 
                                         const Cell* cell = nullptr);
 /// The problem's coupled limits, and those that its controller's settings make of a coupling: lower ≤ J3 − f·J2 ≤
 /// upper.
-std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const Problem& problem);
+std::vector<CoupledLimits> coupled_limits(const IdentificationModel& model, const WorkspaceSpec& spec);
 
 }  // namespace posewright

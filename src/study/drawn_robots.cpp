@@ -10,7 +10,7 @@
 #include "posewright/model/readable.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/model/whitening.hpp"
-#include "posewright/study/spacing.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -95,7 +95,7 @@ RobustRequest robust_request(const Study& study, const DrawnRobots& robots, cons
   request.aim = study.robust->aim;
   request.scenarios = study.robust->draws;
   request.poses = int(plan.size());
-  request.nuisance = variant.everything_counts ? 0 : variant.columns.nuisance;
+  request.nuisance = variant.nuisance_counts ? 0 : variant.columns.nuisance;
   request.repeats = study.repeats;
   if (study.distance.kept) request.spacing = with_points(study.distance.spacing, configurations);
   request.planner = study.planner;

@@ -14,7 +14,7 @@ void add_effects(Judgement& judgement, const Study& study, const Configurations&
   judgement.discrimination = discrimination_of(known.truth, known.effects, fit.unfitted, fitted, poses, study.prior);
 }
 
-void fill_errors(Judgement& judgement, const Variant& variant, const VariantWorth& worth) {
+void fill_errors(Judgement& judgement, const Variant& variant, const AdjustedEvaluation& worth) {
   judgement.rho0 = predicted_error(variant.test_points, worth.errors, judgement.test_errors);
   judgement.turn = predicted_turn(variant.test_points, worth.errors, judgement.test_axes);
 }
@@ -26,7 +26,7 @@ Judgement judge(const Study& study, const Configurations& poses) {
   Judgement judgement;
   const Prior prior = study.prior ? Prior::every : Prior::none;
   for (const Variant& variant : study.variants) {
-    VariantWorth worth = worth_of(variant, all, prior, study.planner.threads);
+    AdjustedEvaluation worth = effect_adjusted_evaluation(variant, all, prior, study.planner.threads);
     if (&variant == &study.first()) {
       judgement.unmodelled = worth.unmodelled;
       if (!variant.test_points.empty()) fill_errors(judgement, variant, worth);

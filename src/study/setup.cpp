@@ -145,7 +145,7 @@ Setup resolve(const Problem& problem, const RunOptions& run, const Monitor& moni
   for (const DesignSpec::Weighted& wanted : names) {
     Variant variant = place_variant({problem, find_variant(problem, wanted.name.value)}, s.cell, monitor);
     variant.weight = wanted.weight;
-    variant.everything_counts = run.everything_counts;
+    variant.nuisance_counts = run.nuisance_counts;
     s.variants.push_back(std::move(variant));
     require_same_coordinates(s.first(), s.variants.back());
   }

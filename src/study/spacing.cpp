@@ -1,5 +1,3 @@
-#include "posewright/study/spacing.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 

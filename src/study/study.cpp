@@ -10,8 +10,8 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/space.hpp"
-#include "posewright/study/spacing.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/error.hpp"
 
@@ -243,7 +243,7 @@ SearchPart search_part(const Variant& variant, const Configurations& configurati
   const int features = variant.features == nullptr ? 0 : variant.features->columns();
   SearchPart part;
   part.blocks = search_blocks(variant, configurations, threads);
-  part.nuisance = variant.everything_counts ? 0 : features + variant.columns.nuisance;
+  part.nuisance = variant.nuisance_counts ? 0 : features + variant.columns.nuisance;
   part.weight = variant.weight;
   part.scale = Eigen::VectorXd::Ones(features + variant.scale.size());
   part.scale.tail(variant.scale.size()) = variant.scale;

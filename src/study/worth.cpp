@@ -36,7 +36,7 @@ Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeature
 /// what is whitened by the covariance of all readings: θ̂ − θ = V J'ᵀ(F'u + …), so E[(θ̂ − θ)uᵀ] = V J'ᵀF'; the best u
 /// given the readings has the covariance F'ᵀ(I − J'VJ'ᵀ)F' and is independent of θ̂.
 void fill_place_errors(const Variant& variant, const EffectFeatures& features, const BlockArray& whitened,
-                       const Eigen::MatrixXd& F, const Eigen::MatrixXd& by_visits, VariantWorth& worth) {
+                       const Eigen::MatrixXd& F, const Eigen::MatrixXd& by_visits, AdjustedEvaluation& worth) {
   const Eigen::MatrixXd& V = worth.evaluation.covariance;
   const Eigen::MatrixXd JF = whitened.all().transpose() * F, follows = V * JF;
   const Eigen::MatrixXd told = F.transpose() * F - JF.transpose() * follows;
@@ -71,8 +71,9 @@ void fill_place_errors(const Variant& variant, const EffectFeatures& features, c
 
 }  // namespace
 
-VariantWorth worth_of(const Variant& variant, const Configurations& configurations, Prior prior, int threads) {
-  VariantWorth worth;
+AdjustedEvaluation effect_adjusted_evaluation(const Variant& variant, const Configurations& configurations, Prior prior,
+                                              int threads) {
+  AdjustedEvaluation worth;
   const auto judge = [&](const BlockArray& blocks) {
     worth.evaluation = evaluate(blocks, variant.columns.parameters, prior, variant.scale);
   };

@@ -79,7 +79,8 @@ class ComparisonRun {
     try {
       const VariantColumns& columns = variant.columns;
       const Configurations all = with_measured(study_, poses_[plan]);
-      VariantWorth worth = worth_of(variant, all, study_.prior ? Prior::every : Prior::none, study_.planner.threads);
+      AdjustedEvaluation worth =
+          effect_adjusted_evaluation(variant, all, study_.prior ? Prior::every : Prior::none, study_.planner.threads);
       const Evaluation& e = judged_[plan][&variant] = std::move(worth.evaluation);
       score.log_det = e.log_det;
       score.condition = e.condition;

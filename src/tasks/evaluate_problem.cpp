@@ -28,15 +28,13 @@ constexpr std::size_t most_judged = 2000;
 
 class ListEvaluation {
  public:
-  ListEvaluation(const Problem& problem, const PoseList& list, const EvaluateOptions& options, const Monitor& monitor)
-      : options_(options),
-        monitor_(monitor),
-        study_(prepared(resolve(problem, options.run, monitor, Purpose::list), list, monitor)) {
+  ListEvaluation(Setup setup, const PoseList& list, const EvaluateOptions& options, const Monitor& monitor)
+      : options_(options), monitor_(monitor), study_(prepared(std::move(setup), list, monitor)) {
     if (monitor.should_stop()) throw CannotDo("stopped before all candidates for the comparison were drawn");
     const std::vector<Coordinate>& coordinates = study_.first().workspace->coordinates();
     notes_ = study_.notes;
     notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
-    note_parameters(list, parameters_of(problem), notes_);
+    note_parameters(list, parameters_of(*study_.problem), notes_);
     poses_.dimension = int(coordinates.size());
     std::vector<int> near;  // ids
     for (std::size_t i = 0; i < list.configurations.size(); ++i) {
@@ -265,7 +263,8 @@ PoseListEvaluation evaluate_problem(const Problem& problem, const PoseList& list
                                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(list, most_judged, "evaluate scores");
-  PoseListEvaluation result = ListEvaluation(problem, list, options, monitor).evaluate();
+  Setup setup = resolve(problem, options.run, monitor, Purpose::list);
+  PoseListEvaluation result = ListEvaluation(std::move(setup), list, options, monitor).evaluate();
   result.plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -14,7 +14,7 @@
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
-#include "posewright/study/spacing.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_plan.hpp"
@@ -194,7 +194,7 @@ class PlanSearch {
     if (auto& whole = plan.certificate.workspace)
       whole->within = proposed_within(*study_.first().workspace, *study_.first().model);
     // References of everything are none of the parameters'.
-    if (!study_.first().everything_counts) fill_variants(plan, judgement, study_, found.references);
+    if (!study_.first().nuisance_counts) fill_variants(plan, judgement, study_, found.references);
     fill_poses(plan, study_, chosen, found.design.members, found.without, judgement);
     fill_without_fixed(plan, chosen, found, phi);
     fill_candidates(plan.statistics, study_);
@@ -259,7 +259,7 @@ Plan plan_validation(Problem problem, RunOptions run, const Plan& plan, int pose
   problem.design.reserve = false;
   problem.design.robust.reset();
   // Of poses whose readings tell most of effect and parameters together, the plan tells least (maximum entropy).
-  run.everything_counts = effect && !told_apart;
+  run.nuisance_counts = effect && !told_apart;
   run.measured = poses_of(plan, pose_coordinates(problem));
   run.fixed = PoseList{};
   return plan_problem(problem, run, monitor);

@@ -13,7 +13,7 @@
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/judgement.hpp"
-#include "posewright/study/spacing.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"

@@ -315,7 +315,8 @@ TEST_F(NextPosesOfAnArm, AnEffectCountsAsAPlanOfTheSamePosesCountsIt) {
   variant.test_points = test_points_of(variant, variant.columns, 0, &variant.test_places);
   allow_for_unmodelled(list, 1, variant);
   std::vector<double> each;
-  const double planned = predicted_error(variant.test_points, worth_of(variant, list, Prior::none, 1).errors, each);
+  const double planned =
+      predicted_error(variant.test_points, effect_adjusted_evaluation(variant, list, Prior::none, 1).errors, each);
   const auto forecast = ForecastOfError(variant, {Prior::none}).after_each(rows_of(variant, list, 1));
   EXPECT_NEAR(*forecast.back() / planned, 1, 1e-9) << "the same covariance by another factorisation";
   EXPECT_GT(*result.curve.back().expected, 1.2 * expected_error(poses)) << "what the model lacks stays";

@@ -23,7 +23,7 @@ struct RunOptions {
   std::vector<std::string> variants{};  ///< to prepare, by name; empty: those of the criterion
   /// Nuisance parameters and an unmodelled effect count as those of interest do, with ds: poses whose readings are
   /// least certain.
-  bool everything_counts = false;
+  bool nuisance_counts = false;
   /// Without search and proof between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
   /// A cell of the same robot with the same tool, of which only obstacles may stand elsewhere: what is known of the

@@ -9,8 +9,8 @@
 #include "posewright/planning/configuration_space.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/columns.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/study/setup.hpp"
-#include "posewright/study/spacing.hpp"
 
 namespace posewright {
 

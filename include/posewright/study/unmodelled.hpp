@@ -45,12 +45,13 @@ BlockArray expanded_blocks(const Variant& variant, const EffectFeatures& feature
 
 /// Evaluation of configurations for a variant. With an effect by its whole covariance between them and not by features
 /// of candidates: a list says the same whatever was searched.
-struct VariantWorth {
+struct AdjustedEvaluation {
   Evaluation evaluation;
   std::vector<PlaceError> errors;  ///< at every test pose, after compensation by the parameters
   std::optional<PlannedEffect> unmodelled;
 };
 /// Throws CannotDo as evaluate().
-VariantWorth worth_of(const Variant& variant, const Configurations& configurations, Prior prior, int threads);
+AdjustedEvaluation effect_adjusted_evaluation(const Variant& variant, const Configurations& configurations, Prior prior,
+                                              int threads);
 
 }  // namespace posewright

@@ -39,9 +39,9 @@ struct Variant {
   /// Raw information known before of the columns of a search (tolerances, poses measured already, the size of an
   /// effect); empty: none.
   Eigen::MatrixXd prior{};
-  bool everything_counts = false;  ///< in searches, as RunOptions have it
-  bool known_before = false;       ///< whether it says something of the parameters
-  std::string why_not{};           ///< why its parameters cannot be identified; empty: they can
+  bool nuisance_counts = false;  ///< in searches, as RunOptions have it
+  bool known_before = false;     ///< whether it says something of the parameters
+  std::string why_not{};         ///< why its parameters cannot be identified; empty: they can
 };
 
 /// Robot and workspace of one variant, as the cell lets it be; no columns yet. Blocks of the model count visible

@@ -31,7 +31,7 @@ std::unique_ptr<GivenModel> make_model(std::shared_ptr<GivenProblem> problem, co
   return made;
 }
 
-/// What a plan identified, so that its figures follow from the blocks.
+/// Parameters that a plan identified, so that its figures follow from the blocks.
 std::unique_ptr<GivenModel> model_of_plan(std::shared_ptr<GivenProblem> problem, const Plan& plan, std::string variant,
                                           long long threads) {
   if (variant.empty()) {

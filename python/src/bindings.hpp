@@ -55,7 +55,7 @@ auto with_places(const GivenProblem& problem, Work&& work) {
 
 /// None where the value is not text and no path.
 std::optional<std::filesystem::path> file_name(const py::object& value);
-/// What lists of this problem are read with.
+/// Coordinates that lists of this problem are read with.
 inline std::vector<Coordinate> coordinates_of(const GivenProblem& given, const std::string& variant = "") {
   return with_places(given, [&] { return pose_coordinates(given.problem, variant); });
 }
@@ -70,7 +70,6 @@ py::object parsed(const std::string& json);
 void save_text(const py::object& path, const std::string& text, bool overwrite);
 /// {"o1": …, …}
 py::dict indices_dict(const ObservabilityIndices& indices);
-/// What a notebook shows of a plan.
 /// A plan in one line.
 std::string plan_line(const Plan& plan);
 

@@ -25,7 +25,7 @@ std::string in_python(const std::string& text) {
 
 namespace {
 
-/// Whether the message begins with these keys already. Entries of lists are counted from 1 in messages and from 0 in
+/// True if the message begins with these keys already. Entries of lists are counted from 1 in messages and from 0 in
 /// Python.
 bool same_keys(const std::string& message, const std::string& keys) {
   std::size_t i = 0;

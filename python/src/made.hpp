@@ -37,7 +37,7 @@ struct Made {
   }
 };
 
-/// What all results have. text_of(M) and json_of(M) are found beside M.
+/// Members of all results. text_of(M) and json_of(M) are found beside M.
 template <class M>
 py::class_<M> bind_made(py::module_& m, const char* name, const char* doc) {
   return py::class_<M>(m, name, doc)
@@ -48,7 +48,7 @@ py::class_<M> bind_made(py::module_& m, const char* name, const char* doc) {
       .def("to_dict", [](const M& made) { return parsed(json_text(json_of(made), JsonLayout::one_line)); });
 }
 
-/// Of results with a page of their own.
+/// Members of results with a page of their own.
 template <class M>
 py::class_<M> bind_page(py::class_<M> made) {
   return made.def(

@@ -13,7 +13,7 @@ namespace posewright::python {
 
 namespace py = pybind11;
 
-/// What Ctrl-C does to a computation.
+/// Effect of Ctrl-C on a computation.
 enum class OnInterrupt { keep_best, raise };
 
 /// A long computation as Python sees it: it runs on a thread of its own without the interpreter's lock, while the

@@ -14,8 +14,8 @@ constexpr double least_share = 0.5, most_chance = 0.01;
 // Of a column's squared length: what the fitted parameters leave of one that they imitate.
 constexpr double imitated_share = 1e-8;
 
-/// What the displacement of a frame from some pose on would explain, beside the fitted columns: sums over the poses
-/// from the last one backwards.
+/// Share that the displacement of a frame from some pose on would explain, beside the fitted columns: sums over the
+/// poses from the last one backwards.
 class Displacement {
  public:
   explicit Displacement(Eigen::Index columns, Eigen::Index fitted)
@@ -30,7 +30,7 @@ class Displacement {
     along_ += X.transpose() * r;
   }
 
-  /// Of the sum of squared residuals.
+  /// Decrease of the sum of squared residuals.
   /// @param freedom  columns that the fitted ones do not imitate
   double gain(int& freedom) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(

@@ -52,8 +52,8 @@ Eigen::MatrixXd tolerance_rows(const IdentificationModel& model, const VariantCo
   return blocks_of(model, all, poses, correction).all() * tolerances_of(all).asDiagonal();
 }
 
-/// What of them is left where base, tool and targets are fitted: those take up most of a lens's centre, a first joint's
-/// zero, a last joint's frame.
+/// Part of them that is left where base, tool and targets are fitted: those take up most of a lens's centre, a first
+/// joint's zero, a last joint's frame.
 Eigen::MatrixXd beside_placing(const IdentificationModel& model, const VariantColumns& columns,
                                const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
                                const Eigen::MatrixXd& rows) {

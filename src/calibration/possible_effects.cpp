@@ -98,7 +98,7 @@ class Residuals {
   }
 
   double freedom() const { return freedom_; }
-  /// Of the residuals, in units of the stated noise.
+  /// Size of the residuals, in units of the stated noise.
   double noise() const { return freedom_ > 0 ? std::sqrt(r_.squaredNorm() / freedom_) : 1.0; }
 
   Evidence evidence_of(const UnmodelledSize& shape) const {

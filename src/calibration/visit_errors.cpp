@@ -66,7 +66,8 @@ class VisitLikelihood {
   }
 
  private:
-  /// What the tip's twists reach of a pose's rows.
+  /// Rows of a pose within the span that the tip's twists move: those twists (in units of their sizes), and all
+  /// columns.
   struct Pose {
     Eigen::MatrixXd along, rows;
   };

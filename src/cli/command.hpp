@@ -70,7 +70,7 @@ std::optional<int> whole_number(const po::variables_map& values, const std::stri
 std::string text_of(const po::variables_map& values, const std::string& option);
 
 void add_option(po::options_description& options, const OptionRow& row);
-/// What the user wrote for an option; none if it is not given.
+/// Words of the user for an option; none if it is not given.
 std::optional<GivenOption> given_option(const po::variables_map& values, const OptionRow& row);
 
 /// The options of a table as those of the program.

@@ -212,7 +212,7 @@ const Element* geometry_of(const Element& shape) {
   return geometry == nullptr ? nullptr : geometry->FirstChildElement();
 }
 
-/// Of a <material>; nothing if it is only a name.
+/// Colour of a <material>; nothing if it is only a name.
 std::optional<std::optional<std::array<double, 3>>> material_of(const Element& material) {
   const Element *color = material.FirstChildElement("color"), *texture = material.FirstChildElement("texture");
   const char* rgba = color == nullptr ? nullptr : color->Attribute("rgba");

@@ -82,7 +82,7 @@ class UrdfTree {
 
   /// Throws InputError for a shape that is malformed, unknown or not of positive size.
   std::vector<UrdfShape> collision_shapes(const UrdfLink& link) const;
-  /// The same for shapes that are only seen: those without a known geometry are passed over.
+  /// Shapes that are only seen: those without a known geometry are passed over.
   std::vector<UrdfShape> visual_shapes(const UrdfLink& link) const;
   /// Red, green and blue (0 to 1) of a link's first visual, if its material gives any.
   std::optional<std::array<double, 3>> colour(const UrdfLink& link) const;

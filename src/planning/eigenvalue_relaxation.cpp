@@ -38,7 +38,7 @@ void add_squares_by_pairs(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index
   }
 }
 
-/// The same by symmetric products, ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩.
+/// This sum by symmetric products, ‖Z_i Z_jᵀ‖² = ⟨Z_iᵀZ_i, Z_jᵀZ_j⟩.
 void add_squares_by_blocks(const EigenvalueRelaxation::RowMatrix& Z, Eigen::Index r, Eigen::Ref<Eigen::MatrixXd> H) {
   const Eigen::Index n = H.cols(), m = Z.cols();
   Eigen::MatrixXd products(m * (m + 1) / 2, n), square(m, m);

@@ -78,7 +78,7 @@ class Inform {
     }
   }
 
-  /// What the headings say of a pose.
+  /// Headings of a pose.
   void add_headings(FoundPoint& point) const {
     point.axes.insert(point.axes.end(), status_.begin(), status_.end());
     point.heading.text = heading_;

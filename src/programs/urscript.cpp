@@ -86,7 +86,7 @@ class Urscript {
     cursor_.skip();
   }
 
-  /// What is known of the robot's place where a block begins.
+  /// Known place of the robot where a block begins.
   struct Block {
     std::optional<std::size_t> before;
     bool definition = false, moved = false;

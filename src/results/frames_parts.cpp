@@ -17,7 +17,7 @@ Eigen::Quaterniond quaternion_of(const Eigen::Isometry3d& X) {
   return q;
 }
 
-/// Whether the readings put the frame there.
+/// True if the readings put the frame there.
 std::string remark_of(const Calibration& c, const PlacedFrame& frame) {
   bool estimated = false;
   for (const CalibratedParameter& p : c.parameters) {

@@ -11,7 +11,7 @@ namespace posewright {
 SearchPart part_with_assumed_effect(const Study& study, const Configurations& configurations, int threads,
                                     const Eigen::MatrixXd& prior);
 
-/// Whether the readings contain a position of the tip, so that an assumed effect shows.
+/// True if the readings contain a position of the tip, so that an assumed effect shows.
 bool moves_the_tip(const Study& study, int threads);
 
 }  // namespace posewright

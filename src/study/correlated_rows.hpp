@@ -7,7 +7,8 @@
 
 namespace posewright {
 
-/// What an effect moves at one pose or test place: derivatives along its twists, their sizes taken, and where it is.
+/// Rows that an effect moves at one pose or test place: derivatives along its twists, their sizes taken, and where it
+/// is.
 struct MovedByEffect {
   Eigen::MatrixXd along;   ///< rows × (tips × twists)
   Eigen::MatrixXd places;  ///< one column a tip

@@ -6,7 +6,7 @@
 
 namespace posewright {
 
-/// Whether the criterion counts an effect that nobody stated.
+/// True if the criterion counts an effect that nobody stated.
 bool assumes_effect(const Setup& setup);
 
 /// Reason in the design for which `auto` takes no bias for so many poses, whatever the robot; empty: none.

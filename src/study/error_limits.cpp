@@ -84,7 +84,7 @@ class FittedPoses {
   }
   /// Covariance of R (ξ̂ − ξ) by noise of s = 1.
   const Eigen::MatrixXd& by_noise() const { return noise_; }
-  /// The same by an effect.
+  /// This size by an effect.
   Eigen::MatrixXd by_effect(const UnmodelledEffect& effect, const std::vector<MovedByEffect>& moved) const {
     return answer_ * covariance_between(effect, moved, moved) * answer_.transpose();
   }

@@ -437,7 +437,7 @@ class CalibrationRun {
       result_.parameters.insert(result_.parameters.end(), more->begin(), more->end());
   }
 
-  /// What moved, where it stands in each further campaign.
+  /// Place of the moved frame in each further campaign.
   void add_campaign_frames(const IdentificationModel& robot) {
     const std::vector<std::string> moved = moved_frames(problem_.measurement, options_.moved);
     for (std::size_t c = 1; c < campaigns_.size(); ++c) {

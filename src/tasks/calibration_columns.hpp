@@ -7,7 +7,7 @@
 
 namespace posewright {
 
-/// What a calibration estimates, and what becomes of the rest of its variant.
+/// Columns that a calibration estimates, and those of its variant that it holds or drops.
 struct ChosenColumns {
   VariantColumns columns;
   std::vector<CalibratedParameter> left_out;  ///< nominal

@@ -115,7 +115,7 @@ void require_size(const DrawnBody* largest, const InitRobot& robot, const Serial
       size > robot.reach ? "a mesh in mm needs scale=\"0.001 0.001 0.001\"" : "a mesh in m needs no scale");
 }
 
-/// The same text, with the full paths of the meshes that are found around the xacro file.
+/// This text with the full paths of the meshes that are found around the xacro file.
 std::string with_meshes_found(std::string text, const InitFacts& facts) {
   const fs::path folder = fs::absolute(facts.robot).lexically_normal().parent_path();
   constexpr std::string_view key = "filename=\"";

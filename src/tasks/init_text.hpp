@@ -34,7 +34,7 @@ InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& fil
 /// Adds `lowest` and `face`. Throws InputError where meshes are missing, and for links that are far larger or smaller
 /// than the arm: a scale is missing or one too many.
 void add_bodies(InitRobot& robot, const Problem& problem);
-/// What xacro made of the robot's file, to be written beside the problem `file`; meshes are named so that they are
+/// Expansion of the robot's xacro file, to be written beside the problem `file`; meshes are named so that they are
 /// found from there. Empty for a URDF.
 FileToWrite expanded_robot(const InitFacts& facts, const InitRobot& robot, const std::filesystem::path& file);
 

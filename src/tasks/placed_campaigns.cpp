@@ -22,7 +22,7 @@ void start_at_the_first(const IdentificationModel& model, const std::string& cam
       placed[std::size_t(own)] = placed[std::size_t(first)];
 }
 
-/// What moved before another campaign, with everything else where the first one says that it stands.
+/// Frame that moved before another campaign, with everything else where the first one says that it stands.
 void place_campaign(const IdentificationModel& model, const VariantColumns& all, const std::vector<MeasuredPose>& poses,
                     const std::string& campaign, const FitOptions& options, std::vector<double>& placed) {
   std::vector<int> kept;

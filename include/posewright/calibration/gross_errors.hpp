@@ -16,7 +16,7 @@ std::vector<double> explained_sizes(const IdentificationModel& model, const Vari
 double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                     const std::vector<double>& correction);
 
-/// The same of what noise and all tolerances explain where base, tool and targets are fitted, at least 1.
+/// Root mean square that noise and all tolerances explain where base, tool and targets are fitted, at least 1.
 /// @param columns  those that are estimated, whose tolerances may be stated
 double explained_rms(const IdentificationModel& model, const VariantColumns& columns,
                      const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);

@@ -27,7 +27,7 @@ VariantColumns with_campaign_columns(const IdentificationModel& model, const Var
 /// Parameters of a campaign's own frames, frame by frame.
 std::vector<int> campaign_parameters(const IdentificationModel& model, const std::string& campaign);
 
-/// The same with the parameter of the first campaign that each takes the place of: {own, the first's}.
+/// Pairs of each such parameter and that of the first campaign, which it replaces: {own, the first's}.
 std::vector<std::pair<int, int>> campaign_pairs(const IdentificationModel& model, const std::string& campaign);
 
 /// Corrections of all parameters with those of a campaign's own frames in the places that they take.

@@ -27,7 +27,7 @@ std::vector<JointEffectsSpec> with_eccentricity(const std::vector<JointEffectsSp
 class JointEffects : public TipModel {
  public:
   /// @param arm  the chain whose coordinates are the joints' readings
-  /// Of the joints that a pattern names, those that turn have eccentricity and gear_ratio. Throws InputError for names
+  /// Revolute joints among those that a pattern names have eccentricity and gear_ratio. Throws InputError for names
   /// that match no joint or one twice, for angles of a joint that slides and is named itself, and for one that drifts
   /// with a temperature that nobody states.
   JointEffects(std::unique_ptr<TipModel> arm, const SerialArmSpec& spec, const std::string& file);

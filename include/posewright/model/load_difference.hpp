@@ -18,7 +18,7 @@ class LoadDifference : public IdentificationModel {
 
   /// Model of the readings under one load case.
   const IdentificationModel& inside() const { return *inside_; }
-  /// The same configuration under the first load case.
+  /// This configuration under the first load case.
   std::vector<double> unloaded(std::span<const double> q) const;
 
  private:

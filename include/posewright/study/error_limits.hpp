@@ -29,11 +29,11 @@ struct ErrorParts {
 /// Value that the root of a mean square does not exceed with 95 % confidence, eq. (51).
 /// @param parts  of each of `effects`
 double upper_error(const std::vector<PossibleEffects>& effects, const std::vector<ErrorParts>& parts);
-/// The same for the size of a normal error.
+/// This limit for the size of a normal error.
 /// @param noise   its variance for s = 1
 /// @param effect  variance by each shape for τ = 1 m
 double upper_normal(const std::vector<PossibleEffects>& effects, double noise, const std::vector<double>& effect);
-/// The same for σ itself.
+/// This limit for σ itself.
 double upper_sigma(const std::vector<PossibleEffects>& effects, double noise, const std::vector<double>& effect);
 
 /// @param noise  tolerances that counted in the fit, and the factor of the noise there

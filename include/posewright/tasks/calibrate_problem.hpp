@@ -39,7 +39,7 @@ struct ProfileChoice {
 /// name.
 ProfileChoice profile_choice(const std::string& text);
 
-/// What stands elsewhere in each further campaign: the base (where the instrument stands), the tool (all that the tip
+/// Frame that moved before each further campaign: the base (where the instrument stands), the tool (all that the tip
 /// carries: tool, targets, a camera or board), both, or nothing. automatic: the base, and the tool if the residuals ask
 /// for it.
 enum class Moved { automatic, base, tool, both, nothing };

@@ -100,7 +100,7 @@ inline constexpr int poses_looked_ahead = 3;
 
 /// Estimates the parameters from the measured data, then chooses the poses that add most to them, at the estimated
 /// values and with the smooth effect of the residuals; reports their gain and whether they are needed.
-/// What does not suffice for an estimate counts by its poses alone, at the nominal values.
+/// Data that do not suffice for an estimate count by its poses alone, at the nominal values.
 /// Throws InputError as the reading of problem, data and lists does, and for rows that are far from where a fit of the
 /// rows before them says; CannotDo as make_study().
 NextPoses next_poses(const Problem& problem, const NextOptions& options, const Monitor& monitor);

@@ -127,7 +127,7 @@ int number_of(const std::vector<ProgramPoint>& points) {
   return int(std::stoul(sha256_hex(text).substr(0, 8), nullptr, 16) & 0x7fffffffU);
 }
 
-/// Of a route's motions, whose seconds are those of full speed.
+/// Speed of a route's motions, whose seconds are those of full speed.
 std::string time_of(const PoseSequence& sequence, double percent) {
   double seconds = 0;
   for (const SequenceMotion& motion : sequence.motions) seconds += motion.seconds;

@@ -261,7 +261,8 @@ void add_poses(bool robot_is_pose, std::vector<Hypothesis>& table) {
                                    "camera for the camera in the target, or the base in the flange)"
                                  : "poses of the instrument are inverted (the target in the camera for the camera in "
                                    "the target)",
-                   "write the inverse of each", nullptr, [](const Eigen::Isometry3d& X) { return X.inverse(); }});
+                   "write measurement: mount: hand or fixed, whichever is the case, or the inverse of each", nullptr,
+                   [](const Eigen::Isometry3d& X) { return X.inverse(); }});
   table.push_back({"orientations of the instrument are transposed", "turn each the other way", nullptr,
                    [](const Eigen::Isometry3d& X) {
                      Eigen::Isometry3d turned = X;
@@ -418,7 +419,8 @@ class Search {
     Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
     X.translation() = row.y.head<3>();
     X.linear() = rotation_by(row.y.tail<3>());
-    return X;
+    const auto* pose = std::get_if<PoseMeasurement>(&problem_.measurement.instrument);
+    return pose != nullptr && pose->on_hand ? X.inverse() : X;
   }
 
   Eigen::Matrix3Xd points(const Row& row, const Hypothesis& hypothesis) const {

@@ -40,7 +40,7 @@ class Problem3d {
 
   HandEye fit(bool free_scale) {
     // The linear start has 12 unknowns besides the points.
-    if (3 * sights_.size() < std::size_t(15 + 3 * points_)) return {std::numeric_limits<double>::infinity(), 1.0};
+    if (3 * sights_.size() < std::size_t(15 + 3 * points_)) return {.rms = std::numeric_limits<double>::infinity()};
     start(free_scale);
     Eigen::VectorXd left = residual();
     for (int step = 0; step < most_steps; ++step) {
@@ -50,7 +50,11 @@ class Problem3d {
       left = next;
       if (done) break;
     }
-    return {left.norm() / std::sqrt(double(sights_.size())), scale_};
+    HandEye result{left.norm() / std::sqrt(double(sights_.size())), scale_};
+    result.X_BaseInstrument.linear() = A_;
+    result.X_BaseInstrument.translation() = -places_.head<3>();
+    result.points = places_.tail(3 * points_).reshaped(3, points_);
+    return result;
   }
 
  private:

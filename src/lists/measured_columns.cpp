@@ -8,6 +8,7 @@
 
 #include "posewright/calibration/rigid_fit.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/lists/samples.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "posewright/problem/units.hpp"
@@ -17,20 +18,21 @@ namespace posewright {
 namespace {
 
 constexpr double not_read = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<const char*, 4> quaternion_names = {"pose.qx", "pose.qy", "pose.qz", "pose.qw"};
 constexpr std::array<const char*, 3> point_axes = {".x", ".y", ".z"};
-// Printed quaternions have few digits; anything farther from one is something else.
-constexpr double unit_slack = 1e-3;
 // What bends by more than this share of its size is another body, or its points are mixed up.
 constexpr double largest_deformation = 0.05;
+
+/// Samples of hand-eye calibration, else CSV.
+PoseTable table_of(const std::string& text, const std::string& file) {
+  if (std::optional<Samples> samples = read_samples(text, file)) return std::move(samples->table);
+  return read_csv_table(text, file);
+}
 
 }  // namespace
 
 MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const MeasurementSpec& measurement,
                                  const IdentificationModel& model)
-    : file_(file),
-      model_(model),
-      table_(read_csv_table(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
+    : file_(file), model_(model), table_(table_of(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
   index_columns();
   if (InstrumentView view = view_of(measurement); view.fits_pose) markers_ = std::move(view.targets);
   find_readings();
@@ -45,29 +47,10 @@ void MeasuredColumns::index_columns() {
   }
 }
 
-void MeasuredColumns::find_orientation() {
-  std::vector<std::string> names, ways;
-  for (const auto& [name, at] : column_) names.push_back(name);
-  if (has("pose.rx")) ways.emplace_back("pose.rx");
-  quaternions_ = std::all_of(quaternion_names.begin(), quaternion_names.end(), [&](const char* n) { return has(n); });
-  if (quaternions_) ways.emplace_back(quaternion_names.front());
-  for (EulerAngles& angles : euler_angles_of(names)) {
-    ways.push_back(angles.columns.front());
-    euler_ = std::move(angles);
-  }
-  if (ways.size() > 1)
-    throw InputError(header(), "has an orientation twice, " + ways[0] + " and " + ways[1], "one of them");
-}
-
-OrientationForm MeasuredColumns::orientation() const {
-  if (euler_) return {OrientationForm::angles, *euler_};
-  return {quaternions_ ? OrientationForm::quaternion : OrientationForm::vector};
-}
-
 void MeasuredColumns::find_readings() {
   int found = 0;
   std::string names;
-  find_orientation();
+  orientation_ = OrientationColumns("pose", table_.names, header());
   const auto given = [&](const Reading& reading) {
     return has(reading.name) || (turned() && reading.name.starts_with("pose.r"));
   };
@@ -100,7 +83,7 @@ void MeasuredColumns::read_configurations(const std::string& bytes) {
     from_actuators();
     return;
   }
-  PoseList list = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "csv");
+  PoseList list = read_poses_text(bytes, file_, without_limits(model_.coordinates()), "");
   configurations_ = std::move(list.configurations);
   notes_.insert(notes_.end(), list.notes.begin(), list.notes.end());
   for (int i = 0; i < rows(); ++i)
@@ -163,18 +146,9 @@ double MeasuredColumns::value(int row, const std::string& column, const std::str
 }
 
 Eigen::Vector3d MeasuredColumns::rotation_vector(int row) const {
-  Eigen::Vector4d q;
-  if (euler_) {
-    Eigen::Vector3d angles;
-    for (std::size_t k = 0; k < 3; ++k) angles[Eigen::Index(k)] = value(row, euler_->columns[k], "rad");
-    if (!angles.allFinite()) return Eigen::Vector3d::Constant(not_read);
-    return posewright::rotation_vector(euler_->rotation(angles));
-  }
-  for (std::size_t k = 0; k < 4; ++k) q[Eigen::Index(k)] = value(row, quaternion_names[k], "1");
-  if (!q.allFinite()) return Eigen::Vector3d::Constant(not_read);
-  if (std::abs(q.norm() - 1) > unit_slack)
-    throw InputError({file_, line(row)}, fmt::format("the quaternion has length {:.6g}", q.norm()), "1 is expected");
-  return posewright::rotation_vector(Eigen::Quaterniond(q.normalized()).toRotationMatrix());
+  const auto R = orientation_.rotation(
+      [&](const std::string& column, const std::string& unit) { return value(row, column, unit); }, {file_, line(row)});
+  return R ? posewright::rotation_vector(*R) : Eigen::Vector3d::Constant(not_read);
 }
 
 Eigen::Vector3d MeasuredColumns::point(int row, const std::string& name) const {

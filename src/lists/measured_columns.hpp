@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "euler_angles.hpp"
-#include "posewright/calibration/orientation_form.hpp"
+#include "orientation_columns.hpp"
 #include "posewright/model/identification_model.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/problem.hpp"
@@ -28,7 +27,7 @@ class MeasuredColumns {
   Eigen::Vector3d point(int row, const std::string& name) const;
   /// The cell of a column, empty if there is none.
   std::string text(int row, const std::string& column) const;
-  OrientationForm orientation() const;
+  const OrientationForm& orientation() const { return orientation_.form(); }
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -41,8 +40,7 @@ class MeasuredColumns {
   double value(int row, const std::string& column, const std::string& unit) const;
   /// Columns of an orientation in another form.
   Eigen::Vector3d rotation_vector(int row) const;
-  bool turned() const { return quaternions_ || euler_; }
-  void find_orientation();
+  bool turned() const { return orientation_.found() && orientation().kind != OrientationForm::vector; }
   Eigen::VectorXd pose_of_points(int row) const;
   SourcePlace header() const { return {file_, table_.header}; }
 
@@ -52,8 +50,7 @@ class MeasuredColumns {
   std::map<std::string, std::size_t> column_;
   std::vector<std::vector<double>> configurations_;
   std::vector<TargetSpec> markers_;  ///< of a photogrammetric pose that is given by its points; else empty
-  bool quaternions_ = false;
-  std::optional<EulerAngles> euler_;  ///< orientations that are given so
+  OrientationColumns orientation_;   ///< of the readings
   std::vector<std::string> notes_;
 };
 

@@ -8,10 +8,12 @@
 #include <limits>
 #include <numbers>
 
+#include "posewright/lists/samples.hpp"
 #include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "robot_columns.hpp"
 
 namespace posewright {
 namespace {
@@ -199,10 +201,11 @@ class ColumnMap {
   PoseList list_;
 };
 
-/// plan.json, route.json and the like by their first character, else CSV.
+/// plan.json, route.json and the like by their first character, samples by their keys, else CSV.
 PoseTable recognised(const std::string& text, const std::string& file) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && text[first] == '{') return table_of(parse_sequence(text, file));
+  if (std::optional<Samples> samples = read_samples(text, file)) return std::move(samples->table);
   return read_csv_table(text, file);
 }
 
@@ -259,7 +262,8 @@ PoseList read_poses_text(std::string text, const std::string& name, const std::v
                          const std::string& format) {
   // Spreadsheets write a byte order mark.
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-  const PoseTable table = format.empty() ? recognised(text, name) : find_readable_format(format).read(text, name);
+  PoseTable table = format.empty() ? recognised(text, name) : find_readable_format(format).read(text, name);
+  add_pose_coordinates(table, name, coordinates);
   return ColumnMap(name, coordinates, table).map();
 }
 

@@ -45,10 +45,11 @@ PoseModel::PoseModel(const MeasurementSpec& spec)
 void PoseModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
   if (turns_ != 0 && turns_ != 3)
     throw CannotDo("measurement: readings of rx, ry, rz mean something together only; measure all three or none");
-  const Eigen::Vector3d turn = rotation_vector(sighting.X_MeasureTip.linear());
+  const Eigen::Isometry3d X = seen(sighting.X_MeasureTip);
+  const Eigen::Vector3d turn = rotation_vector(X.linear());
   for (Eigen::Index i = 0; i < rows_; ++i) {
     const int c = spec_.components[std::size_t(i)];
-    y[i] = c < 3 ? sighting.X_MeasureTip.translation()[c] : turn[c - 3];
+    y[i] = c < 3 ? X.translation()[c] : turn[c - 3];
   }
 }
 
@@ -67,6 +68,7 @@ void PoseModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd&
 
 HarmonicNoise PoseModel::harmonic_noise() const {
   HarmonicNoise noise;
+  if (spec_.on_hand) return noise;
   noise.kind = HarmonicNoise::Kind::constant;
   if (points_ == nullptr) return noise;
   // A pose fitted to points tells what the points tell; a part of it does not.
@@ -78,6 +80,14 @@ HarmonicNoise PoseModel::harmonic_noise() const {
 
 void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
                                Eigen::Ref<Eigen::MatrixXd> rows) const {
+  if (spec_.on_hand) {
+    const Eigen::Matrix3d R = sighting.X_MeasureTip.linear();
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      const int c = spec_.components[std::size_t(i)], part = c < 3 ? 0 : 3;
+      rows.row(i) = -R.col(c - part).transpose() * twists.middleRows(part, 3);
+    }
+    return;
+  }
   const Eigen::Vector3d p = sighting.X_MeasureTip.translation();
   Eigen::Index row = 0;
   for (const int c : spec_.components) {
@@ -89,7 +99,7 @@ void PoseModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const 
 }
 
 std::optional<Eigen::Matrix<double, 6, 6>> PoseModel::tip_covariance() const {
-  if (rows_ != 6) return std::nullopt;
+  if (rows_ != 6 || spec_.on_hand) return std::nullopt;
   std::optional<Eigen::Matrix<double, 6, 6>> C = points_ != nullptr ? points_->tip_covariance() : spec_.covariance;
   if (!C) return std::nullopt;
   if (points_ == nullptr) {
@@ -111,6 +121,7 @@ void PoseModel::covariance(const Sighting& sighting, Eigen::Ref<Eigen::MatrixXd>
 }
 
 Twist PoseModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  if (spec_.on_hand) return MeasurementModel::pull_back(sighting, f);
   Eigen::Vector3d by_point = Eigen::Vector3d::Zero(), by_turn = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < rows_; ++i)
     if (const int c = spec_.components[std::size_t(i)]; c < 3)
@@ -127,6 +138,10 @@ Twist PoseModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
                                  product(b + 1, b) - product(b, b + 1));
   }
   return change_by_motion(sighting.X_MeasureTip.translation(), by_point, by_turn);
+}
+
+Eigen::Isometry3d PoseModel::seen(const Eigen::Isometry3d& X_MeasureTip) const {
+  return spec_.on_hand ? X_MeasureTip.inverse() : X_MeasureTip;
 }
 
 Eigen::Matrix<double, 6, 6> PoseModel::fitted_covariance(const Eigen::Matrix3d& R) const {

@@ -15,6 +15,8 @@ InstrumentView view_of(const PoseMeasurement& pose);
 /// spatial rotation vector in M): v + ω × p and ω of a twist. Readings pose.{x,…,rz}: the position and the rotation
 /// vector of the tip's orientation in M. No parameters of its own. With photogrammetry the
 /// covariance is that of the rigid fit to the points.
+///
+/// An instrument on the hand reads the pose of M in the tip, X⁻¹ for the tip's pose X = (R, p): rows −Rᵀ v and −Rᵀ ω.
 class PoseModel : public MeasurementModel {
  public:
   explicit PoseModel(const MeasurementSpec& spec);
@@ -31,6 +33,7 @@ class PoseModel : public MeasurementModel {
   Twist pull_back(const Sighting& sighting, const Adjoint& f) const override;
 
  private:
+  Eigen::Isometry3d seen(const Eigen::Isometry3d& X_MeasureTip) const;
   /// Noise of points without direction: at the measurement frame's own axes, turned.
   Eigen::Matrix<double, 6, 6> fitted_covariance(const Eigen::Matrix3d& R) const;
 

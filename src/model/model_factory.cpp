@@ -5,6 +5,7 @@
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/five_bar.hpp"
+#include "posewright/model/given_poses.hpp"
 #include "posewright/model/joint_effects.hpp"
 #include "posewright/model/load_difference.hpp"
 #include "posewright/model/measurement_factory.hpp"
@@ -47,6 +48,9 @@ struct MakeTip {
   std::unique_ptr<TipModel> operator()(const FiveBarSpec& spec) const { return std::make_unique<FiveBar>(spec); }
   std::unique_ptr<TipModel> operator()(const DeltaSpec& spec) const { return std::make_unique<Delta>(spec); }
   std::unique_ptr<TipModel> operator()(const CompensatorGeometrySpec&) const { return nullptr; }
+  std::unique_ptr<TipModel> operator()(const GivenPosesSpec& spec) const {
+    return std::make_unique<GivenPoses>(spec, problem.workspace.limits);
+  }
 };
 
 std::unique_ptr<IdentificationModel> observed(const ProblemVariant& variant) {

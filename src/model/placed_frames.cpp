@@ -28,7 +28,9 @@ std::vector<PlacedFrame> frames_of(const Robot& robot, const ProblemVariant&, co
   std::vector<PlacedFrame> frames;
   if constexpr (requires { robot.placement; })
     frames.push_back({"base", placement_key, false, nominal_placement(at, "base", isometry(robot.placement))});
-  frames.push_back({"tool", "", true, nominal_placement(at, "tool", Eigen::Isometry3d::Identity())});
+  if constexpr (requires { robot.tool; })
+    frames.push_back({"tool", "robot: tool", true, nominal_placement(at, "tool", isometry(robot.tool))});
+  else frames.push_back({"tool", "", true, nominal_placement(at, "tool", Eigen::Isometry3d::Identity())});
   return frames;
 }
 

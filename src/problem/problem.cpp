@@ -14,6 +14,7 @@ namespace {
 struct SetJointNoise {
   double sigma;
   void operator()(SixLegsSpec& robot) const { robot.actuator_noise = sigma; }
+  void operator()(GivenPosesSpec&) const {}
   void operator()(auto& robot) const { robot.encoder_noise = sigma; }
 };
 

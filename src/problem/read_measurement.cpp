@@ -105,8 +105,10 @@ void read_point_device(const Value& value, PointNoise& noise, std::vector<Statio
 }
 
 PoseMeasurement read_pose(const Section& section) {
-  section.allow({"type", "components", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "mount", "components", "device", "repeats", "repeatability", "load"});
   PoseMeasurement pose;
+  const Value* mount = section.find("mount");
+  pose.on_hand = mount != nullptr && mount->choice({"hand", "fixed"}) == "hand";
   const Section device(section.at("device"));
   const std::string type = device.at("type").choice({"isotropic", "covariance", "photogrammetry"});
   if (type == "isotropic") {
@@ -122,6 +124,7 @@ PoseMeasurement read_pose(const Section& section) {
     pose.covariance = read_covariance(device.at("matrix"), 6);
   } else {
     device.allow({"type", "noise", "points"});
+    if (pose.on_hand) mount->fail("is hand with photogrammetry", "its points are on the tip: fixed");
     pose.point_sigma = device.at("noise").number(Quantity::length, Sign::positive);
     pose.photogrammetry = read_targets(device.at("points"));
     if (pose.photogrammetry.size() < 3) device.at("points").fail("has too few points", "at least 3 not in line");

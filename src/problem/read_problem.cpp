@@ -53,6 +53,8 @@ Problem parse_problem(const std::string& text, const fs::path& file, const Packa
   problem.variants = read_variants(root.at("variants"));
   if (const yaml::Value* workspace = root.find("workspace"))
     problem.workspace = read_workspace(*workspace, problem.robot, file.parent_path());
+  if (std::holds_alternative<GivenPosesSpec>(problem.robot) && problem.workspace.limits.empty())
+    robot.fail("with poses alone has no limits", "workspace: pose: {x: [0.3, 0.7], …, roll: [150 deg, 210 deg], …}");
   if (const yaml::Value* design = root.find("design"))
     problem.design = read_design(*design, problem.variants, file.parent_path());
   return problem;

@@ -138,6 +138,15 @@ RobotSpec read_model(const Value& model, const Section& robot) {
   model.fail("is " + in_quotes(wanted) + meant_instead(wanted, words), names);
 }
 
+GivenPosesSpec read_given_poses(const Value& poses, const Section& robot) {
+  robot.allow({"poses", "placement", "tool"});
+  if (!poses.flag()) poses.fail("is no", "poses: yes, or another robot: urdf, model");
+  GivenPosesSpec spec;
+  if (const Value* placement = robot.find("placement")) spec.placement = read_placement(Section(*placement));
+  if (const Value* tool = robot.find("tool")) spec.tool = read_placement(Section(*tool));
+  return spec;
+}
+
 }  // namespace
 
 Placement read_placement(const Section& section) {
@@ -151,12 +160,14 @@ Placement read_placement(const Section& section) {
 RobotSpec read_robot(const Value& value, const std::filesystem::path& file, const Packages& packages) {
   const Section robot(value);
   const Value* model = robot.find("model");
+  if (const Value* poses = robot.find("poses")) return read_given_poses(*poses, robot);
   if (model != nullptr && robot.has("urdf"))
     model->fail("cannot be combined with robot.urdf", "one of urdf, model is allowed");
   if (model != nullptr) return read_model(*model, robot);
   if (!robot.has("urdf")) {
-    robot.allow({"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model"});
-    value.fail("has neither urdf nor model", "one of them is required");
+    robot.allow(
+        {"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model", "poses"});
+    value.fail("has neither urdf nor model nor poses", "one of them is required");
   }
   return read_serial_arm(robot, file, packages);
 }

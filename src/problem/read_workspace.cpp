@@ -68,13 +68,14 @@ void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::fil
       workspace.coupled.push_back(read_coupled(item));
 }
 
-void read_pose(const Section& pose, WorkspaceSpec& workspace) {
-  pose.allow({"x", "y", "z", "rx", "ry", "rz"});
-  for (std::size_t i = 0; i < pose_components.size(); ++i) {
+/// @param prefix  of the coordinates' names
+void read_pose(const Section& pose, const std::string& prefix, const std::array<std::string_view, 6>& names,
+               WorkspaceSpec& workspace) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     const Quantity quantity = i < 3 ? Quantity::length : Quantity::angle;
-    const Value& limits = pose.at(pose_components[i]);
+    const Value& limits = pose.at(names[i]);
     const yaml::Range range = read_range(limits, {quantity});
-    workspace.limits.push_back({{std::string(pose_components[i]), limits.line()}, range.lower, range.upper, quantity});
+    workspace.limits.push_back({{prefix + std::string(names[i]), limits.line()}, range.lower, range.upper, quantity});
   }
 }
 
@@ -134,10 +135,18 @@ std::vector<std::pair<SamplerKind, double>> read_samplers(const Section& section
 WorkspaceSpec read_workspace(const Value& value, const RobotSpec& robot, const std::filesystem::path& folder) {
   const Section section(value);
   WorkspaceSpec workspace;
-  if (std::holds_alternative<SixLegsSpec>(robot)) {
+  if (moves_by_pose(robot)) {
     section.allow({"pose", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
                    "readable_for", "uncalibrated"});
-    if (const Value* pose = section.find("pose")) read_pose(Section(*pose), workspace);
+    if (const Value* pose = section.find("pose"); pose != nullptr && std::holds_alternative<SixLegsSpec>(robot)) {
+      const Section box(*pose);
+      box.allow({"x", "y", "z", "rx", "ry", "rz"});
+      read_pose(box, "", pose_components, workspace);
+    } else if (pose != nullptr) {
+      const Section box(*pose);
+      box.allow({"x", "y", "z", "roll", "pitch", "yaw"});
+      read_pose(box, "robot.", {"x", "y", "z", "roll", "pitch", "yaw"}, workspace);
+    }
   } else {
     section.allow({"joints", "tool", "singularity", "collision", "line_of_sight", "stations", "motion", "samplers",
                    "readable_for", "uncalibrated"});

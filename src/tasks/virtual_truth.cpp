@@ -40,6 +40,9 @@ std::vector<int> robot_parameters(const IdentificationModel& seen, const Identif
 
 /// Joints of a serial arm may be of either kind.
 void require_unit_of_joints(const Measured& noise, const RobotSpec& robot) {
+  if (std::holds_alternative<GivenPosesSpec>(robot))
+    throw InputError({}, "the true robot's joints are not known",
+                     "robot: poses; its error is measurement: repeatability");
   if (std::holds_alternative<SerialArmSpec>(robot) || !(noise.value > 0)) return;
   const Quantity quantity = std::holds_alternative<SixLegsSpec>(robot) ? Quantity::length : Quantity::angle;
   if (noise.quantity != quantity)

@@ -16,6 +16,7 @@
 #include "posewright/controller/controller_settings.hpp"
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/lists/samples.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/srdf.hpp"
 #include "posewright/model/urdf_reader.hpp"
@@ -125,7 +126,7 @@ void read_program(const std::string& bytes) {
 }
 
 using Read = void (*)(const std::string&);
-const std::array<std::pair<const char*, Read>, 14> targets = {{
+const std::array<std::pair<const char*, Read>, 15> targets = {{
     {"problem", [](const std::string& bytes) { parse_problem(bytes, "problem.yaml"); }},
     {"urdf", read_urdf},
     {"stl", [](const std::string& bytes) { read_stl(bytes); }},
@@ -162,6 +163,7 @@ const std::array<std::pair<const char*, Read>, 14> targets = {{
     {"settings", [](const std::string& bytes) { parse_controller_settings(bytes, "controller.yaml"); }},
     {"lists", read_list},
     {"programs", read_program},
+    {"samples", [](const std::string& bytes) { read_samples(bytes, "samples.yaml"); }},
 }};
 
 Read chosen_target() {

@@ -21,6 +21,9 @@ OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 -1//1\n"
 NPY = b"\x93NUMPY\x01\x00F\x00{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3, 2), }          \n" + bytes(48)
 MEASURED = (b"id,j1 [deg],j2 [mm],P1.x [mm],P1.y [mm],P1.z [mm],P2.x [mm],P2.y [mm],P2.z [mm]\n1,10,20,1,2,3,4,5,6\n"
             b"1,10,20,1,,3,4,5,6\n2,-10,2.5e1,1,2,3,4,5,nan\n")
+SAMPLES = (b"parameters: {calibration_type: eye_on_base}\nsamples:\n- robot: {translation: {x: 0, y: 0, z: 1}, rotation: {x: 0, y: 0, z: 0, w: 1}}\n"
+           b"  tracking: {translation: {x: .nan, y: 0, z: 1}, rotation: {x: 0, y: 0, z: 0, w: 1}}\n",
+           b"- effector_wrt_world: [1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 4, 0, 0, 0, 1]\n  object_wrt_sensor: [1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 4, 0, 0, 0, 1]\n")
 SRDF = b'<robot name="r"><disable_collisions link1="a" link2="b" reason="Never"/></robot>'
 GROUPS = (b'<robot name="r"><group name="arm"><chain base_link="a" tip_link="b"/></group></robot>',
           b'<robot name="r"><group name="g"><joint name="j"/></group><group name="arm"><group name="g"/></group></robot>')
@@ -60,6 +63,7 @@ SEEDS = {
     "measured": lambda: [MEASURED],
     "sequence": lambda: files("tests/outputs/golden/*.json"),
     "parameters": lambda: [PARAMETERS],
+    "samples": lambda: [*SAMPLES, *files("tests/outputs/golden/*.samples")],
     "scene": lambda: [*SCENE],
     "srdf": lambda: [SRDF, *GROUPS, *files("tests/outputs/golden/*.srdf")],
     "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/outputs/golden/yaskawa.yaml")],

@@ -15,6 +15,8 @@ struct SeenPoints {
 struct HandEye {
   double rms = 0.0;    ///< of the distances that are left, in the robot's lengths, m; infinite: too few were seen
   double scale = 1.0;  ///< by which the instrument's lengths were multiplied
+  Eigen::Isometry3d X_BaseInstrument = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3Xd points{};  ///< on the tip, m
 };
 
 /// Fits s A p_ik = R_i t_k + o_i + c to all points p_ik seen at tips (R_i, o_i): A the rotation of the instrument, t_k

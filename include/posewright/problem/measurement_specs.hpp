@@ -38,7 +38,8 @@ struct StationSpec {
   Placement placement;  ///< in the measurement frame
 };
 
-/// Full or partial pose of the tip. Rows: the chosen components of (x, y, z, rx, ry, rz), measurement frame.
+/// Full or partial pose of the tip. Rows: the chosen components of (x, y, z, rx, ry, rz), measurement frame; of an
+/// instrument on the hand, the pose of the measurement frame in the tip.
 struct PoseMeasurement {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< m², m·rad, rad²
   Components components{0, 1, 2, 3, 4, 5};
@@ -46,6 +47,7 @@ struct PoseMeasurement {
   /// empty: `covariance` counts.
   std::vector<TargetSpec> photogrammetry;
   double point_sigma = 0.0;
+  bool on_hand = false;  ///< the tip carries the instrument, which reads a target that stands in the measurement frame
 };
 
 /// Positions of one or more targets fixed to the tip. `position` in the file is `points` with one target.

@@ -152,9 +152,21 @@ struct CompensatorGeometrySpec {
   double encoder_noise = 0.0;          ///< 1σ of q2, rad
 };
 
-using RobotSpec = std::variant<SerialArmSpec, SixLegsSpec, FiveBarSpec, DeltaSpec, CompensatorGeometrySpec>;
+/// A robot without a model: the poses of its tip are given.
+struct GivenPosesSpec {
+  Placement placement;  ///< nominal pose of the base in the measurement frame
+  Placement tool;       ///< nominal pose of the instrument, or of what it looks at, on the tip
+};
 
-/// Noise (1σ, rad or m) of the robot's joint or actuator readings.
+using RobotSpec =
+    std::variant<SerialArmSpec, SixLegsSpec, FiveBarSpec, DeltaSpec, CompensatorGeometrySpec, GivenPosesSpec>;
+
+/// True if x, y, z, rx, ry, rz of a pose are the coordinates, else joints.
+inline bool moves_by_pose(const RobotSpec& robot) {
+  return std::holds_alternative<SixLegsSpec>(robot) || std::holds_alternative<GivenPosesSpec>(robot);
+}
+
+/// Noise (1σ, rad or m) of the robot's joint or actuator readings; nothing for a robot without them.
 void set_joint_noise(RobotSpec& robot, double sigma);
 
 }  // namespace posewright

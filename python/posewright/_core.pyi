@@ -504,6 +504,28 @@ def evaluate(
     time_limit: Optional[float] = None,
     progress: _Report = None,
 ) -> Evaluation: ...
+def init(
+    robot: Optional[_Path] = None,
+    *,
+    # options
+    tracker: bool = False,
+    camera: Optional[str] = None,
+    board: Optional[str] = None,
+    fixed_camera: bool = False,
+    arm: bool = False,
+    samples: Optional[_Path] = None,
+    at: Union[str, ArrayLike, None] = None,
+    poses: Optional[int] = None,
+    accuracy: Union[float, str, None] = None,
+    base: Optional[str] = None,
+    tip: Optional[str] = None,
+    floor: Union[float, str, None] = None,
+    xacro: Union[str, Sequence[str], None] = None,
+    # own
+    packages: Mapping[str, _Path] = {},
+    folder: Optional[_Path] = None,
+    progress: _Report = None,
+) -> str: ...
 def observe(
     problem: Problem,
     variant: Optional[str] = None,

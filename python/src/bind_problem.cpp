@@ -2,9 +2,10 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
+#include "keywords.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/apply_parameters.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
 
@@ -55,7 +56,7 @@ std::shared_ptr<GivenProblem> read_given(const py::object& source, const py::obj
                packages);
 }
 
-/// What the user must know of the parameters becomes a warning.
+/// Notes about the parameters become warnings.
 std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& base, const py::dict& packages,
                                     const py::object& parameters) {
   auto problem = read_given(source, base, packages);
@@ -69,6 +70,24 @@ std::shared_ptr<GivenProblem> given(const py::object& source, const py::object& 
 std::shared_ptr<GivenProblem> from_text(const std::string& text, const py::object& base, const std::string& name,
                                         const py::dict& packages) {
   return parse(text, in_folder(base, name.c_str()), {}, packages);
+}
+
+/// Text of a first problem file.
+std::string init(const py::object& robot, const py::kwargs& named) {
+  Keywords keywords(named);
+  InitCall call;
+  keywords.read(init_options(), call);
+  const py::object packages = keywords.take("packages"), folder = keywords.take("folder");
+  keywords.finish();
+  if (robot.is_none() == call.facts.samples.empty())
+    throw py::type_error("init() needs a robot or samples, one of them");
+  if (!call.names_instrument()) throw InputError({}, "no instrument is named", "tracker=True or camera=NAME");
+  if (!robot.is_none()) call.facts.robot = robot.cast<fs::path>();
+  if (!packages.is_none()) call.facts.packages = packages_of(packages.cast<py::dict>());
+  call.facts.files_beside = false;
+  const fs::path file = in_folder(folder, "problem.yaml");
+  return watched(GivenProblem{}, {}, keywords.progress, OnInterrupt::raise,
+                 [&](const Monitor& monitor) { return init_problem(call.facts, file, monitor).text; });
 }
 
 std::vector<std::string> variant_names(const GivenProblem& problem) {
@@ -114,6 +133,13 @@ named package://name/…; parameters: a parameters file to linearise at, as Cali
         for (const std::string& name : variant_names(p)) names += (names.empty() ? "" : ", ") + name;
         return "<Problem " + p.problem.file.string() + ": variants " + names + ">";
       });
+  define(m, "init", &init,
+         documentation("init", "robot: object = None, *", rows_of(init_options()), {}, false,
+                       ", packages: dict = {}, folder: object = None, progress: object = None", "str",
+                       "Text of a problem file for a URDF or xacro, or for samples of hand-eye calibration: for "
+                       "Problem.from_text or a file; paths in it are "
+                       "relative to `folder` (docs/init.md). Lengths without unit in m."),
+         py::arg("robot") = py::none());
 }
 
 }  // namespace posewright::python

@@ -112,3 +112,22 @@ def test_base_and_packages_are_checked(examples):
         pw.Problem(examples / "kr270" / "problem.yaml", base=".")
     with pytest.raises(pw.InputError, match="is not a folder"):
         pw.Problem(examples / "kr270" / "problem.yaml", packages={"arm": examples / "absent"})
+
+
+def test_init_writes_the_text_that_the_command_writes(examples, tmp_path):
+    text = pw.init(examples / "kr270" / "kr270.urdf", tracker=True, at=(3, 0, 0.5), poses=12, folder=examples)
+    problem = pw.Problem.from_text(text, examples)
+    assert problem.variants[0] == "geometric" and "poses: 12" in text and "[3, 0, \"500 mm\"]" in text
+    with pytest.raises(pw.InputError, match="no instrument is named"):
+        pw.init(examples / "kr270" / "kr270.urdf")
+    with pytest.raises(pw.InputError, match="board does not go with tracker"):
+        pw.init(examples / "kr270" / "kr270.urdf", tracker=True, board="6x9x25mm")
+
+
+def test_init_makes_a_problem_of_samples(examples):
+    samples = examples / "hand_eye" / "hand_eye.samples"
+    problem = pw.Problem.from_text(pw.init(samples=samples))
+    camera = pw.calibrate(problem, samples, weights="robust").frames["tool"]
+    assert np.abs(camera[:3, 3] - [0.062, -0.018, 0.085]).max() < 2e-3
+    with pytest.raises(TypeError, match="a robot or samples"):
+        pw.init()

@@ -7,9 +7,11 @@
 #include "posewright/model/corrected_urdf.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/options/tables.hpp"
+#include "posewright/problem/read_problem.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/samples_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"
@@ -20,6 +22,15 @@ namespace posewright::cli {
 namespace {
 
 po::options_description calibrate_command_options() { return described(calibrate_options()).add(problem_options()); }
+
+/// The problem that `init --samples` writes. Wrong samples get small weights unless the weights are stated.
+Problem problem_of_samples(const std::filesystem::path& file, const po::variables_map& values,
+                           CalibrateOptions& calibrate) {
+  const SamplesProblem found = samples_problem(file, {});
+  print_notes(found.notes);
+  if (!found.wrong.empty() && values.count("weights") == 0) calibrate.weighting = Weighting::robust;
+  return parse_problem(found.text, "problem of " + file.filename().string(), {});
+}
 
 /// Output files for users of the robot.
 struct Results {
@@ -58,12 +69,17 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
 }
 
 CalibrateCall options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
-  if (positional.size() < 2)
-    throw InputError({}, positional.empty() ? "PROBLEM is missing" : "DATA.csv is missing",
-                     "see posewright help calibrate");
   CalibrateCall calibrate;
-  calibrate.data = positional[1];
-  calibrate.campaigns.assign(positional.begin() + 2, positional.end());
+  if (values.count("samples") > 0) {
+    if (!positional.empty()) throw InputError({}, "--samples and " + positional.front(), "one of them");
+    calibrate.data = text_of(values, "samples");
+  } else {
+    if (positional.size() < 2)
+      throw InputError({}, positional.empty() ? "PROBLEM is missing" : "DATA.csv is missing",
+                       "see posewright help calibrate");
+    calibrate.data = positional[1];
+    calibrate.campaigns.assign(positional.begin() + 2, positional.end());
+  }
   read_options(calibrate_options(), values, calibrate);
   calibrate.threads = common.threads;
   return calibrate;
@@ -108,8 +124,9 @@ int run_compliances(const CommonOptions& common, const Problem& problem, const C
 
 int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  const CalibrateCall calibrate = options_of(values, positional, common);
-  const Problem problem = given_problem(positional.front(), values);
+  CalibrateCall calibrate = options_of(values, positional, common);
+  const Problem problem = positional.empty() ? problem_of_samples(calibrate.data, values, calibrate)
+                                             : given_problem(positional.front(), values);
   const Results wanted(values, problem, calibrate);
   if (calibrate.models.size() > 1) {
     refuse_results(wanted, "a single --variant");

@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <numbers>
 #include <system_error>
 
 #include "command.hpp"
+#include "posewright/options/tables.hpp"
 #include "posewright/outputs/table.hpp"
-#include "posewright/problem/units.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/tasks/init_problem.hpp"
 #include "problem_source.hpp"
 #include "questions.hpp"
 #include "result_files.hpp"
@@ -22,28 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-po::options_description init_command_options() {
-  po::options_description options("Options");
-  options.add_options()                                                                                               //
-      ("tracker", "laser tracker, with three reflectors on the flange")                                               //
-      ("camera", text("NAME"), "camera and board: a name, WIDTHxHEIGHT@FOCAL in px, or list for the table of names")  //
-      ("board", text("RxCxS"), "rows, columns, spacing of its points (6x9x25mm)")                                     //
-      ("fixed-camera", "camera fixed in the cell, board on the hand")                                                 //
-      ("arm", "identify the arm's parameters too, not only the pose of the camera")                                   //
-      ("at", text("X,Y,Z"), "position of tracker, board or fixed camera in the base frame (in front)")                //
-      ("poses", text("N"), "number of poses (30; hand-eye calibration: 15)")                                          //
-      ("accuracy", text("LENGTH"), "required accuracy, with unit; without --poses it sets their number")              //
-      ("base", text("LINK"), "first link of the chain (parent of the first joint)")                                   //
-      ("tip", text("LINK"), "last link of the chain (tool0, flange or the last one)")                                 //
-      ("floor", text("HEIGHT"),
-       "height of floor or table in the base frame, with unit, or none (under the robot's foot)")        //
-      ("xacro", po::value<Words>()->value_name("NAME=VALUE")->composing(), "argument of a .xacro file")  //
-      ("output,o", text("FILE"), "problem file (problem.yaml; - for stdout)")                            //
-      ("force", "replace an existing file")                                                              //
-      ("yes", "ask no questions, even on a terminal");
-  options.add(package_options());
-  return options;
-}
+po::options_description init_command_options() { return described(init_options()).add(package_options()); }
 
 void print_cameras(bool json) {
   if (json) {
@@ -69,44 +46,6 @@ void print_cameras(bool json) {
   fmt::print("{}", table.text());
 }
 
-double length_of(const std::string& text, const std::string& what) {
-  const Measured value = parse_measured(text, {Quantity::length});
-  if (value.quantity == Quantity::number && value.value != 0)
-    throw InputError({}, what + " " + text + " has no unit", "0.1mm, for example");
-  return value.value;
-}
-
-double accuracy_of(const std::string& text) {
-  const double accuracy = length_of(text, "accuracy");
-  if (!(accuracy > 0)) throw InputError({}, "accuracy " + text, "a length > 0 with its unit, 0.1mm");
-  return accuracy;
-}
-
-/// Three lengths with commas between; metres where no unit is written.
-Eigen::Vector3d place_of(const std::string& text) {
-  Eigen::Vector3d place;
-  std::size_t begin = 0;
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t end = k < 2 ? text.find(',', begin) : text.size();
-    if (end == std::string::npos || (k == 2 && text.find(',', begin) != std::string::npos))
-      throw InputError({}, "place " + text, "three lengths X,Y,Z, in m where no unit is written");
-    place[k] = parse_measured(text.substr(begin, end - begin), {Quantity::length}).value;
-    begin = end + 1;
-  }
-  return place;
-}
-
-std::vector<std::pair<std::string, std::string>> xacro_arguments(const po::variables_map& values) {
-  std::vector<std::pair<std::string, std::string>> arguments;
-  if (values.count("xacro") == 0) return arguments;
-  for (const std::string& text : values["xacro"].as<Words>()) {
-    const std::size_t equal = text.find('=');
-    if (equal == std::string::npos || equal == 0) throw InputError({}, "--xacro " + text, "NAME=VALUE is expected");
-    arguments.emplace_back(text.substr(0, equal), text.substr(equal + 1));
-  }
-  return arguments;
-}
-
 /// The schema of the installation that this program belongs to, else of its sources; empty if it is in neither.
 std::string schema_file() {
   std::error_code code;
@@ -118,34 +57,14 @@ std::string schema_file() {
   return {};
 }
 
-void take_instrument(InitFacts& facts, const po::variables_map& values) {
-  const bool tracker = values.count("tracker") > 0, camera = values.count("camera") > 0;
-  if (tracker && camera) throw InputError({}, "--tracker and --camera", "one instrument is allowed");
-  facts.camera = camera;
-  for (const char* option : {"board", "fixed-camera", "arm"})
-    if (tracker && values.count(option) > 0)
-      throw InputError({}, fmt::format("--{} does not go with --tracker", option), "it belongs to --camera");
-  if (camera) facts.lens = find_camera(text_of(values, "camera"));
-  if (values.count("board") > 0) facts.board = parse_board(text_of(values, "board"));
-  facts.on_hand = values.count("fixed-camera") == 0;
-  facts.arm = values.count("arm") > 0;
-}
-
-InitFacts given_facts(const po::variables_map& values, const Words& positional) {
-  InitFacts facts;
-  facts.robot = single(positional, "ROBOT");
-  facts.xacro = xacro_arguments(values);
-  facts.packages = packages_of(values);
-  facts.base = text_of(values, "base");
-  facts.tip = text_of(values, "tip");
-  take_instrument(facts, values);
-  if (values.count("at") > 0) facts.place = place_of(text_of(values, "at"));
-  if (const std::string floor = text_of(values, "floor"); floor == "none") facts.no_floor = true;
-  else if (!floor.empty()) facts.floor = length_of(floor, "floor");
-  facts.poses = whole_number(values, "poses", 2, 10000);
-  if (values.count("accuracy") > 0) facts.accuracy = accuracy_of(text_of(values, "accuracy"));
-  facts.schema = schema_file();
-  return facts;
+InitCall given_call(const po::variables_map& values, const Words& positional) {
+  InitCall call;
+  if (values.count("samples") == 0) call.facts.robot = single(positional, "ROBOT");
+  else if (!positional.empty()) throw InputError({}, "ROBOT and --samples", "one of them");
+  call.facts.packages = packages_of(values);
+  read_options(init_options(), values, call);
+  call.facts.schema = schema_file();
+  return call;
 }
 
 void ask_instrument(InitFacts& facts) {
@@ -157,12 +76,13 @@ void ask_instrument(InitFacts& facts) {
 }
 
 /// Asks for missing facts that only the user knows.
-void ask_for_the_rest(InitFacts& facts, const po::variables_map& values) {
-  if (values.count("tracker") + values.count("camera") == 0) ask_instrument(facts);
-  if (facts.camera && values.count("board") == 0)
+void ask_for_the_rest(InitCall& call) {
+  InitFacts& facts = call.facts;
+  if (!call.names_instrument()) ask_instrument(facts);
+  if (facts.camera && !call.board_given)
     ask("Board: rows x columns x spacing of its points", "6x9x25mm",
         [&](const std::string& answer) { facts.board = parse_board(answer); });
-  if (facts.camera && values.count("fixed-camera") == 0)
+  if (facts.camera && facts.on_hand)
     ask("Camera on the hand, or fixed in the cell", "hand", [&](const std::string& answer) {
       if (answer != "hand" && answer != "fixed") throw InputError({}, "'" + answer + "'", "hand or fixed");
       facts.on_hand = answer == "hand";
@@ -170,20 +90,16 @@ void ask_for_the_rest(InitFacts& facts, const po::variables_map& values) {
   const std::string what = !facts.camera ? "tracker" : facts.on_hand ? "board" : "camera";
   if (!facts.place)
     ask("Where the " + what + " stands, X,Y,Z in the base frame", "in front", [&](const std::string& answer) {
-      if (answer != "in front") facts.place = place_of(answer);
+      if (answer != "in front") facts.place = place_of({"place", {answer}});
     });
   if (!facts.accuracy && !facts.poses) {
     ask("Required accuracy, with unit", "none", [&](const std::string& answer) {
-      if (answer != "none") facts.accuracy = accuracy_of(answer);
+      if (answer != "none") facts.accuracy = size_of({"accuracy", {answer}}, {Quantity::length}, true).value;
     });
     const std::string standard = facts.accuracy ? "as many as it takes" : facts.camera && !facts.arm ? "15" : "30";
     ask("Number of poses", standard, [&](const std::string& answer) {
       if (answer == standard) return;
-      int number = 0;
-      const auto [end, code] = std::from_chars(answer.data(), answer.data() + answer.size(), number);
-      if (code != std::errc() || end != answer.data() + answer.size() || number < 2 || number > 10000)
-        throw InputError({}, "'" + answer + "'", "a whole number from 2 to 10000");
-      facts.poses = number;
+      facts.poses = whole_of({"poses", {answer}}, least_init_poses, most_init_poses);
     });
   }
 }
@@ -202,8 +118,16 @@ void require_new(const fs::path& file, const std::string& text, bool force) {
     throw CannotDo(file.string() + " exists; --force replaces it");
 }
 
+/// The file that the problem is made from.
+const fs::path& source_of(const InitFacts& facts) { return facts.samples.empty() ? facts.robot : facts.samples; }
+
 void print_summary(const InitFacts& facts, const InitResult& result, const fs::path& file,
                    const po::variables_map& values) {
+  if (!facts.samples.empty()) {
+    fmt::print("{}: hand-eye calibration\nCheck the file, then run: posewright calibrate {} {}\n", file.string(),
+               file.string(), facts.samples.string());
+    return;
+  }
   fmt::print("{}: {} joints from {} to {}, {}\n", file.string(), result.joints, result.base, result.tip,
              !facts.camera   ? std::string("laser tracker")
              : facts.on_hand ? facts.lens.name + " on the hand"
@@ -217,7 +141,8 @@ int run_init(const po::variables_map& values, const Words& positional) {
     print_cameras(common.json);
     return done;
   }
-  InitFacts facts = given_facts(values, positional);
+  InitCall call = given_call(values, positional);
+  InitFacts& facts = call.facts;
   facts.files_beside = text_of(values, "output") != "-";
   const std::string output = values.count("output") > 0 ? text_of(values, "output") : "problem.yaml";
   if (output.empty()) throw InputError({}, "-o names no file", "a file, or - for stdout");
@@ -225,10 +150,10 @@ int run_init(const po::variables_map& values, const Words& positional) {
   if (to_stdout && common.json) throw InputError({}, "--json and -o - both need stdout", "give -o a file");
   if (!to_stdout) {
     require_new(output, "", values.count("force") > 0);
-    check_outputs({output}, {facts.robot}, true);
+    check_outputs({output}, {source_of(facts)}, true);
   }
-  if (can_ask() && values.count("yes") == 0 && !common.json) ask_for_the_rest(facts, values);
-  else if (values.count("tracker") + values.count("camera") == 0)
+  if (can_ask() && facts.samples.empty() && values.count("yes") == 0 && !common.json) ask_for_the_rest(call);
+  else if (!call.names_instrument())
     throw InputError({}, "no instrument is named", "--tracker or --camera NAME (--camera list: the table)");
   const auto [result, was_interrupted] = watched(common, 0, [&](const Monitor& monitor) {
     return init_problem(facts, to_stdout ? fs::path("problem.yaml") : fs::path(output), monitor);
@@ -251,7 +176,8 @@ int run_init(const po::variables_map& values, const Words& positional) {
     fmt::print("{}", json_text(nlohmann::ordered_json{
                          {"schema", "posewright/init/1"},
                          {"problem", output},
-                         {"urdf", result.expanded.file.empty() ? facts.robot.string() : result.expanded.file.string()},
+                         {facts.samples.empty() ? "urdf" : "samples",
+                          result.expanded.file.empty() ? source_of(facts).string() : result.expanded.file.string()},
                          {"base", result.base},
                          {"tip", result.tip},
                          {"joints", result.joints},

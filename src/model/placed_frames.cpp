@@ -18,8 +18,8 @@ std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const ProblemVarian
                                    const std::vector<CalibratedValue>& values, const std::vector<Parameter>&) {
   const ChainDescription chain = read_urdf_chain(arm, variant.problem.at(arm.line));
   const ChainCorrection correction = chain_correction(chain, variant.spec.convention, values);
-  return {{"base", placement_key, false, chain.X_MeasureBase * correction.base.X},
-          {"tool", "", true, correction.tip.X}};
+  return {{"base", placement_key, "measurement", chain.X_MeasureBase * correction.base.X},
+          {"tool", "", "tip", correction.tip.X}};
 }
 /// Nothing of a robot without a placement is stated in a measurement frame.
 template <class Robot>
@@ -27,10 +27,19 @@ std::vector<PlacedFrame> frames_of(const Robot& robot, const ProblemVariant&, co
                                    const std::vector<Parameter>& at) {
   std::vector<PlacedFrame> frames;
   if constexpr (requires { robot.placement; })
-    frames.push_back({"base", placement_key, false, nominal_placement(at, "base", isometry(robot.placement))});
-  if constexpr (requires { robot.tool; })
-    frames.push_back({"tool", "robot: tool", true, nominal_placement(at, "tool", isometry(robot.tool))});
-  else frames.push_back({"tool", "", true, nominal_placement(at, "tool", Eigen::Isometry3d::Identity())});
+    frames.push_back({"base", placement_key, "measurement", nominal_placement(at, "base", isometry(robot.placement))});
+  frames.push_back({"tool", "", "tip", nominal_placement(at, "tool", Eigen::Isometry3d::Identity())});
+  return frames;
+}
+/// Of a robot that is known by its poses, what is in its base besides: the camera that looks, or its target.
+std::vector<PlacedFrame> frames_of(const GivenPosesSpec& robot, const ProblemVariant& variant,
+                                   const std::vector<CalibratedValue>&, const std::vector<Parameter>& at) {
+  const Eigen::Isometry3d X_MeasureBase = nominal_placement(at, "base", isometry(robot.placement));
+  std::vector<PlacedFrame> frames = {
+      {"base", placement_key, "measurement", X_MeasureBase},
+      {"tool", "robot: tool", "tip", nominal_placement(at, "tool", isometry(robot.tool))}};
+  if (const auto* pose = std::get_if<PoseMeasurement>(&variant.problem.measurement.instrument))
+    frames.push_back({pose->on_hand ? "target" : "instrument", "", "base", X_MeasureBase.inverse(), "base"});
   return frames;
 }
 
@@ -56,10 +65,11 @@ std::vector<PlacedFrame> placed_frames(const ProblemVariant& variant, const std:
   const InstrumentView view = view_of(variant.problem.measurement);
   if (view.has_places)
     for (const InstrumentView::Place& place : view.places)
-      frames.push_back({place.parameters, key_of(place.parameters), view.places_on_tip,
+      frames.push_back({place.parameters, key_of(place.parameters), view.places_on_tip ? "tip" : "measurement",
                         nominal_placement(at, place.parameters, isometry(place.station.placement))});
   if (!view.points_parameters.empty())
-    frames.push_back({view.points_parameters, key_of(view.points_parameters), view.points_on_tip,
+    frames.push_back({view.points_parameters, key_of(view.points_parameters),
+                      view.points_on_tip ? "tip" : "measurement",
                       nominal_placement(at, view.points_parameters, isometry(view.points_at))});
   return frames;
 }

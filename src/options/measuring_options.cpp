@@ -99,6 +99,9 @@ const OptionTable<CalibrateCall>& calibrate_options() {
     t.row(
         {"no-prior", "", "plain least squares, without manufacturing tolerances as prior knowledge", OptionKind::flag},
         [](C& o, const GivenOption&) { o.prior = Prior::none; });
+    t.of_program("samples", "FILE",
+                 "samples of hand-eye calibration in place of PROBLEM and DATA.csv: easy_handeye2, MoveIt, CSV with "
+                 "robot.* and pose.*");
     t.text("validate", "FILE", "more measured data, for validation; they are not fitted", &C::validate,
            OptionKind::file);
     t.row({"moved", "WHAT",
@@ -262,7 +265,8 @@ const OptionTable<ReportOptions>& report_options() {
 }
 
 std::vector<CommandRows> option_rows() {
-  return {{"observe", "observe", rows_of(observe_options())},
+  return {{"init", "init", rows_of(init_options())},
+          {"observe", "observe", rows_of(observe_options())},
           {"plan", "plan", rows_of(plan_options())},
           {"select", "select", rows_of(select_options())},
           {"evaluate", "evaluate", rows_of(evaluate_options())},

@@ -20,8 +20,9 @@ Eigen::Quaterniond quaternion_of(const Eigen::Isometry3d& X) {
 /// True if the readings put the frame there.
 std::string remark_of(const Calibration& c, const PlacedFrame& frame) {
   bool estimated = false;
+  const std::string parameters = (frame.moved_by.empty() ? frame.name : frame.moved_by) + ".";
   for (const CalibratedParameter& p : c.parameters) {
-    if (!p.estimated || !p.label.name.starts_with(frame.name + ".")) continue;
+    if (!p.estimated || !p.label.name.starts_with(parameters)) continue;
     if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
     estimated = true;
   }
@@ -42,8 +43,7 @@ std::string frames_text(const Calibration& c) {
   Table table({"frame", "key in the file", "in the frame of", "x [mm]", "y", "z", "roll [deg]", "pitch", "yaw", ""},
               {A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::right, A::left});
   for (const PlacedFrame& frame : c.frames) {
-    std::vector<std::string> cells = {frame.name, frame.key.empty() ? "-" : frame.key,
-                                      frame.on_tip ? "the tip" : "the measurement"};
+    std::vector<std::string> cells = {frame.name, frame.key.empty() ? "-" : frame.key, "the " + frame.in};
     for (const double p : frame.X.translation()) cells.push_back(fixed(1e3 * p));
     for (const double angle : rpy_of(frame.X.linear())) cells.push_back(fixed(angle * 180 / std::numbers::pi));
     cells.push_back(remark_of(c, frame));
@@ -59,7 +59,7 @@ nlohmann::ordered_json frames_json(const Calibration& c) {
     const Eigen::Quaterniond q = quaternion_of(frame.X);
     list.push_back({{"name", frame.name},
                     {"key", frame.key.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(frame.key)},
-                    {"in", frame.on_tip ? "tip" : "measurement"},
+                    {"in", frame.in},
                     {"position", {p.x(), p.y(), p.z()}},
                     {"rpy", {rpy.x(), rpy.y(), rpy.z()}},
                     {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}});

@@ -17,6 +17,7 @@
 #include "posewright/support/random.hpp"
 #include "posewright/support/text.hpp"
 #include "posewright/tasks/observe_problem.hpp"
+#include "posewright/tasks/samples_problem.hpp"
 #include "posewright/workspace/motion_space.hpp"
 #include "without_roadmap.hpp"
 
@@ -198,7 +199,7 @@ std::vector<double> find_home(const Problem& problem, std::string& why) {
   }
 }
 
-/// What most random configurations collide with, if nearly all of them collide; none else.
+/// Pair of bodies that most random configurations collide with, if nearly all of them collide; none else.
 std::optional<InitObstacle> obstacle_of(const Problem& problem) {
   const std::shared_ptr<const Cell> cell = make_cell(problem);
   Random random(collision_seed, 0);
@@ -295,6 +296,13 @@ BoardFacts parse_board(const std::string& text) {
 }
 
 InitResult init_problem(const InitFacts& facts, const fs::path& file, const Monitor& monitor) {
+  if (!facts.samples.empty()) {
+    SamplesProblem found = samples_problem(facts.samples, facts.on_hand ? std::nullopt : std::optional(false));
+    InitResult result;
+    result.text = std::move(found.text);
+    result.notes = std::move(found.notes);
+    return result;
+  }
   InitRobot robot = look_at_robot(facts, file);
   InitResult result;
   result.base = robot.links.base;

@@ -358,6 +358,38 @@ TEST(Init, WritesOverNothingThatIsThere) {
   EXPECT_EQ(read_file(folder / "robot.urdf"), read_file(kr270));
 }
 
+TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
+  const TemporaryFolder folder;
+  const std::string samples = POSEWRIGHT_SOURCE_DIR "/examples/hand_eye/hand_eye.samples";
+  const ProgramRun run = init(folder, {"--samples", samples});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("note: sample 5 is wrong: 39"));
+  const auto result = [&](std::vector<std::string> words) {
+    const ProgramRun done = run_program(folder.path(), words);
+    EXPECT_EQ(done.exit_code, 0) << words.front() << ": " << done.err;
+    return done.out;
+  };
+  const std::string short_way = result({"calibrate", "--samples", samples, "--json"});
+  EXPECT_EQ(result({"calibrate", "problem.yaml", samples, "--weights", "robust", "--json"}).substr(0, 40),
+            short_way.substr(0, 40));
+  // make_samples.py says where the camera is.
+  const auto frames = nlohmann::json::parse(short_way)["frames"];
+  EXPECT_EQ(frames[1]["name"], "tool");
+  const std::array<double, 3> camera{0.062, -0.018, 0.085}, board{0.61, 0.08, 0.004};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(frames[1]["position"][k], camera[k], 2e-3);
+    EXPECT_NEAR(frames[2]["position"][k], board[k], 2e-3);
+  }
+  EXPECT_EQ(frames[2]["name"], "target");
+  EXPECT_EQ(frames[2]["in"], "base");
+  EXPECT_THAT(result({"plan", "problem.yaml", "--poses", "6"}), HasSubstr("6 parameters and 6 nuisance parameters"));
+  result({"evaluate", "problem.yaml", "poses.csv"});
+  EXPECT_THAT(result({"next", "problem.yaml", "--data", samples}), HasSubstr("robot.roll [deg]"));
+  const ProgramRun refused = run_program(folder.path(), {"export", "plan.json", "--to", "moveit"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("moveit is for robots with joints"));
+}
+
 TEST(Init, WhatIsMissingOrWrongIsOneLine) {
   const TemporaryFolder folder;
   folder.write("two.urdf",
@@ -374,10 +406,13 @@ TEST(Init, WhatIsMissingOrWrongIsOneLine) {
       {{kr270, "--tracker", "--camera", "zed"}, "one instrument is allowed"},
       {{kr270, "--tracker", "--tip", "flnge"}, "has no link 'flnge' (did you mean 'flange'?), --tip"},
       {{kr270, "--tracker", "--at", "1,2"}, "three lengths X,Y,Z"},
-      {{kr270, "--tracker", "--accuracy", "0.1"}, "accuracy 0.1 has no unit"},
+      {{kr270, "--tracker", "--accuracy", "0.1"},
+       "--accuracy 0.1; a value above 0 with its unit is expected: m, mm, um, nm"},
       {{"two.urdf", "--tracker"}, "has several arms or ends; name one with --tip: l, r"},
       {{"a.urdf.xacro", "--tracker"}, "needs arguments that have no default: prefix"},
       {{"none.urdf", "--tracker"}, "none.urdf"},
+      {{kr270, "--samples", "samples.yaml"}, "ROBOT and --samples; one of them"},
+      {{"--samples", "samples.yaml"}, "samples.yaml"},
   };
   for (const auto& [words, message] : wrong) {
     const ProgramRun run = init(folder, words);

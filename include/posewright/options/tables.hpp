@@ -9,6 +9,7 @@
 #include "posewright/results/calibration.hpp"
 #include "posewright/study/run_options.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "posewright/tasks/init_problem.hpp"
 
 namespace posewright {
 
@@ -41,6 +42,18 @@ struct CalibrateCall : CalibrateOptions {
   std::optional<DhConvention> dh{};
 };
 
+/// Options of `init`, and which of its questions they answer.
+struct InitCall {
+  InitFacts facts;
+  bool tracker = false, board_given = false;
+
+  bool names_instrument() const { return tracker || facts.camera || !facts.samples.empty(); }
+};
+inline constexpr int least_init_poses = 2, most_init_poses = 10'000;
+/// Three lengths with commas between, or three values; m where no unit is written. Throws InputError.
+Eigen::Vector3d place_of(const GivenOption& given);
+
+const OptionTable<InitCall>& init_options();
 const OptionTable<ObserveOptions>& observe_options();
 const OptionTable<PlanCall>& plan_options();
 const OptionTable<SelectOptions>& select_options();

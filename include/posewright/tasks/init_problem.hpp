@@ -25,7 +25,8 @@ BoardFacts parse_board(const std::string& text);
 
 /// Facts for a first problem file. Missing ones are found or chosen, with a comment in the file.
 struct InitFacts {
-  std::filesystem::path robot;  ///< URDF or .xacro
+  std::filesystem::path robot;    ///< URDF or .xacro
+  std::filesystem::path samples;  ///< in place of a robot: poses of its tip and of a target (samples_problem)
   std::vector<std::pair<std::string, std::string>> xacro;
   Packages packages;
   std::string base, tip;
@@ -48,7 +49,7 @@ struct InitResult {
   std::string base, tip;
   int joints = 0;
   std::vector<std::string> notes;  ///< default choices
-  /// What xacro made of the robot's file, which `text` names in its place: to be written beside the problem. Empty for
+  /// Expansion of the robot's xacro file, which `text` names in its place: to be written beside the problem. Empty for
   /// a URDF, and without InitFacts::files_beside.
   FileToWrite expanded;
 };
@@ -57,6 +58,7 @@ struct InitResult {
 /// identifies the planned parameters. Where the instrument, or what it looks at, may stand anywhere, the first of some
 /// places from which that holds is taken. Meshes that are not found leave out the cell, with a comment. If nearly every
 /// configuration collides, the floor or the pair of links that does so most is left out, with a note and a comment.
+/// Samples make the problem of samples_problem(); of the facts, only a fixed camera counts then.
 /// @param file  where the text will be: paths in it are relative to its folder
 /// Throws InputError as propose_chain() and for numbers out of range; CannotDo where no pose is feasible from any
 /// place.

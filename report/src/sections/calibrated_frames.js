@@ -7,7 +7,7 @@ export function calibratedFrames(c) {
   if (!(c.frames?.length > 0)) return null;
   const rows = c.frames.map((f) => [
     f.name,
-    f.in === 'tip' ? 'the tip' : 'the measurement',
+    `the ${f.in}`,
     ...f.position.map((v) => fixed(1e3 * v, 4)),
     ...f.quaternion_xyzw.map((v) => fixed(v, 8)),
   ]);

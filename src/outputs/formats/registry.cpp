@@ -72,6 +72,11 @@ std::string readable_format_names() {
 }
 
 Exported export_poses(const PoseFormat& format, const PoseSequence& sequence, const ExportOptions& options) {
+  const bool poses_alone = std::ranges::find(sequence.names, "robot.roll") != sequence.names.end();
+  if (poses_alone && format.name != "csv" && format.name != "json")
+    throw CannotDo(format.name +
+                   " is for robots with joints, the plan has poses of the tip (robot: poses); csv and json " +
+                   "have a place for them");
   if (!format.any_coordinates) {
     const char* others = "; csv and json have a place for them";
     if (sequence.is_platform)

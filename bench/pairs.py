@@ -104,7 +104,7 @@ def eight_joints(folder):
     (folder / "eight.urdf").write_text(urdf + "</robot>\n")
     (folder / "eight.yaml").write_text(
         "posewright: 1\nrobot: {urdf: eight.urdf, tip: l8}\nmeasurement: {type: points, targets: {P1: [0.1, 0, 0.1], P2: [-0.1, 0.05, 0.1], P3: [0, -0.1, 0.1]}, "
-        'device: {type: isotropic, noise: "0.1 mm"}}\nvariants: {geometric: {parameters: auto, nuisance: ["base.*", "target.*"]}}\ndesign: {poses: 24}\n')
+        'device: {type: isotropic, noise: "0.1 mm"}}\nvariants: {geometric: {parameters: auto, nuisance: ["base.*", "target.*"]}}\ndesign: {criterion: o1, poses: 24}\n')
     return "eight.yaml"
 
 

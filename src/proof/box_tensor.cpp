@@ -211,14 +211,26 @@ int BoxTensor::most_varied() const {
   return most;
 }
 
+namespace {
+
+/// A turn and more is one turn.
+double width_to_part(const HarmonicAxis& axis) {
+  const double width = axis.upper - axis.lower;
+  return axis.turns && !axis.counts_turns ? std::min(width, 2 * std::numbers::pi) : width;
+}
+
+}  // namespace
+
+int parts_of_axis(const HarmonicAxis& axis, int degree) {
+  return axis.turns && degree > 0 ? std::max(1, int(std::ceil(width_to_part(axis) / widest - 1e-9))) : 1;
+}
+
 std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes, const std::vector<int>& degrees) {
   std::vector<SearchBox> boxes(1);
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const HarmonicAxis& axis = axes[a];
-    // A turn and more is one turn.
-    double width = axis.upper - axis.lower;
-    if (axis.turns && !axis.counts_turns) width = std::min(width, 2 * std::numbers::pi);
-    const int parts = axis.turns && degrees[a] > 0 ? std::max(1, int(std::ceil(width / widest - 1e-9))) : 1;
+    const double width = width_to_part(axis);
+    const int parts = parts_of_axis(axis, degrees[a]);
     std::vector<SearchBox> finer;
     for (const SearchBox& box : boxes)
       for (int k = 0; k < parts; ++k) {

@@ -67,6 +67,9 @@ inline double upper_of(const std::vector<HarmonicAxis>& axes, const SearchBox& b
   return axes[a].follows < 0 ? box.upper[a] : box.upper[std::size_t(axes[a].follows)] - axes[a].shift;
 }
 
+/// Parts of an axis that are narrow enough for u.
+int parts_of_axis(const HarmonicAxis& axis, int degree);
+
 /// The box of all axes in parts whose angles are narrow enough for u; an axis of degree 0 is left whole.
 std::vector<SearchBox> parts_of_everything(const std::vector<HarmonicAxis>& axes, const std::vector<int>& degrees);
 

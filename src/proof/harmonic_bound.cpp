@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "box_tensor.hpp"
 #include "harmonic_limits.hpp"
 #include "interpolation_error.hpp"
 #include "part_squares.hpp"
@@ -73,10 +74,16 @@ struct HarmonicSensitivity::Places {
   }
 };
 
-double HarmonicSensitivity::cost(const HarmonicForm& form, const HarmonicDegrees& squares) {
+HarmonicSensitivity::Cost HarmonicSensitivity::cost(const HarmonicForm& form, const HarmonicDegrees& squares) {
   const std::vector<int> none, &limits = form.limits().of_points.empty() ? none : form.limit_degrees();
   const CommonDegrees degrees = common_degrees(form, squares, limits);
-  return double(harmonic_size(form.axes(), degrees.all)) * double((degrees.affine ? 3 : 1) * form.parts().size() + 1);
+  const double size = double(harmonic_size(form.axes(), degrees.all));
+  double boxes = 1;
+  for (std::size_t a = 0; a < form.axes().size(); ++a) boxes *= parts_of_axis(form.axes()[a], degrees.all[a]);
+  const auto with_distance = std::count_if(form.parts().begin(), form.parts().end(),
+                                           [](const HarmonicPart& part) { return part.distance >= 0; });
+  return {size * double((degrees.affine ? 3 : 1) * form.parts().size() + 1), size * (1 + 0.25 * double(with_distance)),
+          boxes};
 }
 
 HarmonicSensitivity::HarmonicSensitivity(const HarmonicForm& form, const Eigen::MatrixXd& T,

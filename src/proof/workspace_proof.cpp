@@ -21,13 +21,10 @@ namespace {
 constexpr std::size_t axes_for_nothing = 3, axes_at_once = 4;
 // Coefficients of all tensors that a proof may hold: half a gigabyte.
 constexpr double most_coefficients = 64e6;
-// Coefficients of all boxes: some ten seconds of one core, whatever the number of joints. Counted and not timed, so
-// that a plan is the same on every machine.
+// Coefficients of all boxes: some seconds of one core, whatever the number of joints. Counted and not timed, so that a
+// plan is the same on every machine.
 constexpr double proof_work = 3e8;
-constexpr long fewest_boxes = 3000, fewest_large_boxes = 300;
-// A box of more coefficients than this takes some ten milliseconds.
-constexpr double large_box = 1e6;
-// And of more than this some milliseconds: worth sharing.
+// A box of more coefficients than this takes some milliseconds: worth sharing.
 constexpr double shared_box = 1e5;
 // A bound that is loose by more is not worth its time.
 constexpr double most_loose = 0.05;
@@ -72,6 +69,7 @@ double looseness(const HarmonicForms& forms, const WeightedConfigurations& where
 struct Approach {
   HarmonicForms forms;
   std::vector<HarmonicDegrees> degrees{};  ///< of the forms' squares
+  double work = 0.0;                       ///< of the largest box
 };
 
 /// @return why there is no proof by it; empty: there is one
@@ -80,14 +78,19 @@ std::string choose(Approach& approach, const WorkspaceBound& found, const Weight
                    const WorkspaceBoundOptions& options) {
   const HarmonicForms& forms = approach.forms;
   if (!forms.why_not.empty()) return forms.why_not;
-  double cost = 0;
+  double coefficients = 0, first_work = 0;
   for (const auto& form : forms.forms) {
     approach.degrees.push_back(degrees_of_squares(*form, found.factor, options.seed));
-    cost += HarmonicSensitivity::cost(*form, approach.degrees.back());
+    const HarmonicSensitivity::Cost cost = HarmonicSensitivity::cost(*form, approach.degrees.back());
+    coefficients += cost.coefficients;
+    first_work += cost.boxes * cost.work;
+    approach.work = std::max(approach.work, cost.work);
   }
-  if (forms.forms.empty() || cost > most_coefficients) return "more joints and effects than memory holds";
+  if (forms.forms.empty() || coefficients > most_coefficients) return "more joints and effects than memory holds";
   if (candidates < few_candidates && forms.forms.front()->axes().size() > axes_for_nothing)
     return "a quick look at fewer than 1,000 candidates";
+  if (!options.proof.seconds && first_work > proof_work)
+    return fmt::format("{} axes take minutes to bound: --proof-time 300", forms.forms.front()->axes().size());
   const double loose = looseness(forms, support, space, found.factor, rows);
   if (loose > most_loose)
     return fmt::format("the bound of joint noise, visit noise or deflections is {:.0f} % too high", 100 * loose);
@@ -110,21 +113,15 @@ Functions functions_of(const Approach& approach, const Eigen::MatrixXd& T, const
   return functions;
 }
 
-/// As many boxes as the work allows.
-long most_boxes(const Functions& functions) {
-  double largest = 0;
-  for (const auto& f : functions) largest = std::max(largest, f->work());
-  return std::max(largest > large_box ? fewest_large_boxes : fewest_boxes, long(proof_work / largest));
-}
-
+/// @param work      of the largest box
 /// @param extra     what the prior adds to every d
 /// @param searched  no search found a d above this
-BoxSearchOptions limits_of(const Functions& functions, const WorkspaceBound& found,
+BoxSearchOptions limits_of(const Functions& functions, double work, const WorkspaceBound& found,
                            const WorkspaceBoundOptions& options, double extra, double searched) {
   BoxSearchOptions limits;
   limits.shared = std::any_of(functions.begin(), functions.end(), [](const auto& f) { return f->size() > shared_box; });
   limits.tolerance = options.tolerance;
-  limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : most_boxes(functions);
+  limits.most_boxes = options.proof.seconds ? std::numeric_limits<long>::max() : long(proof_work / work);
   limits.threads = options.threads;
   if (options.proof.gap) {
     limits.enough = found.degree * (1 + *options.proof.gap) - extra;
@@ -192,7 +189,7 @@ void prove_workspace(WorkspaceBound& result, const ConfigurationSpace& space, st
   const double extra =
       options.prior.size() > 0 ? (result.factor.transpose() * options.prior * result.factor).trace() : 0.0;
   const double searched = (result.max_ratio * result.degree - extra) * (1 + options.tolerance);
-  const BoxSearchOptions limits = limits_of(functions, result, options, extra, searched);
+  const BoxSearchOptions limits = limits_of(functions, approach.work, result, options, extra, searched);
   const Refutation refutation{space, rows, searched};
   take(largest_value(functions, limits, own, &refutation), approach.forms, space, extra, result);
 }

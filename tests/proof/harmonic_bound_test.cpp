@@ -216,6 +216,35 @@ TEST(BoxTensor, NoMultipleIsSoughtOfWhatIsNotFinite) {
   EXPECT_GE(bound.best_multiple(limit), 0.0);
 }
 
+/// Axes, and one part on them.
+class FormOfAxes : public HarmonicForm {
+ public:
+  explicit FormOfAxes(std::vector<HarmonicAxis> axes) {
+    axes_ = std::move(axes);
+    parts_.resize(1);
+  }
+  std::unique_ptr<Evaluator> evaluator() const override { return nullptr; }
+  std::vector<double> configuration(std::span<const double>) const override { return {}; }
+  std::vector<double> values(std::span<const double>) const override { return {}; }
+};
+
+TEST(HarmonicSensitivity, CostsOfAnArmAreCountedBeforeAnythingIsComputed) {
+  const HarmonicAxis turn{-std::numbers::pi, std::numbers::pi, true}, slide{0.0, 1.0, false};
+  const FormOfAxes form({turn, turn, turn, slide});
+  const auto cost = HarmonicSensitivity::cost(form, {{2, 2, 2, 2}});
+  // 1, cos, sin, cos 2, sin 2 of each angle, 1, x, x² of the length; for the part and for the tensor of a box.
+  EXPECT_EQ(cost.coefficients, 2 * 5 * 5 * 5 * 3);
+  EXPECT_EQ(cost.work, 5 * 5 * 5 * 3);
+  EXPECT_EQ(cost.boxes, 3 * 3 * 3);
+
+  Random random(5, 1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const FormOfAxes any(random_axes(4, random));
+    const std::vector<int> degrees{2, 0, 1, 2};
+    EXPECT_EQ(HarmonicSensitivity::cost(any, {degrees}).boxes, double(parts_of_everything(any.axes(), degrees).size()));
+  }
+}
+
 TEST(LargestValue, IsNeverExceededAndIsReached) {
   Random random(11, 1);
   for (int trial = 0; trial < 300; ++trial) {

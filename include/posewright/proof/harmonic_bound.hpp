@@ -45,8 +45,13 @@ class HarmonicSensitivity {
                       std::uint64_t seed, int threads, const Monitor& monitor);
   ~HarmonicSensitivity();
 
-  /// Coefficients of a form's tensors together: what memory and a box's time go with.
-  static double cost(const HarmonicForm& form, const HarmonicDegrees& squares);
+  /// What bounding a form takes, known before anything is computed.
+  struct Cost {
+    double coefficients = 0.0;  ///< of all tensors: memory
+    double work = 0.0;          ///< of a box, in coefficients of its tensor: time
+    double boxes = 0.0;         ///< to begin with
+  };
+  static Cost cost(const HarmonicForm& form, const HarmonicDegrees& squares);
 
   /// False if a value was not finite, or a part is no polynomial of the stated degrees at random places.
   bool defined() const { return defined_; }
@@ -55,8 +60,6 @@ class HarmonicSensitivity {
   std::unique_ptr<BoxJudge> judge(const Refutation* refutation = nullptr) const;
   /// Coefficients of the tensor that a box is bounded by.
   double size() const { return double(harmonic_size(form_.axes(), degrees_)); }
-  /// Cost of a box, in coefficients of an existing tensor.
-  double work() const { return size() * (1 + 0.25 * double(terms_.size())); }
 
  private:
   friend class HarmonicJudge;

@@ -110,6 +110,8 @@ class ListEvaluation {
   /// Bounds for as many candidates by every criterion; the references of the criterion in use.
   std::vector<double> score_all(PoseListEvaluation& result, const Judgement& judgement) {
     std::vector<double> references;
+    Bound bound;
+    bool of_determinant = false;
     for (const CriterionEntry& entry : criterion_registry()) {
       if (entry.several_variants != (study_.variants.size() > 1) && entry.name != study_.criterion) continue;
       if (entry.needs_truth && entry.name != study_.criterion &&
@@ -118,7 +120,9 @@ class ListEvaluation {
       const bool chosen = entry.name == study_.criterion;
       if (entry.needs_test_poses && !any_is_moved(study_.first().test_points) && !chosen) continue;
       if (!chosen && monitor_.should_stop()) continue;
-      const Bound bound = bound_of(entry.name);
+      // Two names of the determinant have one bound.
+      if (!(entry.determinant && of_determinant)) bound = bound_of(entry.name);
+      of_determinant = entry.determinant;
       const double phi = phi_of(*bound.measure, entry.name, study_, poses_);
       CriterionScore score{entry.name, entry.shown(phi, judgement.evaluations.front().indices), std::nullopt};
       if (bound.certificate.proved) {

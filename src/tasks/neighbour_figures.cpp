@@ -125,7 +125,7 @@ std::optional<NeighbourFigures::Figures> NeighbourFigures::of(const Eigen::Matri
   const Eigen::MatrixXd inverse =
       factor.matrixL().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));  // L⁻¹: M⁻¹ = L⁻ᵀ L⁻¹
   figures.sigma = inverse.colwise().norm();
-  figures.variance = (inverse * test_).cwiseProduct(inverse).sum();
+  if (!information_.test.empty()) figures.variance = (inverse * test_).cwiseProduct(inverse).sum();
   return figures;
 }
 

@@ -172,22 +172,23 @@ class Neighbourhood {
       pose.told.assign(result_.places.size(), false);
       errors = {};
       if (!surface) continue;
-      std::size_t known = 0, told = 0;
-      for (std::size_t p = 0; p < result_.places.size(); ++p) {
+      // More places than that, and half as long steps are tried.
+      std::size_t may_be_lost = std::size_t((1 - enough_told) * double(result_.places.size()));
+      if (halvings == most_halvings) may_be_lost = result_.places.size();
+      std::size_t lost = 0;
+      for (std::size_t p = 0; p < result_.places.size() && lost <= may_be_lost; ++p) {
         const auto there = block_at(result_.places[p]);
         if (!there) continue;
-        ++known;
         const NeighbourErrors off =
             figures_.compare(pose.id, surface->at(result_.places[p]), surface->middle(), *there);
-        if (!off.small()) continue;
-        pose.told[p] = true;
-        ++told;
-        errors.include(off);
+        pose.told[p] = off.small();
+        if (pose.told[p]) errors.include(off);
+        else ++lost;
       }
       pose.rows = surface->rows();
       pose.terms = surface->terms();
       pose.scale = surface->scale();
-      if (double(told) >= enough_told * double(known)) break;
+      if (lost <= may_be_lost) break;
     }
     return errors;
   }

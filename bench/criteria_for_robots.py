@@ -15,6 +15,8 @@ import ensemble  # noqa: E402
 
 NOISE = 60e-6  # what stays at a pose and is no effect, 1σ along an axis
 TIMES = (1, 1.5, 2, 4, 10)
+# `auto` of the program: o1, and from so many times the smallest number of poses on its bias without a truth.
+AUTO_BIAS_FROM, AUTO_FEW, AUTO_MORE = 1.5, "o1", "smooth 2"
 
 
 def kernel_features(f, length, count):
@@ -189,7 +191,8 @@ def turns(problem):
 
 def criteria(problem):
     """By name; an effect's size is in units of the noise. `smooth 2` is the program's criterion bias without a truth,
-    `variance` its test_pose at the candidates, `estimated 2` the same for a fit that estimates the effect, too."""
+    `variance` its test_pose at the candidates, `estimated 2` the same for a fit that estimates the effect, too.
+    main() adds `auto`, which is one of them at each number of poses."""
     none = (np.zeros((problem.n, problem.r, 1)), np.zeros((problem.n, len(problem.there), 1)), 1.0)
     table = {"o1": Determinant(problem, False, False), "ds": Determinant(problem, False, True),
              "o1 prior": Determinant(problem, True, False), "variance": MeanSquare(problem, False, [(1, 0, *none)])}
@@ -254,10 +257,12 @@ def main():
             subsets = [rng.choice(problem.n, N, replace=False) for _ in range(options.subsets)]
             random = {prior: np.array([judge(S, prior) for S in subsets]) for prior in (False, True)}
             start = exchange(Determinant(problem, True, False), subsets[0])
-            for name, criterion in table.items():
-                if options.criteria and name not in options.criteria.split(","):
-                    continue
-                S = exchange(criterion, start)
+            plans = {name: exchange(criterion, start) for name, criterion in table.items()
+                     if not options.criteria or name in options.criteria.split(",")}
+            automatic = AUTO_MORE if word >= AUTO_BIAS_FROM else AUTO_FEW
+            if automatic in plans:
+                plans["auto"] = plans[automatic]
+            for name, S in plans.items():
                 for prior in (False, True):
                     error = judge(S, prior)
                     for i in range(options.robots):

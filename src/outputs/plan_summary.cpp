@@ -195,8 +195,28 @@ std::string effect_text(const Plan& plan) {
                     noise, shown_value(*effect.by_effect, "m"), shown_value(*effect.interpolated, "m"));
 }
 
+/// Where only one frame is of interest, and no robot: how well it is known afterwards.
+std::string frame_text(const Plan& plan) {
+  std::string frame;
+  double shift = 0, turn = 0;
+  for (const PlannedParameter& p : plan.parameters) {
+    if (!p.sigma || p.label.role != Role::interest) continue;
+    const std::size_t dot = p.label.name.find('.');
+    const std::string axis = dot == std::string::npos ? "" : p.label.name.substr(dot + 1);
+    const bool turns = axis == "rx" || axis == "ry" || axis == "rz";
+    if (!turns && axis != "x" && axis != "y" && axis != "z") return {};
+    if (!frame.empty() && frame != p.label.name.substr(0, dot)) return {};
+    frame = p.label.name.substr(0, dot);
+    (turns ? turn : shift) += *p.sigma * *p.sigma;
+  }
+  if (frame.empty() || plan.variant.empty()) return {};
+  return fmt::format("Predicted σ of {} after calibration: {}{}{}, from noise alone\n", frame,
+                     shift > 0 ? shown_value(std::sqrt(shift), "m") : "", shift > 0 && turn > 0 ? " and " : "",
+                     turn > 0 ? shown_value(std::sqrt(turn), "rad") : "");
+}
+
 std::string accuracy_text(const Plan& plan) {
-  std::string text = plan.expected ? expected_error_text(*plan.expected) : "";
+  std::string text = plan.expected ? expected_error_text(*plan.expected) : frame_text(plan);
   if (plan.rho0)
     text += fmt::format("By the parameters of interest alone, {}: {} (worst test pose {})\n",
                         plan.unmodelled ? "with the effect" : "from noise", shown_value(*plan.rho0, "m"),
